@@ -1,0 +1,2 @@
+//! Identification of hysteresis.
+pub mod operator;

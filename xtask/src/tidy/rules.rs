@@ -1,0 +1,338 @@
+//! The rules, each a function of a file's path from the root and its text.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::Violation;
+use super::rust_code::{code_only, contains_word};
+
+/// Where the numbered equations are.
+pub const THEORY: &str = "docs/theory.md";
+
+const LONGEST_SOURCE: usize = 800;
+
+/// Names that say nothing about what is inside.
+const EMPTY_NAMES: [&str; 7] = [
+    "utils", "util", "helpers", "helper", "manager", "common", "misc",
+];
+
+const LIBRARY: &str = "crates/hysid/src/";
+
+/// What the code of the library does not contain, and why.
+const NOT_IN_LIBRARY: [(&str, &str); 10] = [
+    ("unsafe", "the library has no unsafe code"),
+    ("println!", "the library prints nothing"),
+    ("eprintln!", "the library prints nothing"),
+    ("print!", "the library prints nothing"),
+    ("eprint!", "the library prints nothing"),
+    ("dbg!", "the library prints nothing"),
+    ("std::fs", "the library reads and writes no files"),
+    ("fs::", "the library reads and writes no files"),
+    ("Instant", "the library asks no clock"),
+    ("SystemTime", "the library asks no clock"),
+];
+
+/// Written in two parts, or this file would break its own rule.
+const LEFT_TO_DO: [&str; 3] = [
+    concat!("TO", "DO"),
+    concat!("FIX", "ME"),
+    concat!("XX", "X"),
+];
+
+fn violation(path: &str, line: usize, what: impl Into<String>) -> Violation {
+    let path = path.to_owned();
+    let what = what.into();
+    Violation { path, line, what }
+}
+
+/// The lines of a text with their numbers, which count from 1.
+fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    (1..).zip(text.split('\n'))
+}
+
+fn is_rust(path: &str) -> bool {
+    path.ends_with(".rs")
+}
+
+/// No tabs and no whitespace at the end of a line.
+pub fn clean_whitespace(path: &str, text: &str) -> Vec<Violation> {
+    let mut found = Vec::new();
+    for (number, line) in numbered(text) {
+        if line.contains('\t') {
+            found.push(violation(path, number, "a tab"));
+        }
+        if line.trim_end() != line {
+            found.push(violation(path, number, "whitespace at the end of the line"));
+        }
+    }
+    found
+}
+
+/// What is left to do belongs into the issue tracker.
+pub fn nothing_left_to_do(path: &str, text: &str) -> Vec<Violation> {
+    let mut found = Vec::new();
+    for (number, line) in numbered(text) {
+        for mark in LEFT_TO_DO {
+            if contains_word(line, mark) {
+                found.push(violation(path, number, format!("{mark} left behind")));
+            }
+        }
+    }
+    found
+}
+
+/// No Rust source is longer than one can keep in mind.
+pub fn length(path: &str, text: &str) -> Vec<Violation> {
+    let lines = text.lines().count();
+    if is_rust(path) && lines > LONGEST_SOURCE {
+        let what = format!("{lines} lines; split the file, {LONGEST_SOURCE} is the most");
+        vec![violation(path, LONGEST_SOURCE + 1, what)]
+    } else {
+        Vec::new()
+    }
+}
+
+/// The name of a file or folder tells what is inside.
+pub fn telling_name(path: &str) -> Vec<Violation> {
+    path.split('/')
+        .map(|part| part.split_once('.').map_or(part, |(stem, _)| stem))
+        .filter(|stem| EMPTY_NAMES.contains(stem))
+        .map(|stem| violation(path, 1, format!("a file or folder named `{stem}`")))
+        .collect()
+}
+
+/// The name of a module tells what is inside.
+pub fn telling_module_names(path: &str, text: &str) -> Vec<Violation> {
+    if !is_rust(path) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (number, line) in numbered(&code_only(text)) {
+        for name in EMPTY_NAMES {
+            if contains_word(line, &format!("mod {name}")) {
+                found.push(violation(path, number, format!("a module named `{name}`")));
+            }
+        }
+    }
+    found
+}
+
+/// The library is mathematics only: safe code, no output, no files, no clock. Comments and strings may say what they like.
+pub fn pure_library(path: &str, text: &str) -> Vec<Violation> {
+    if !is_rust(path) || !path.starts_with(LIBRARY) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (number, line) in numbered(&code_only(text)) {
+        for (pattern, reason) in NOT_IN_LIBRARY {
+            if contains_word(line, pattern) {
+                found.push(violation(path, number, format!("`{pattern}`: {reason}")));
+            }
+        }
+    }
+    found
+}
+
+/// Every equation cited from Rust code as `theory.md (X.Y)` is there.
+pub fn equations_exist(path: &str, text: &str, equations: &BTreeSet<String>) -> Vec<Violation> {
+    if !is_rust(path) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (number, line) in numbered(text) {
+        for equation in cited_equations(line) {
+            if !equations.contains(&equation) {
+                let what = format!("equation ({equation}) is not in {THEORY}");
+                found.push(violation(path, number, what));
+            }
+        }
+    }
+    found
+}
+
+/// No equation number is given twice.
+pub fn equations_unique(path: &str, text: &str) -> Vec<Violation> {
+    if path != THEORY {
+        return Vec::new();
+    }
+    let mut first_line = BTreeMap::new();
+    let mut found = Vec::new();
+    for (number, equation) in displayed_equations(text) {
+        if let Some(first) = first_line.get(&equation) {
+            let what = format!("equation number ({equation}) is taken by line {first}");
+            found.push(violation(path, number, what));
+        } else {
+            first_line.insert(equation, number);
+        }
+    }
+    found
+}
+
+/// The numbers of the equations displayed in the text.
+pub fn equations(text: &str) -> BTreeSet<String> {
+    displayed_equations(text)
+        .into_iter()
+        .map(|(_, equation)| equation)
+        .collect()
+}
+
+/// The equations of the text with their lines: in a code block, a line that ends with `(X.Y)`.
+fn displayed_equations(text: &str) -> Vec<(usize, String)> {
+    let mut inside_block = false;
+    let mut equations = Vec::new();
+    for (number, line) in numbered(text) {
+        if is_fence(line) {
+            inside_block = !inside_block;
+        } else if inside_block
+            && let Some(start) = line.rfind('(')
+            && let Some((equation, "")) = equation_number(&line[start..])
+        {
+            equations.push((number, equation));
+        }
+    }
+    equations
+}
+
+/// The numbers in `theory.md (1.2)`, and also in `theory.md (1.2), (1.3) and (1.5)`.
+fn cited_equations(line: &str) -> Vec<String> {
+    let mut cited = Vec::new();
+    for (start, name) in line.match_indices("theory.md") {
+        let mut rest = line[start + name.len()..].trim_start_matches(['`', ']', '>']);
+        while let Some((equation, after)) = equation_number(rest.trim_start()) {
+            cited.push(equation);
+            rest = after.trim_start_matches([',', ' ', '-', '–']);
+            rest = ["and ", "or ", "to "]
+                .iter()
+                .find_map(|word| rest.strip_prefix(word))
+                .unwrap_or(rest);
+        }
+    }
+    cited
+}
+
+/// Splits `(12.3)...` into `12.3` and what follows.
+fn equation_number(text: &str) -> Option<(String, &str)> {
+    let (number, rest) = text.strip_prefix('(')?.split_once(')')?;
+    let (section, count) = number.split_once('.')?;
+    let is_count = |digits: &str| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+    (is_count(section) && is_count(count)).then(|| (number.to_owned(), rest))
+}
+
+/// Every relative link in the repository's documents leads to a file or folder of the repository.
+pub fn links_lead_somewhere(path: &str, text: &str, paths: &BTreeSet<String>) -> Vec<Violation> {
+    let at_the_door = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+    ];
+    let is_document = path.starts_with("docs/") && path.ends_with(".md");
+    if !is_document && !at_the_door.contains(&path) {
+        return Vec::new();
+    }
+    let mut inside_block = false;
+    let mut found = Vec::new();
+    for (number, line) in numbered(text) {
+        if is_fence(line) {
+            inside_block = !inside_block;
+        }
+        if inside_block {
+            continue;
+        }
+        for target in link_targets(line) {
+            let file = target.split('#').next().unwrap_or_default();
+            let elsewhere = target.contains("://") || target.starts_with("mailto:");
+            if file.is_empty() || elsewhere {
+                continue;
+            }
+            let leads_somewhere = resolve(path, file).is_some_and(|resolved| {
+                let folder = format!("{resolved}/");
+                resolved.is_empty()
+                    || paths.contains(&resolved)
+                    || paths.iter().any(|path| path.starts_with(&folder))
+            });
+            if !leads_somewhere {
+                found.push(violation(
+                    path,
+                    number,
+                    format!("broken link to `{target}`"),
+                ));
+            }
+        }
+    }
+    found
+}
+
+fn is_fence(line: &str) -> bool {
+    let line = line.trim_start();
+    line.starts_with("```") || line.starts_with("~~~")
+}
+
+/// The targets of `[text](target)`, `![text](target "title")` and `[name]: target`; code spans aside.
+fn link_targets(line: &str) -> Vec<&str> {
+    let mut targets = Vec::new();
+    if let Some(definition) = line.trim_start().strip_prefix('[')
+        && let Some((_, target)) = definition.split_once("]: ")
+    {
+        targets.extend(target.split_whitespace().next());
+    }
+    for (start, opening) in line.match_indices("](") {
+        let inside_code = line[..start].matches('`').count() % 2 == 1;
+        if !inside_code && let Some((inside, _)) = line[start + opening.len()..].split_once(')') {
+            targets.extend(inside.split_whitespace().next());
+        }
+    }
+    targets
+}
+
+/// The path from the root that `target` means in the file `path`; none if it leads out of the repository.
+fn resolve(path: &str, target: &str) -> Option<String> {
+    let mut parts: Vec<&str> = path.split('/').collect();
+    parts.pop();
+    for part in target.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                parts.pop()?;
+            }
+            name => parts.push(name),
+        }
+    }
+    Some(parts.join("/"))
+}
+
+/// The changelog has a heading for the workspace's version, or one for what is not released yet.
+pub fn version_in_changelog(manifest: &str, changelog: &str) -> Vec<Violation> {
+    let Some(version) = workspace_version(manifest) else {
+        let what = "no version in [workspace.package]";
+        return vec![violation("Cargo.toml", 1, what)];
+    };
+    let mut headings = changelog
+        .lines()
+        .filter_map(|line| line.strip_prefix("## "));
+    let known = headings.any(|heading| {
+        let name = heading.split_whitespace().next().unwrap_or_default();
+        let name = name.trim_matches(['[', ']']);
+        name == "Unreleased" || name == version
+    });
+    if known {
+        Vec::new()
+    } else {
+        let what = format!("no heading `## {version}` and none `## Unreleased`");
+        vec![violation("CHANGELOG.md", 1, what)]
+    }
+}
+
+fn workspace_version(manifest: &str) -> Option<&str> {
+    manifest
+        .lines()
+        .skip_while(|line| line.trim() != "[workspace.package]")
+        .skip(1)
+        .take_while(|line| !line.starts_with('['))
+        .find_map(|line| {
+            let (key, value) = line.split_once('=')?;
+            (key.trim() == "version").then(|| value.trim().trim_matches('"'))
+        })
+}
+
+#[cfg(test)]
+mod tests;
