@@ -1,2 +1,47 @@
-//! Identification of hysteresis.
+//! Identification of hysteresis: from measured input and output to a small, stable model.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use hysid::operator::{Operator, Stop};
+//! use hysid::record::{ColumnNames, Dataset, Record};
+//! use hysid::training::{FitOptions, fit};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A specimen: an elastic spring beside a friction slider, driven by a growing oscillation.
+//! let x: Vec<f64> = (0..600).map(|k| 0.01 * k as f64 * (0.1 * k as f64).sin()).collect();
+//! let slider = Stop::new(1.0)?.run(&x);
+//! let y: Vec<f64> = x.iter().zip(slider).map(|(x, slider)| 0.2 * x + slider).collect();
+//!
+//! let record = Record::new("test 1", vec![x], y)?;
+//! let data = Dataset::new(ColumnNames::plain(1), vec![record])?;
+//! let options = FitOptions { starts: 2, ..FitOptions::default() };
+//! let fitted = fit(&data, &options, &mut |_| ControlFlow::Continue(()))?;
+//!
+//! let errors = fitted.model.evaluate(&data)?;
+//! assert!(errors.nrmse_std_percent.unwrap() < 2.0);
+//! let file = fitted.model.to_json();
+//! assert_eq!(hysid::model::Model::from_json(&file)?, fitted.model);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The library does no input or output, keeps no global state and has no unsafe code. Where to find
+//! what: [`record`] holds measured data, [`operator`] the elements of memory, [`network`] the family
+//! of networks, [`training`] identifies one, [`model`] is the result.
+
+pub mod error;
+mod linear_algebra;
+pub mod metrics;
+pub mod model;
+pub mod network;
 pub mod operator;
+pub mod rate;
+pub mod record;
+pub mod scaling;
+pub mod simd;
+pub mod summary;
+pub mod training;
+pub mod turning_points;
+pub mod warning;
+
+pub use error::{Error, Result};

@@ -1,0 +1,150 @@
+//! What can be wrong with what a caller hands in.
+
+use std::fmt;
+
+/// Result of the library's fallible functions.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An error of the library; its text says what is wrong and what helps.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A record cannot be used as it is.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// An architecture, parameter or option outside its meaning.
+    #[error("{0}")]
+    Option(String),
+    /// A model file that cannot be used.
+    #[error("{0}")]
+    ModelFile(String),
+}
+
+/// Largest magnitude that a value of a record may have. Beyond it the square of a
+/// scaled value could overflow; no measured quantity comes near.
+pub const LARGEST_VALUE: f64 = 1e100;
+
+/// A defect of a record, with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataError {
+    /// Name of the record.
+    pub record: String,
+    /// Row within the record, counted from 0; `None` if the whole record is meant.
+    pub row: Option<usize>,
+    /// The column meant; `None` if no single one.
+    pub channel: Option<Channel>,
+    /// What is wrong.
+    pub problem: DataProblem,
+}
+
+/// A column of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    /// Time stamps.
+    Time,
+    /// An input, counted from 0.
+    Input(usize),
+    /// The given rate of the first input.
+    Rate,
+    /// The output.
+    Output,
+}
+
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Channel::Time => write!(f, "time"),
+            Channel::Input(0) => write!(f, "input"),
+            Channel::Input(n) => write!(f, "input {}", n + 1),
+            Channel::Rate => write!(f, "rate"),
+            Channel::Output => write!(f, "output"),
+        }
+    }
+}
+
+/// What is wrong with a record.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DataProblem {
+    /// No rows at all.
+    #[error("has no rows")]
+    Empty,
+    /// A column of another length than the first input.
+    #[error("has {found} values where the first input has {expected}")]
+    Length {
+        /// Rows of the first input.
+        expected: usize,
+        /// Rows of this column.
+        found: usize,
+    },
+    /// NaN or infinity where a number is needed.
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    /// A magnitude beyond [`LARGEST_VALUE`].
+    #[error("{0:e} is too large: at most {LARGEST_VALUE:e} in magnitude (choose another unit)")]
+    TooLarge(f64),
+    /// Time stands still or runs backwards.
+    #[error(
+        "time {now} does not come after {before} (sort the rows, or name the records in a column `record`)"
+    )]
+    TimeNotIncreasing {
+        /// The time stamp before.
+        before: f64,
+        /// The offending time stamp.
+        now: f64,
+    },
+    /// A rate that overflows, from time steps next to nothing.
+    #[error("the rate here is {0:e}: the time step is too small (is the time column right?)")]
+    RateTooLarge(f64),
+    /// A rate was asked for and there is no time.
+    #[error("there is no time column to take the rate from (use rate `none`)")]
+    NoTime,
+    /// The model needs time and there is none.
+    #[error("there is no time column, and the model needs one (name it with --time)")]
+    NoTimeForModel,
+    /// A rate was asked for from a column that is missing.
+    #[error("there is no given rate (the model was trained with one)")]
+    NoGivenRate,
+    /// The number of inputs is not what it must be.
+    #[error("has {found} inputs where {expected} are expected")]
+    Inputs {
+        /// Inputs expected.
+        expected: usize,
+        /// Inputs found.
+        found: usize,
+    },
+    /// The input has one value throughout.
+    #[error("is constant ({0}): nothing moves, so there is nothing to identify")]
+    ConstantInput(f64),
+    /// The output has one value throughout.
+    #[error("is constant ({0}): there is nothing to identify")]
+    ConstantOutput(f64),
+    /// The output is blank throughout.
+    #[error("is blank in every row: there is nothing to compare with")]
+    NothingToScore,
+    /// Too few rows with an output.
+    #[error(
+        "has only {found} rows with an output: at least {needed} are needed to identify a model"
+    )]
+    TooFewRows {
+        /// Rows with an output.
+        found: usize,
+        /// Rows needed.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for DataError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "record \"{}\"", self.record)?;
+        if let Some(row) = self.row {
+            write!(f, ", row {}", row + 1)?;
+        }
+        if let Some(channel) = self.channel {
+            write!(f, ", {channel}")?;
+        }
+        write!(f, ": {}", self.problem)
+    }
+}
+
+impl std::error::Error for DataError {}

@@ -1,0 +1,219 @@
+//! The model file: JSON that a person can read, with a version and a checksum.
+//!
+//! Everything a later version needs to simulate the model stands in it. Every released version is
+//! read by all later ones: when the layout changes, [`FORMAT_VERSION`] rises and the older reader
+//! stays.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::model::{Model, Provenance, TrainedRanges};
+use crate::network::{Architecture, Family, Layout, Network};
+use crate::rate::RateMethod;
+use crate::record::ColumnNames;
+use crate::scaling::Scaling;
+
+/// Version of the layout that is written.
+pub const FORMAT_VERSION: u64 = 1;
+
+const FORMAT: &str = "hysid-model";
+const CHECKSUM_KEY: &str = "\"checksum\"";
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: String,
+    version: u64,
+    written_by: String,
+    model: Family,
+    columns: ColumnNames,
+    rate: Option<RateMethod>,
+    trained_ranges: TrainedRanges,
+    scaling: Scaling,
+    architecture: Architecture,
+    memory: Memory,
+    readout: Readout,
+    training: Provenance,
+    checksum: String,
+}
+
+/// The memory layer, in scaled units.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Memory {
+    stops: Vec<Stop>,
+    linear: Option<Vec<f64>>,
+    /// Natural logarithms of the relaxation times, in the unit of time.
+    relaxation_ln_tau: Vec<f64>,
+}
+
+/// A stop neuron: weights of the first input, its rate, further inputs; ln β.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stop {
+    weights: Vec<f64>,
+    ln_beta: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Readout {
+    /// Bias, then weights of linear neuron, stops, relaxation neurons.
+    hidden: Vec<Vec<f64>>,
+    /// Constant, then weights of the tanh neurons, then of the direct path.
+    output: Vec<f64>,
+}
+
+/// Checksum of a file's text up to the checksum itself, white space aside: it notices any change of
+/// content, and no change of layout or line ends.
+fn checksum(text: &str) -> Option<u32> {
+    let end = text.rfind(CHECKSUM_KEY)?;
+    let content: Vec<u8> = text[..end]
+        .bytes()
+        .filter(|byte| !byte.is_ascii_whitespace())
+        .collect();
+    Some(crc32fast::hash(&content))
+}
+
+pub(super) fn write(model: &Model) -> String {
+    let architecture = *model.network.architecture();
+    let layout = Layout::new(architecture);
+    let parameters = model.network.parameters();
+    let ln_beta = &parameters[layout.ln_beta];
+    let stop = |(j, weights): (usize, &[f64])| Stop {
+        weights: weights.to_vec(),
+        ln_beta: ln_beta.get(j).copied(),
+    };
+    let run = 1 + architecture.memory_neurons();
+    let file = File {
+        format: FORMAT.into(),
+        version: FORMAT_VERSION,
+        written_by: format!("hysid {}", env!("CARGO_PKG_VERSION")),
+        model: model.family,
+        columns: model.names.clone(),
+        rate: model.rate,
+        trained_ranges: model.trained.clone(),
+        scaling: model.scaling.clone(),
+        architecture,
+        memory: Memory {
+            stops: parameters[layout.stop_weights]
+                .chunks_exact(architecture.channels())
+                .enumerate()
+                .map(stop)
+                .collect(),
+            linear: architecture
+                .linear
+                .then(|| parameters[layout.linear].to_vec()),
+            relaxation_ln_tau: parameters[layout.ln_tau].to_vec(),
+        },
+        readout: Readout {
+            hidden: parameters[layout.hidden]
+                .chunks_exact(run)
+                .map(<[f64]>::to_vec)
+                .collect(),
+            output: model.network.output().to_vec(),
+        },
+        training: model.provenance.clone(),
+        checksum: "00000000".into(),
+    };
+    let mut text = serde_json::to_string_pretty(&file)
+        .expect("a model has no map with keys other than strings");
+    let sum = checksum(&text).expect("the key is there");
+    let end = text.rfind("00000000").expect("the value is there");
+    text.replace_range(end..end + 8, &format!("{sum:08x}"));
+    text.push('\n');
+    text
+}
+
+pub(super) fn read(text: &str) -> Result<Model> {
+    let damaged = |what: String| {
+        Error::ModelFile(format!(
+            "{what} (fit the model anew, or restore the file from a copy)"
+        ))
+    };
+    if text.trim().is_empty() {
+        return Err(damaged("the model file is empty".into()));
+    }
+    let value: serde_json::Value = serde_json::from_str(text).map_err(|error| {
+        if error.is_eof() {
+            damaged(format!(
+                "the model file is cut off at line {}",
+                error.line()
+            ))
+        } else if !text.trim_start().starts_with('{') {
+            Error::ModelFile(
+                "this is not a Hysid model file (expected the JSON that `hysid fit` writes)".into(),
+            )
+        } else {
+            damaged(format!(
+                "the model file is damaged at line {}, column {}",
+                error.line(),
+                error.column()
+            ))
+        }
+    })?;
+    if value.get("format").and_then(|format| format.as_str()) != Some(FORMAT) {
+        return Err(Error::ModelFile(
+            "this is not a Hysid model file (expected the JSON that `hysid fit` writes)".into(),
+        ));
+    }
+    match value.get("version").and_then(serde_json::Value::as_u64) {
+        Some(1..=FORMAT_VERSION) => {}
+        Some(version) if version > FORMAT_VERSION => {
+            return Err(Error::ModelFile(format!(
+                "the model file has format version {version}, this program reads up to {FORMAT_VERSION}: use a newer hysid"
+            )));
+        }
+        _ => return Err(damaged("the model file has no valid format version".into())),
+    }
+    let written = value
+        .get("checksum")
+        .and_then(|sum| sum.as_str())
+        .unwrap_or_default();
+    if checksum(text).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
+        return Err(damaged(
+            "the model file was changed after it was written: its checksum does not match".into(),
+        ));
+    }
+    let file: File = serde_json::from_str(text).map_err(|error| {
+        damaged(format!(
+            "the model file does not have the layout of version {FORMAT_VERSION}: {error}"
+        ))
+    })?;
+    assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
+}
+
+fn assemble(file: File) -> Result<Model> {
+    let layout = Layout::new(file.architecture);
+    let mut parameters = Vec::with_capacity(layout.len());
+    parameters.extend(file.memory.stops.iter().flat_map(|stop| &stop.weights));
+    parameters.extend(file.memory.stops.iter().filter_map(|stop| stop.ln_beta));
+    parameters.extend(file.memory.linear.iter().flatten());
+    parameters.extend(&file.memory.relaxation_ln_tau);
+    parameters.extend(file.readout.hidden.iter().flatten());
+    let inputs = file.architecture.inputs;
+    if [
+        file.scaling.inputs.len(),
+        file.columns.inputs.len(),
+        file.trained_ranges.inputs.len(),
+    ] != [inputs; 3]
+    {
+        return Err(Error::Option(format!(
+            "it does not describe {inputs} inputs throughout"
+        )));
+    }
+    if file.architecture.rate != file.rate.is_some()
+        || file.rate.is_some() != file.scaling.rate.is_some()
+    {
+        return Err(Error::Option("it has a rate in some places only".into()));
+    }
+    Ok(Model {
+        family: file.model,
+        network: Network::new(file.architecture, parameters, file.readout.output)?,
+        scaling: file.scaling,
+        rate: file.rate,
+        names: file.columns,
+        trained: file.trained_ranges,
+        provenance: file.training,
+    })
+}

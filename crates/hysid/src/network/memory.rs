@@ -1,0 +1,542 @@
+//! The memory layer: linear neuron, stop neurons, relaxation neurons.
+//!
+//! ```text
+//! v = w·u;  p <- clip(p; v - 1, v + 1);  ε = v - p;  s += |Δp|;  z = ε max(0, 1 - s/β)   theory.md (2.2)
+//! z_0 = a·u                                                                              theory.md (2.3)
+//! ```
+//!
+//! Time cannot be cut into lanes, neurons can: eight stops advance together, and their outputs are
+//! then turned from time-major to neuron-major for the readout, which has all of time to cut.
+
+use pulp::Simd;
+
+use crate::network::{Architecture, Layout};
+use crate::operator::{deteriorating_stop, play, relaxation, stop};
+use crate::simd::multiply_add;
+
+/// Rows handled together. All rows of a block lie in the first-level cache.
+pub(crate) const BLOCK: usize = 64;
+
+/// One quantity over a block of rows.
+pub(crate) type Row = [f64; BLOCK];
+
+/// Stops that advance together.
+const LANES: usize = 8;
+
+/// One number for each stop of a group.
+type Lanes = [f64; LANES];
+
+/// Values of a group over a block, time-major.
+type Tile = [Lanes; BLOCK];
+
+/// Largest magnitude of a scaled input. Beyond it, far outside anything trained on, the input is
+/// taken as this, so that no sum of products overflows whatever the parameters.
+pub(crate) const LARGEST_SCALED: f64 = 1e50;
+
+/// The memory layer's parameters, arranged for the kernel.
+#[derive(Debug, Clone)]
+pub(crate) struct MemoryLayer {
+    channels: usize,
+    stops: usize,
+    deteriorating: bool,
+    groups: Vec<Group>,
+    linear: Option<Vec<f64>>,
+    /// Channel and τ of each relaxation neuron.
+    relaxation: Vec<(usize, f64)>,
+}
+
+#[derive(Debug, Clone)]
+struct Group {
+    weights: Vec<Lanes>,
+    inverse_beta: Lanes,
+}
+
+/// What the memory layer knows of the past: the model's whole state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MemoryState {
+    started: bool,
+    play: Vec<Lanes>,
+    slip: Vec<Lanes>,
+    stress: Vec<f64>,
+    /// The last row's inputs, which the relaxation neurons take increments of.
+    last: Vec<f64>,
+}
+
+/// Derivatives of the state by the parameters, carried along with it.
+#[derive(Debug, Clone)]
+pub(crate) struct Sensitivity {
+    /// `∂p/∂w` of each group and channel: the input at the last sample that slipped.
+    play: Vec<Vec<Lanes>>,
+    /// `∂s/∂w`.
+    slip: Vec<Vec<Lanes>>,
+    /// `∂σ/∂ln τ`.
+    stress: Vec<f64>,
+}
+
+/// Outputs of the memory layer over a block, and their derivatives, each neuron-major.
+#[derive(Debug, Clone)]
+pub(crate) struct MemorySlopes {
+    /// `∂z_j/∂w_jc` at `j * channels + c`.
+    pub weights: Vec<Row>,
+    /// `∂z_j/∂ln β_j`; empty without deterioration.
+    pub ln_beta: Vec<Row>,
+    /// `∂z/∂ln τ` of each relaxation neuron.
+    pub ln_tau: Vec<Row>,
+}
+
+impl MemorySlopes {
+    pub fn new(a: &Architecture) -> Self {
+        Self {
+            weights: vec![[0.0; BLOCK]; a.stops * a.channels()],
+            ln_beta: vec![[0.0; BLOCK]; if a.deterioration { a.stops } else { 0 }],
+            ln_tau: vec![[0.0; BLOCK]; a.relaxation_neurons()],
+        }
+    }
+}
+
+impl MemoryLayer {
+    /// Arranges the parameters, which must fit the architecture.
+    pub fn new(architecture: &Architecture, parameters: &[f64]) -> Self {
+        let layout = Layout::new(*architecture);
+        let channels = architecture.channels();
+        let weights = &parameters[layout.stop_weights];
+        let ln_beta = &parameters[layout.ln_beta];
+        let group = |first: usize| {
+            let lane = |value: &dyn Fn(usize) -> f64| {
+                std::array::from_fn(|l| {
+                    if first + l < architecture.stops {
+                        value(first + l)
+                    } else {
+                        0.0
+                    }
+                })
+            };
+            Group {
+                weights: (0..channels)
+                    .map(|c| lane(&|j| weights[j * channels + c]))
+                    .collect(),
+                inverse_beta: lane(&|j| ln_beta.get(j).map_or(0.0, |ln_beta| (-ln_beta).exp())),
+            }
+        };
+        let channel_of_input = |input: usize| {
+            if input == 0 {
+                0
+            } else {
+                input + usize::from(architecture.rate)
+            }
+        };
+        let ln_tau = parameters[layout.ln_tau].iter().enumerate();
+        Self {
+            channels,
+            stops: architecture.stops,
+            deteriorating: architecture.deterioration,
+            groups: (0..architecture.stops).step_by(LANES).map(group).collect(),
+            linear: architecture
+                .linear
+                .then(|| parameters[layout.linear].to_vec()),
+            relaxation: ln_tau
+                .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), ln_tau.exp()))
+                .collect(),
+        }
+    }
+
+    /// The virgin state.
+    pub fn virgin(&self) -> MemoryState {
+        MemoryState {
+            started: false,
+            play: vec![[0.0; LANES]; self.groups.len()],
+            slip: vec![[0.0; LANES]; self.groups.len()],
+            stress: vec![0.0; self.relaxation.len()],
+            last: vec![0.0; self.channels],
+        }
+    }
+
+    /// The derivatives of the virgin state.
+    pub fn virgin_sensitivity(&self) -> Sensitivity {
+        let zeros = || vec![vec![[0.0; LANES]; self.channels]; self.groups.len()];
+        Sensitivity {
+            play: zeros(),
+            slip: zeros(),
+            stress: vec![0.0; self.relaxation.len()],
+        }
+    }
+
+    fn neurons(&self) -> usize {
+        usize::from(self.linear.is_some()) + self.stops + self.relaxation.len()
+    }
+
+    /// Advances by `rows` rows of scaled inputs `u` (by channel), and writes every neuron's output
+    /// into `z`.
+    ///
+    /// `steps` are the time steps before each row, 0 at the start of a record; empty without
+    /// relaxation neurons.
+    #[inline(always)]
+    pub fn forward<S: Simd>(
+        &self,
+        state: &mut MemoryState,
+        u: &[Row],
+        steps: &Row,
+        rows: usize,
+        z: &mut [Row],
+    ) {
+        let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
+        let (stops, stress) = rest.split_at_mut(self.stops);
+        self.begin(state, u);
+        let mut done = 0;
+        while done + 2 <= self.groups.len() {
+            let groups = &self.groups[done..done + 2];
+            let (play, slip) = (
+                &mut state.play[done..done + 2],
+                &mut state.slip[done..done + 2],
+            );
+            if self.deteriorating {
+                advance::<S, 2, true>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+            } else {
+                advance::<S, 2, false>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+            }
+            done += 2;
+        }
+        if done < self.groups.len() {
+            let groups = &self.groups[done..];
+            let (play, slip) = (&mut state.play[done..], &mut state.slip[done..]);
+            if self.deteriorating {
+                advance::<S, 1, true>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+            } else {
+                advance::<S, 1, false>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+            }
+        }
+        self.run_linear::<S>(u, linear);
+        self.relax(state, None, u, steps, rows, stress, &mut []);
+        self.remember(state, u, rows);
+    }
+
+    /// [`MemoryLayer::forward`] with all derivatives, theory.md (2.9) and (2.10). Outputs agree with
+    /// `forward` to the last bit.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub fn forward_with_slopes<S: Simd>(
+        &self,
+        state: &mut MemoryState,
+        sensitivity: &mut Sensitivity,
+        u: &[Row],
+        steps: &Row,
+        rows: usize,
+        z: &mut [Row],
+        slopes: &mut MemorySlopes,
+    ) {
+        let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
+        let (stops, stress) = rest.split_at_mut(self.stops);
+        if !state.started {
+            self.begin_slopes(sensitivity, u);
+        }
+        self.begin(state, u);
+        for (g, group) in self.groups.iter().enumerate() {
+            let first = g * LANES;
+            let memory = StopMemory {
+                play: &mut state.play[g],
+                slip: &mut state.slip[g],
+                play_slope: &mut sensitivity.play[g],
+                slip_slope: &mut sensitivity.slip[g],
+            };
+            let weights = &mut slopes.weights[first * self.channels..];
+            let ln_beta = slopes.ln_beta.get_mut(first..).unwrap_or(&mut []);
+            advance_with_slopes::<S>(
+                group,
+                memory,
+                u,
+                rows,
+                &mut stops[first..],
+                weights,
+                ln_beta,
+            );
+        }
+        self.run_linear::<S>(u, linear);
+        self.relax(
+            state,
+            Some(sensitivity),
+            u,
+            steps,
+            rows,
+            stress,
+            &mut slopes.ln_tau,
+        );
+        self.remember(state, u, rows);
+    }
+
+    /// At the first row of a record the plays jump from virgin to where they are held; that jump is
+    /// no slip: theory.md (1.5).
+    #[inline(always)]
+    fn begin(&self, state: &mut MemoryState, u: &[Row]) {
+        if state.started {
+            return;
+        }
+        state.started = true;
+        for (group, play) in self.groups.iter().zip(&mut state.play) {
+            for l in 0..LANES {
+                let v: f64 = (0..self.channels)
+                    .map(|c| group.weights[c][l] * u[c][0])
+                    .sum();
+                play[l] = play::follow(play[l], v, 1.0);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn begin_slopes(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
+        for (group, slopes) in self.groups.iter().zip(&mut sensitivity.play) {
+            for l in 0..LANES {
+                let v: f64 = (0..self.channels)
+                    .map(|c| group.weights[c][l] * u[c][0])
+                    .sum();
+                if v.abs() > 1.0 {
+                    for c in 0..self.channels {
+                        slopes[c][l] = u[c][0];
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn run_linear<S: Simd>(&self, u: &[Row], z: &mut [Row]) {
+        if let Some(weights) = &self.linear {
+            let z = &mut z[0];
+            *z = [0.0; BLOCK];
+            for (&weight, u) in weights.iter().zip(u) {
+                for (z, &u) in z.iter_mut().zip(u) {
+                    *z = multiply_add::<S>(weight, u, *z);
+                }
+            }
+        }
+    }
+
+    /// Relaxation neurons, and their derivatives by ln τ if a sensitivity is carried along.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn relax(
+        &self,
+        state: &mut MemoryState,
+        mut sensitivity: Option<&mut Sensitivity>,
+        u: &[Row],
+        steps: &Row,
+        rows: usize,
+        z: &mut [Row],
+        ln_tau: &mut [Row],
+    ) {
+        for (m, &(channel, tau)) in self.relaxation.iter().enumerate() {
+            let mut last = state.last[channel];
+            let mut stress = state.stress[m];
+            let mut slope = sensitivity.as_ref().map_or(0.0, |s| s.stress[m]);
+            let mut step = f64::NAN;
+            let mut factors = (1.0, 1.0);
+            for t in 0..rows {
+                if steps[t] != step {
+                    step = steps[t];
+                    factors = relaxation::decay(step, tau);
+                }
+                let increment = u[channel][t] - last;
+                if sensitivity.is_some() {
+                    let (e, g) = factors;
+                    let phi = step / tau;
+                    // theory.md (2.10), with (1 - E - φE)/φ = G - E
+                    slope = e * slope + phi * e * stress + increment * (g - e);
+                    ln_tau[m][t] = slope;
+                }
+                stress = relaxation::advance(stress, increment, factors);
+                z[m][t] = stress;
+                last = u[channel][t];
+            }
+            state.stress[m] = stress;
+            if let Some(sensitivity) = &mut sensitivity {
+                sensitivity.stress[m] = slope;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn remember(&self, state: &mut MemoryState, u: &[Row], rows: usize) {
+        for (last, u) in state.last.iter_mut().zip(u) {
+            *last = u[rows - 1];
+        }
+    }
+}
+
+/// Input of each stop of a group: `v = w·u`, one rounding order for every kernel.
+#[inline(always)]
+fn drive<S: Simd>(group: &Group, u: &[Row], t: usize, l: usize) -> f64 {
+    let mut v = group.weights[0][l] * u[0][t];
+    for (weights, u) in group.weights[1..].iter().zip(&u[1..]) {
+        v = multiply_add::<S>(weights[l], u[t], v);
+    }
+    v
+}
+
+/// Fills the tiles of `G` groups with their inputs `v`.
+#[inline(always)]
+fn drive_tiles<S: Simd, const G: usize>(
+    groups: &[Group],
+    u: &[Row],
+    tile: &mut [[Lanes; G]; BLOCK],
+) {
+    for g in 0..G {
+        let group = &groups[g];
+        let first = &group.weights[0];
+        for (tile, &u) in tile.iter_mut().zip(&u[0]) {
+            for l in 0..LANES {
+                tile[g][l] = first[l] * u;
+            }
+        }
+        for (weights, u) in group.weights[1..].iter().zip(&u[1..]) {
+            for (tile, &u) in tile.iter_mut().zip(u) {
+                for l in 0..LANES {
+                    tile[g][l] = multiply_add::<S>(weights[l], u, tile[g][l]);
+                }
+            }
+        }
+    }
+}
+
+/// Advances `G` groups of stops through a block.
+#[inline(always)]
+fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
+    groups: &[Group],
+    play: &mut [Lanes],
+    slip: &mut [Lanes],
+    u: &[Row],
+    rows: usize,
+    z: &mut [Row],
+) {
+    let mut tile = [[[0.0; LANES]; G]; BLOCK];
+    drive_tiles::<S, G>(groups, u, &mut tile);
+    let inverse_beta: [Lanes; G] = std::array::from_fn(|g| groups[g].inverse_beta);
+    let mut plays: [Lanes; G] = std::array::from_fn(|g| play[g]);
+    let mut slips: [Lanes; G] = std::array::from_fn(|g| slip[g]);
+    for tile in &mut tile[..rows] {
+        for g in 0..G {
+            for l in 0..LANES {
+                let v = tile[g][l];
+                let before = plays[g][l];
+                let after = play::follow(before, v, 1.0);
+                plays[g][l] = after;
+                let mut output = stop::elongation(v, after);
+                if DETERIORATING {
+                    slips[g][l] = deteriorating_stop::accumulate(slips[g][l], before, after);
+                    output *=
+                        deteriorating_stop::remaining_strength(slips[g][l], inverse_beta[g][l]);
+                }
+                tile[g][l] = output;
+            }
+        }
+    }
+    play.copy_from_slice(&plays);
+    slip.copy_from_slice(&slips);
+    for g in 0..G {
+        let live = z.len().saturating_sub(g * LANES).min(LANES);
+        turn(&tile, g, &mut z[g * LANES..g * LANES + live]);
+    }
+}
+
+/// Turns a group's tile from time-major to neuron-major.
+#[inline(always)]
+fn turn<const G: usize>(tile: &[[Lanes; G]; BLOCK], g: usize, rows: &mut [Row]) {
+    if let Ok(rows) = <&mut [Row; LANES]>::try_from(&mut *rows) {
+        for t in 0..BLOCK {
+            for l in 0..LANES {
+                rows[l][t] = tile[t][g][l];
+            }
+        }
+    } else {
+        for (l, row) in rows.iter_mut().enumerate() {
+            for (value, tile) in row.iter_mut().zip(tile) {
+                *value = tile[g][l];
+            }
+        }
+    }
+}
+
+/// A group's state and its derivatives by the weights.
+struct StopMemory<'a> {
+    play: &'a mut Lanes,
+    slip: &'a mut Lanes,
+    play_slope: &'a mut [Lanes],
+    slip_slope: &'a mut [Lanes],
+}
+
+/// Advances one group through a block with the sub-gradient of theory.md (2.9). At a kink the
+/// sample counts as sticking.
+#[inline(always)]
+fn advance_with_slopes<S: Simd>(
+    group: &Group,
+    memory: StopMemory,
+    u: &[Row],
+    rows: usize,
+    z: &mut [Row],
+    weights: &mut [Row],
+    ln_beta: &mut [Row],
+) {
+    let channels = group.weights.len();
+    let live = z.len().min(LANES);
+    let mut output: Tile = [[0.0; LANES]; BLOCK];
+    let mut by_ln_beta: Tile = [[0.0; LANES]; BLOCK];
+    let mut strength: Tile = [[0.0; LANES]; BLOCK];
+    let mut wear: Tile = [[0.0; LANES]; BLOCK];
+    let mut slid: [[bool; LANES]; BLOCK] = [[false; LANES]; BLOCK];
+    let mut direction: Tile = [[0.0; LANES]; BLOCK];
+    for t in 0..rows {
+        for l in 0..LANES {
+            let v = drive::<S>(group, u, t, l);
+            let before = memory.play[l];
+            let after = play::follow(before, v, 1.0);
+            memory.play[l] = after;
+            let slip = deteriorating_stop::accumulate(memory.slip[l], before, after);
+            memory.slip[l] = slip;
+            let left = deteriorating_stop::remaining_strength(slip, group.inverse_beta[l]);
+            let elongation = stop::elongation(v, after);
+            let wears = if left > 0.0 {
+                elongation * group.inverse_beta[l]
+            } else {
+                0.0
+            };
+            output[t][l] = elongation * left;
+            strength[t][l] = left;
+            wear[t][l] = wears;
+            by_ln_beta[t][l] = wears * slip;
+            slid[t][l] = after != before;
+            direction[t][l] = if after > before { 1.0 } else { -1.0 };
+        }
+    }
+    for (l, row) in z[..live].iter_mut().enumerate() {
+        for (value, tile) in row.iter_mut().zip(&output) {
+            *value = tile[l];
+        }
+    }
+    if !ln_beta.is_empty() {
+        for (l, row) in ln_beta[..live].iter_mut().enumerate() {
+            for (value, tile) in row.iter_mut().zip(&by_ln_beta) {
+                *value = tile[l];
+            }
+        }
+    }
+    let mut slope: Tile = [[0.0; LANES]; BLOCK];
+    for c in 0..channels {
+        let mut play_slope = memory.play_slope[c];
+        let mut slip_slope = memory.slip_slope[c];
+        for t in 0..rows {
+            let u = u[c][t];
+            for l in 0..LANES {
+                let before = play_slope[l];
+                let after = if slid[t][l] { u } else { before };
+                play_slope[l] = after;
+                slip_slope[l] += direction[t][l] * (after - before);
+                slope[t][l] = strength[t][l] * (u - after) - wear[t][l] * slip_slope[l];
+            }
+        }
+        memory.play_slope[c] = play_slope;
+        memory.slip_slope[c] = slip_slope;
+        for l in 0..live {
+            for (value, tile) in weights[l * channels + c].iter_mut().zip(&slope) {
+                *value = tile[l];
+            }
+        }
+    }
+}

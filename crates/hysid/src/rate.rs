@@ -1,0 +1,197 @@
+//! The rate of an input on its actual time stamps, theory.md section 4.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
+use crate::record::Record;
+
+/// How the rate of the first input is found. A model remembers its method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RateMethod {
+    /// A column of the record.
+    Given,
+    /// Central differences, second order on uneven steps: theory.md (4.1), one-sided at the ends
+    /// (4.2).
+    Central,
+    /// Backward differences, theory.md (4.3): all that is known in real time.
+    Backward,
+    /// Slope of a parabola through the neighbours by least squares: theory.md (4.4).
+    SavitzkyGolay,
+}
+
+/// Neighbours on each side of a Savitzky-Golay window.
+const HALF_WINDOW: usize = 5;
+
+impl RateMethod {
+    /// Rate of the record's first input, in its unit over the unit of time, one value a row.
+    ///
+    /// # Errors
+    /// No time stamps (or no given rate), or a rate beyond [`LARGEST_VALUE`].
+    pub fn rate(self, record: &Record) -> Result<Vec<f64>> {
+        let rate = match (self, record.time()) {
+            (RateMethod::Given, _) => record
+                .given_rate()
+                .ok_or_else(|| record.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate))?
+                .to_vec(),
+            (_, None) => {
+                return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTime));
+            }
+            (RateMethod::Central, Some(time)) => central(time, &record.inputs()[0]),
+            (RateMethod::Backward, Some(time)) => backward(time, &record.inputs()[0]),
+            (RateMethod::SavitzkyGolay, Some(time)) => savitzky_golay(time, &record.inputs()[0]),
+        };
+        match rate.iter().position(|rate| !(rate.abs() <= LARGEST_VALUE)) {
+            Some(row) => {
+                let problem = DataProblem::RateTooLarge(rate[row]);
+                Err(record.defect(Some(row), Some(Channel::Time), problem))
+            }
+            None => Ok(rate),
+        }
+    }
+}
+
+impl std::str::FromStr for RateMethod {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        match text {
+            "given" => Ok(RateMethod::Given),
+            "central" => Ok(RateMethod::Central),
+            "backward" => Ok(RateMethod::Backward),
+            "savitzky-golay" => Ok(RateMethod::SavitzkyGolay),
+            _ => Err(Error::Option(format!(
+                "rate `{text}` is unknown: given, central, backward or savitzky-golay"
+            ))),
+        }
+    }
+}
+
+/// Backward difference at `row`, 0 at the first: theory.md (4.3).
+fn backward_at(time: &[f64], x: &[f64], row: usize) -> f64 {
+    if row == 0 {
+        0.0
+    } else {
+        (x[row] - x[row - 1]) / (time[row] - time[row - 1])
+    }
+}
+
+fn backward(time: &[f64], x: &[f64]) -> Vec<f64> {
+    (0..x.len()).map(|row| backward_at(time, x, row)).collect()
+}
+
+fn central(time: &[f64], x: &[f64]) -> Vec<f64> {
+    let last = x.len() - 1;
+    (0..x.len())
+        .map(|k| {
+            if k == 0 {
+                if last == 0 {
+                    0.0
+                } else {
+                    backward_at(time, x, 1)
+                }
+            } else if k == last {
+                backward_at(time, x, k)
+            } else {
+                // theory.md (4.1) as a mean of both one-sided slopes, each weighted with the other
+                // side's step: no squares of tiny steps.
+                let (before, after) = (time[k] - time[k - 1], time[k + 1] - time[k]);
+                let share = before / (before + after);
+                let (left, right) = (backward_at(time, x, k), backward_at(time, x, k + 1));
+                share * right + (1.0 - share) * left
+            }
+        })
+        .collect()
+}
+
+fn savitzky_golay(time: &[f64], x: &[f64]) -> Vec<f64> {
+    (0..x.len())
+        .map(|k| {
+            let first = k.saturating_sub(HALF_WINDOW);
+            let last = (k + HALF_WINDOW).min(x.len() - 1);
+            slope_of_parabola(&time[first..=last], &x[first..=last], k - first)
+        })
+        .collect()
+}
+
+/// Slope at `centre` of the parabola that fits the points best; of a straight line or 0 if there
+/// are fewer than three points.
+fn slope_of_parabola(time: &[f64], x: &[f64], centre: usize) -> f64 {
+    let n = time.len() as f64;
+    let unit = time[time.len() - 1] - time[0];
+    if time.len() < 2 {
+        return 0.0;
+    }
+    let t: Vec<f64> = time.iter().map(|t| (t - time[centre]) / unit).collect();
+    let mean = |f: &dyn Fn(usize) -> f64| (0..t.len()).map(f).sum::<f64>() / n;
+    let (t1, t2) = (mean(&|i| t[i]), mean(&|i| t[i] * t[i]));
+    let x1 = mean(&|i| x[i]);
+    // Orthogonal polynomials 1, p = t - t1, q = t² - t2 - s p: their coefficients are projections.
+    let spread = t2 - t1 * t1;
+    let s = mean(&|i| (t[i] * t[i] - t2) * (t[i] - t1)) / spread;
+    let q = |i: usize| t[i] * t[i] - t2 - s * (t[i] - t1);
+    let linear = mean(&|i| (x[i] - x1) * (t[i] - t1)) / spread;
+    let q_norm = mean(&|i| q(i) * q(i));
+    let quadratic = if time.len() < 3 {
+        0.0
+    } else {
+        mean(&|i| (x[i] - x1) * q(i)) / q_norm
+    };
+    // d/dt at t = 0 of linear p + quadratic q
+    (linear - quadratic * s) / unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn uneven(n: usize) -> Vec<f64> {
+        (0..n)
+            .map(|k| k as f64 + 0.3 * (1.7 * k as f64).sin())
+            .collect()
+    }
+
+    /// Central differences and Savitzky-Golay are exact for a parabola, whatever the steps.
+    #[test]
+    fn a_parabola_has_its_exact_rate() {
+        let time = uneven(40);
+        let x: Vec<f64> = time.iter().map(|t| 1.0 - 2.0 * t + 0.25 * t * t).collect();
+        for k in 1..39 {
+            let exact = -2.0 + 0.5 * time[k];
+            approx::assert_relative_eq!(central(&time, &x)[k], exact, epsilon = 1e-10);
+            approx::assert_relative_eq!(savitzky_golay(&time, &x)[k], exact, epsilon = 1e-9);
+        }
+        assert_eq!(central(&time, &x)[0], (x[1] - x[0]) / (time[1] - time[0]));
+        assert_eq!(backward(&time, &x)[0], 0.0);
+        assert_eq!(backward(&time, &x)[7], (x[7] - x[6]) / (time[7] - time[6]));
+    }
+
+    #[test]
+    fn savitzky_golay_averages_noise_away() {
+        let time = uneven(400);
+        let noise = |k: usize| ((k * 7919 % 101) as f64 / 101.0 - 0.5) * 0.1;
+        let x: Vec<f64> = time
+            .iter()
+            .enumerate()
+            .map(|(k, t)| 3.0 * t + noise(k))
+            .collect();
+        let error = |rate: Vec<f64>| {
+            rate[10..390]
+                .iter()
+                .map(|r| (r - 3.0f64).powi(2))
+                .sum::<f64>()
+        };
+        assert!(error(savitzky_golay(&time, &x)) < 0.1 * error(central(&time, &x)));
+    }
+
+    #[test]
+    fn short_records_have_a_rate() {
+        assert_eq!(central(&[0.0], &[1.0]), [0.0]);
+        assert_eq!(savitzky_golay(&[0.0], &[1.0]), [0.0]);
+        approx::assert_relative_eq!(
+            savitzky_golay(&[0.0, 2.0], &[1.0, 5.0])[1],
+            2.0,
+            epsilon = 1e-12
+        );
+    }
+}

@@ -1,0 +1,108 @@
+//! Factors between the user's units and those of a network, theory.md (2.1).
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::network::{Architecture, Drive};
+use crate::rate::RateMethod;
+use crate::record::{Dataset, Record};
+
+/// Scale factors, found on the training data and stored in the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scaling {
+    /// Largest magnitude of each input in training, in its unit: 1 in scaled units.
+    pub inputs: Vec<f64>,
+    /// Largest magnitude of the rate in training, in the unit of the input over that of time.
+    pub rate: Option<f64>,
+    /// Mean output in training: 0 in scaled units.
+    pub output_mean: f64,
+    /// Standard deviation of the output in training: 1 in scaled units.
+    pub output_deviation: f64,
+}
+
+impl Scaling {
+    /// Finds the factors of a data set.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn of(data: &Dataset, rate: Option<RateMethod>) -> Result<Self> {
+        let inputs = (0..data.names().inputs.len()).map(|input| {
+            let (low, high) = data.input_range(input);
+            usable(low.abs().max(high.abs()))
+        });
+        let mut largest_rate: f64 = 0.0;
+        if let Some(method) = rate {
+            for record in data.records() {
+                largest_rate = method
+                    .rate(record)?
+                    .iter()
+                    .fold(largest_rate, |most, rate| most.max(rate.abs()));
+            }
+        }
+        let outputs = || {
+            data.records()
+                .iter()
+                .flat_map(|record| record.output())
+                .filter(|y| !y.is_nan())
+        };
+        let n = outputs().count().max(1) as f64;
+        let mean = outputs().map(|y| y / n).sum::<f64>();
+        let variance = outputs()
+            .map(|y| (y - mean) * ((y - mean) / n))
+            .sum::<f64>();
+        Ok(Self {
+            inputs: inputs.collect(),
+            rate: rate.map(|_| usable(largest_rate)),
+            output_mean: mean,
+            output_deviation: usable(variance.sqrt()),
+        })
+    }
+
+    /// A record as a network of the architecture sees it.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn drive(
+        &self,
+        record: &Record,
+        architecture: &Architecture,
+        rate: Option<RateMethod>,
+    ) -> Result<Drive> {
+        let scaled = |values: &[f64], scale: f64| values.iter().map(|v| v / scale).collect();
+        let mut channels: Vec<Vec<f64>> = record
+            .inputs()
+            .iter()
+            .zip(&self.inputs)
+            .map(|(x, &scale)| scaled(x, scale))
+            .collect();
+        if let (true, Some(method), Some(scale)) = (architecture.rate, rate, self.rate) {
+            channels.insert(1, scaled(&method.rate(record)?, scale));
+        }
+        let steps = match record.time() {
+            Some(time) if architecture.relaxation > 0 => {
+                let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
+                std::iter::once(0.0).chain(steps).collect()
+            }
+            _ => Vec::new(),
+        };
+        Ok(Drive { channels, steps })
+    }
+
+    /// Measured outputs in scaled units; blanks stay NaN.
+    pub fn scaled_output(&self, output: &[f64]) -> Vec<f64> {
+        output
+            .iter()
+            .map(|y| (y - self.output_mean) / self.output_deviation)
+            .collect()
+    }
+
+    /// A scaled output in the user's unit.
+    pub fn output(&self, scaled: f64) -> f64 {
+        self.output_mean + self.output_deviation * scaled
+    }
+}
+
+/// A scale that can be divided by: 1 for a channel that is always 0.
+fn usable(scale: f64) -> f64 {
+    if scale > 0.0 { scale } else { 1.0 }
+}

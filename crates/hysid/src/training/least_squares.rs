@@ -1,0 +1,98 @@
+//! Output weights by ridge least squares, from the Gram matrix of features, target and (maybe)
+//! Jacobian, theory.md (3.2) to (3.4).
+
+use crate::linear_algebra::{Cholesky, Gram, Symmetric};
+
+/// The linear least-squares problem inside the objective.
+pub(crate) struct OutputProblem<'a> {
+    pub gram: &'a Gram,
+    /// Number of features.
+    pub features: usize,
+    /// Rows that went into the Gram matrix.
+    pub rows: f64,
+    /// λ of theory.md (3.1).
+    pub ridge: f64,
+    /// The first feature is the constant, which bears no penalty.
+    pub constant: bool,
+}
+
+/// Output weights and what they reach.
+#[derive(Debug, Clone)]
+pub(crate) struct OutputSolution {
+    pub weights: Vec<f64>,
+    /// Mean square residual, in scaled units.
+    pub mean_square: f64,
+    /// Half the mean square residual plus half the ridge penalty.
+    pub objective: f64,
+    /// Factor of `PᵀP/N + λI`.
+    pub factor: Cholesky,
+}
+
+impl OutputProblem<'_> {
+    /// Solves theory.md (3.2). Where rounding makes the matrix indefinite (more features than rows, or
+    /// features all but equal), the ridge is raised until it is not.
+    pub fn solve(&self) -> OutputSolution {
+        let m = self.features;
+        let matrix = Symmetric::from_fn(m, |i, j| self.gram.at(i, j) / self.rows);
+        let largest = (0..m).map(|i| matrix.diagonal(i)).fold(1e-30, f64::max);
+        let mut ridge = self.ridge;
+        let factor = loop {
+            let mut penalised = matrix.clone();
+            for i in usize::from(self.constant)..m {
+                penalised.add_to_diagonal(i, ridge);
+            }
+            if self.constant {
+                penalised.add_to_diagonal(0, 1e-14 * largest);
+            }
+            match penalised.cholesky() {
+                Some(factor) => break factor,
+                None => ridge = (ridge * 10.0).max(1e-14 * largest),
+            }
+        };
+        let target = |i: usize| self.gram.at(m, i) / self.rows;
+        let mut weights: Vec<f64> = (0..m).map(target).collect();
+        factor.solve(&mut weights);
+        let mut mean_square = self.gram.at(m, m) / self.rows;
+        let mut penalty = 0.0;
+        for i in 0..m {
+            let product: f64 = (0..m).map(|j| self.gram.at(i, j) * weights[j]).sum();
+            mean_square += weights[i] * (product / self.rows - 2.0 * target(i));
+            if i > 0 || !self.constant {
+                penalty += self.ridge * weights[i] * weights[i];
+            }
+        }
+        let mean_square = mean_square.max(0.0);
+        OutputSolution {
+            objective: 0.5 * (mean_square + penalty),
+            weights,
+            mean_square,
+            factor,
+        }
+    }
+
+    /// Gradient `Jᵀr/N`, theory.md (3.3), and Gauss-Newton matrix (3.4) without the decay terms, for a
+    /// Gram matrix that goes on with `p` columns of the Jacobian.
+    pub fn linearise(&self, solution: &OutputSolution, p: usize) -> (Vec<f64>, Symmetric) {
+        let m = self.features;
+        let first = m + 1;
+        let gradient = (0..p)
+            .map(|k| {
+                let predicted: f64 = (0..m)
+                    .map(|i| self.gram.at(first + k, i) * solution.weights[i])
+                    .sum();
+                (predicted - self.gram.at(first + k, m)) / self.rows
+            })
+            .collect();
+        let mut projected = vec![0.0; p * m];
+        for (k, row) in projected.chunks_exact_mut(m).enumerate() {
+            for (i, value) in row.iter_mut().enumerate() {
+                *value = self.gram.at(first + k, i) / self.rows;
+            }
+            solution.factor.solve_lower(row);
+        }
+        let mut matrix =
+            Symmetric::from_fn(p, |i, j| self.gram.at(first + i, first + j) / self.rows);
+        matrix.subtract_product(&projected, m);
+        (gradient, matrix)
+    }
+}

@@ -1,0 +1,236 @@
+//! The one objective of all trainers, theory.md (3.1): value, gradient, Gauss-Newton matrix. Output
+//! weights follow from the other parameters by least squares (variable projection).
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::linear_algebra::Symmetric;
+use crate::network::{Architecture, Columns, Drive, Layout, Sweep};
+use crate::record::Dataset;
+use crate::scaling::Scaling;
+use crate::training::FitOptions;
+use crate::training::least_squares::{OutputProblem, OutputSolution};
+
+/// Penalties on the weights, in scaled units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Regularisation {
+    /// λ of theory.md (3.1), on the output weights.
+    pub ridge: f64,
+    /// κ of theory.md (3.1), on the weights of stops and tanh neurons.
+    pub decay: f64,
+}
+
+impl Default for Regularisation {
+    fn default() -> Self {
+        Self {
+            ridge: 1e-5,
+            decay: 1e-6,
+        }
+    }
+}
+
+impl Regularisation {
+    pub(crate) fn check(&self) -> Result<()> {
+        for (name, value) in [("ridge", self.ridge), ("decay", self.decay)] {
+            if !(0.0..=1e6).contains(&value) {
+                return Err(Error::Option(format!(
+                    "{name} {value} is not between 0 and 1e6"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The objective on given data.
+#[derive(Debug, Clone)]
+pub struct Objective<'a> {
+    architecture: Architecture,
+    layout: Layout,
+    regularisation: Regularisation,
+    drives: Cow<'a, [Drive]>,
+    targets: Vec<Vec<f64>>,
+    rows: usize,
+}
+
+/// The objective at a point.
+#[derive(Debug, Clone)]
+pub struct Value {
+    /// F of theory.md (3.1).
+    pub objective: f64,
+    /// Mean square residual in scaled units: the square of NRMSE (of std) if the training set is whole.
+    pub mean_square: f64,
+    solution: OutputSolution,
+}
+
+impl Value {
+    /// Output weights at the point.
+    pub fn output_weights(&self) -> &[f64] {
+        &self.solution.weights
+    }
+}
+
+/// Slope and curvature at a point.
+pub(crate) struct Slope {
+    /// Gradient of F, theory.md (3.3).
+    pub gradient: Vec<f64>,
+    /// Gauss-Newton matrix with decay, theory.md (3.4).
+    pub matrix: Symmetric,
+}
+
+impl<'a> Objective<'a> {
+    /// Scales the data for the architecture.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn new(
+        data: &Dataset,
+        scaling: &Scaling,
+        architecture: Architecture,
+        options: &FitOptions,
+    ) -> Result<Self> {
+        let used = || data.records().iter().filter(|record| record.scored() > 0);
+        let drives: Result<Vec<Drive>> = used()
+            .map(|record| scaling.drive(record, &architecture, options.rate))
+            .collect();
+        let targets: Vec<Vec<f64>> = used()
+            .map(|record| scaling.scaled_output(record.output()))
+            .collect();
+        Ok(Self {
+            architecture,
+            layout: Layout::new(architecture),
+            regularisation: options.regularisation,
+            drives: Cow::Owned(drives?),
+            targets,
+            rows: data.scored(),
+        })
+    }
+
+    /// Rows that are compared.
+    pub fn scored(&self) -> usize {
+        self.rows
+    }
+
+    /// The same objective on at most about `most` rows, one drawn from each run of equal length, so
+    /// that no period of the record is favoured. The memory still runs through every row.
+    pub fn thinned(&self, most: usize) -> Objective<'_> {
+        let run = self.rows.div_ceil(most.max(1));
+        let mut targets = self.targets.clone();
+        let mut rows = self.rows;
+        if run > 1 {
+            rows = 0;
+            let mut seen = 0usize;
+            for y in targets.iter_mut().flatten().filter(|y| !y.is_nan()) {
+                let (index, place) = (seen / run, seen % run);
+                // A fixed hash (splitmix) picks the place within each run.
+                let mut hash = (index as u64)
+                    .wrapping_add(1)
+                    .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+                hash = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+                if place as u64 == (hash >> 33) % run as u64 {
+                    rows += 1;
+                } else {
+                    *y = f64::NAN;
+                }
+                seen += 1;
+            }
+        }
+        Objective {
+            drives: Cow::Borrowed(&self.drives),
+            targets,
+            rows,
+            layout: self.layout.clone(),
+            architecture: self.architecture,
+            regularisation: self.regularisation,
+        }
+    }
+
+    /// The architecture.
+    pub fn architecture(&self) -> &Architecture {
+        &self.architecture
+    }
+
+    /// Names and bounds of the parameters.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Shortest and longest span of time that the records tell of: a mean time step and the longest
+    /// record; `None` without time.
+    pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
+        let durations = self
+            .drives
+            .iter()
+            .map(|drive| drive.steps.iter().sum::<f64>());
+        let longest = durations.clone().fold(0.0, f64::max);
+        let steps: usize = self
+            .drives
+            .iter()
+            .map(|drive| drive.steps.len().saturating_sub(1))
+            .sum();
+        let step = durations.sum::<f64>() / steps.max(1) as f64;
+        (longest > 0.0).then_some((step, longest))
+    }
+
+    /// The value at a point.
+    pub fn value(&self, parameters: &[f64]) -> Value {
+        let gram = self.sweep(parameters, None);
+        let solution = self.output_problem(&gram).solve();
+        let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
+        Value {
+            objective: solution.objective + 0.5 * self.regularisation.decay * decay,
+            mean_square: solution.mean_square,
+            solution,
+        }
+    }
+
+    /// Gradient of F by the parameters, at a point with its value.
+    pub fn gradient(&self, parameters: &[f64], value: &Value) -> Vec<f64> {
+        self.slope(parameters, value).gradient
+    }
+
+    pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Slope {
+        let gram = self.sweep(parameters, Some(&value.solution.weights));
+        let (mut gradient, mut matrix) = self
+            .output_problem(&gram)
+            .linearise(&value.solution, parameters.len());
+        for (index, weight) in self.weights(parameters) {
+            gradient[index] += self.regularisation.decay * weight;
+            matrix.add_to_diagonal(index, self.regularisation.decay);
+        }
+        Slope { gradient, matrix }
+    }
+
+    fn sweep(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
+        let columns = Columns {
+            architecture: &self.architecture,
+            parameters,
+            output,
+        };
+        Sweep {
+            columns,
+            drives: &self.drives,
+            targets: &self.targets,
+        }
+        .gram()
+    }
+
+    fn output_problem<'g>(&self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
+        OutputProblem {
+            gram,
+            features: self.architecture.output_weights(),
+            rows: self.rows as f64,
+            ridge: self.regularisation.ridge,
+            constant: self.architecture.constant,
+        }
+    }
+
+    fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
+        parameters
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| self.layout.is_weight(*index))
+    }
+}

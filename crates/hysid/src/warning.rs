@@ -1,0 +1,147 @@
+//! Things to know that are no errors: each says what, why, and what helps.
+
+use std::fmt;
+
+/// A warning, with its likely cause and a remedy.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// A record hardly ever turns, so that there is little memory to learn from.
+    FewTurningPoints {
+        /// The record.
+        record: String,
+        /// Turning points of the first input.
+        found: usize,
+    },
+    /// Values beyond what the model was trained on.
+    OutsideTrainedRange {
+        /// The input, or its rate.
+        name: String,
+        /// Rows outside, in percent.
+        share_percent: f64,
+        /// Range in training.
+        trained: (f64, f64),
+        /// Range in the data.
+        seen: (f64, f64),
+    },
+    /// Time steps of very different length in one record.
+    UnevenTimeSteps {
+        /// The record.
+        record: String,
+        /// Shortest step.
+        shortest: f64,
+        /// Longest step.
+        longest: f64,
+    },
+    /// A record whose measured output has one value throughout.
+    ConstantOutput {
+        /// The record.
+        record: String,
+        /// The value.
+        value: f64,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FewTurningPoints { record, found } => {
+                let times = match found {
+                    0 => "never turns".to_string(),
+                    1 => "turns only once".to_string(),
+                    n => format!("turns only {n} times"),
+                };
+                write!(
+                    f,
+                    "record \"{record}\": the input {times}, so there is little memory to learn from \
+                     (measure several cycles of different amplitude)"
+                )
+            }
+            Self::OutsideTrainedRange {
+                name,
+                share_percent,
+                trained,
+                seen,
+            } => write!(
+                f,
+                "{name}: {share_percent:.1} % of the rows are outside the trained range {:.4} to {:.4} (here {:.4} to {:.4}); \
+                 the model extrapolates there (train on data that cover the range)",
+                Significant(trained.0),
+                Significant(trained.1),
+                Significant(seen.0),
+                Significant(seen.1)
+            ),
+            Self::UnevenTimeSteps {
+                record,
+                shortest,
+                longest,
+            } => write!(
+                f,
+                "record \"{record}\": time steps vary from {:.3} to {:.3}, so rates are uncertain \
+                 (are records joined, or samples missing? name records in a column `record`, or use --rate none)",
+                Significant(*shortest),
+                Significant(*longest)
+            ),
+            Self::ConstantOutput { record, value } => write!(
+                f,
+                "record \"{record}\": the output is {} throughout, so it tells nothing (was the sensor connected?)",
+                Significant(*value)
+            ),
+        }
+    }
+}
+
+/// A number with as many significant digits as the precision asked for, without trailing zeros.
+pub struct Significant(pub f64);
+
+impl fmt::Display for Significant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = f.precision().unwrap_or(4).max(1);
+        let value = self.0;
+        if value == 0.0 || !value.is_finite() {
+            return write!(f, "{value}");
+        }
+        let scientific = format!("{value:.*e}", digits - 1);
+        let (mantissa, exponent) = scientific
+            .split_once('e')
+            .expect("the format has an exponent");
+        let exponent: i32 = exponent.parse().expect("the exponent is a number");
+        let trimmed = |text: &str| match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+            false => text.to_string(),
+        };
+        if (-4..digits.max(6) as i32).contains(&exponent) {
+            let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+            write!(f, "{}", trimmed(&format!("{value:.decimals$}")))
+        } else {
+            write!(f, "{}e{exponent}", trimmed(mantissa))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn significant_digits() {
+        let shown = |value: f64, digits: usize| format!("{:.*}", digits, Significant(value));
+        assert_eq!(shown(1234.5678, 3), "1235");
+        assert_eq!(shown(0.00123456, 3), "0.00123");
+        assert_eq!(shown(1.5e-7, 3), "1.5e-7");
+        assert_eq!(shown(-2.5e9, 4), "-2.5e9");
+        assert_eq!(shown(0.1 + 0.2, 4), "0.3");
+        assert_eq!(shown(0.0, 4), "0");
+        assert_eq!(shown(9.9999, 3), "10");
+    }
+
+    #[test]
+    fn warnings_say_what_helps() {
+        let warning = Warning::FewTurningPoints {
+            record: "r1".into(),
+            found: 1,
+        };
+        assert!(warning.to_string().contains("turns only once"));
+        assert!(warning.to_string().contains("several cycles"));
+    }
+}
