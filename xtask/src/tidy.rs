@@ -72,18 +72,11 @@ fn repository_paths(root: &Path) -> Result<BTreeSet<String>> {
 fn read_text_files(root: &Path, paths: &BTreeSet<String>) -> Result<Vec<SourceFile>> {
     paths
         .iter()
-        .filter(|path| {
-            [".rs", ".md", ".toml"]
-                .iter()
-                .any(|end| path.ends_with(end))
-        })
+        .filter(|path| [".rs", ".md", ".toml"].iter().any(|end| path.ends_with(end)))
         .map(|path| {
             let text = fs::read_to_string(root.join(path))
                 .with_context(|| format!("step `tidy`: {path} could not be read as text"))?;
-            Ok(SourceFile {
-                path: path.clone(),
-                text,
-            })
+            Ok(SourceFile { path: path.clone(), text })
         })
         .collect()
 }
@@ -109,10 +102,7 @@ fn violations(paths: &BTreeSet<String>, files: &[SourceFile]) -> Vec<Violation> 
         found.extend(rules::equations_unique(path, text));
         found.extend(rules::links_lead_somewhere(path, text, paths));
     }
-    found.extend(rules::version_in_changelog(
-        text_of("Cargo.toml"),
-        text_of("CHANGELOG.md"),
-    ));
+    found.extend(rules::version_in_changelog(text_of("Cargo.toml"), text_of("CHANGELOG.md")));
     found.sort_by(|a, b| (&a.path, a.line).cmp(&(&b.path, b.line)));
     found
 }

@@ -123,9 +123,7 @@ pub enum DataProblem {
     #[error("is blank in every row: there is nothing to compare with")]
     NothingToScore,
     /// Too few rows with an output.
-    #[error(
-        "has only {found} rows with an output: at least {needed} are needed to identify a model"
-    )]
+    #[error("has only {found} rows with an output: at least {needed} are needed to identify a model")]
     TooFewRows {
         /// Rows with an output.
         found: usize,

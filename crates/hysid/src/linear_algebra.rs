@@ -19,11 +19,7 @@ pub(crate) struct Batch {
 
 impl Batch {
     pub fn new(columns: usize) -> Self {
-        Self {
-            columns,
-            rows: 0,
-            data: vec![0.0; columns.next_multiple_of(TILE) * BATCH],
-        }
+        Self { columns, rows: 0, data: vec![0.0; columns.next_multiple_of(TILE) * BATCH] }
     }
 
     pub fn free(&self) -> usize {
@@ -62,11 +58,7 @@ pub(crate) struct Gram {
 impl Gram {
     pub fn new(n: usize) -> Self {
         let stride = n.next_multiple_of(TILE);
-        Self {
-            n,
-            stride,
-            data: vec![0.0; stride * stride],
-        }
+        Self { n, stride, data: vec![0.0; stride * stride] }
     }
 
     /// Scalar product of columns `row` and `column`.
@@ -165,10 +157,7 @@ impl Symmetric {
     pub fn subtract_product(&mut self, w: &[f64], columns: usize) {
         for i in 0..self.n {
             for j in 0..=i {
-                let (a, b) = (
-                    &w[i * columns..(i + 1) * columns],
-                    &w[j * columns..(j + 1) * columns],
-                );
+                let (a, b) = (&w[i * columns..(i + 1) * columns], &w[j * columns..(j + 1) * columns]);
                 self.data[i * self.n + j] -= dot(a, b);
             }
         }
@@ -243,8 +232,7 @@ mod tests {
     use crate::simd;
 
     fn value(row: usize, column: usize) -> f64 {
-        ((row * 31 + column * 17) as f64 * 0.7).sin()
-            + if row % 7 == column % 7 { 1.0 } else { 0.0 }
+        ((row * 31 + column * 17) as f64 * 0.7).sin() + if row % 7 == column % 7 { 1.0 } else { 0.0 }
     }
 
     struct Fill<'a>(&'a mut Gram, usize);
@@ -286,25 +274,15 @@ mod tests {
     #[test]
     fn cholesky_solves_and_refuses() {
         let n = 37;
-        let entry = |i: usize, j: usize| {
-            (0..60)
-                .map(|row| value(row, i) * value(row, j))
-                .sum::<f64>()
-        };
+        let entry = |i: usize, j: usize| (0..60).map(|row| value(row, i) * value(row, j)).sum::<f64>();
         let matrix = Symmetric::from_fn(n, entry);
         let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-        let mut b: Vec<f64> = (0..n)
-            .map(|i| (0..n).map(|j| entry(i, j) * exact[j]).sum())
-            .collect();
+        let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * exact[j]).sum()).collect();
         matrix.clone().cholesky().unwrap().solve(&mut b);
         for (found, exact) in b.iter().zip(&exact) {
             approx::assert_relative_eq!(found, exact, epsilon = 1e-7);
         }
-        assert!(
-            Symmetric::from_fn(2, |i, j| if i == j { 1.0 } else { 2.0 })
-                .cholesky()
-                .is_none()
-        );
+        assert!(Symmetric::from_fn(2, |i, j| if i == j { 1.0 } else { 2.0 }).cholesky().is_none());
         assert!(Symmetric::from_fn(1, |_, _| f64::NAN).cholesky().is_none());
     }
 }

@@ -102,14 +102,8 @@ mod tests {
         let errors = sums.errors("F_N").unwrap();
         assert_eq!((errors.samples, errors.records), (3, 2));
         approx::assert_relative_eq!(errors.mse, 10.0 / 3.0);
-        approx::assert_relative_eq!(
-            errors.nrmse_std_percent.unwrap(),
-            100.0 * (10.0f64 / 8.0).sqrt()
-        );
-        approx::assert_relative_eq!(
-            errors.nrmse_range_percent.unwrap(),
-            25.0 * (10.0f64 / 3.0).sqrt()
-        );
+        approx::assert_relative_eq!(errors.nrmse_std_percent.unwrap(), 100.0 * (10.0f64 / 8.0).sqrt());
+        approx::assert_relative_eq!(errors.nrmse_range_percent.unwrap(), 25.0 * (10.0f64 / 3.0).sqrt());
         assert_eq!(errors.max_abs_error, 3.0);
     }
 

@@ -80,9 +80,7 @@ impl Model {
             rate,
             names: data.names().clone(),
             trained: TrainedRanges {
-                inputs: (0..data.names().inputs.len())
-                    .map(|input| data.input_range(input))
-                    .collect(),
+                inputs: (0..data.names().inputs.len()).map(|input| data.input_range(input)).collect(),
                 rate: None,
                 output: data.output_range(),
             },
@@ -152,8 +150,7 @@ impl Model {
 
     /// True if the model needs time stamps.
     pub fn needs_time(&self) -> bool {
-        self.network.architecture().relaxation > 0
-            || self.rate.is_some_and(|rate| rate != RateMethod::Given)
+        self.network.architecture().relaxation > 0 || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
     /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
@@ -171,15 +168,9 @@ impl Model {
             return Err(record.defect(None, None, DataProblem::Inputs { expected, found }));
         }
         if self.needs_time() && record.time().is_none() {
-            return Err(record.defect(
-                None,
-                Some(crate::error::Channel::Time),
-                DataProblem::NoTimeForModel,
-            ));
+            return Err(record.defect(None, Some(crate::error::Channel::Time), DataProblem::NoTimeForModel));
         }
-        let drive = self
-            .scaling
-            .drive(record, self.network.architecture(), self.rate)?;
+        let drive = self.scaling.drive(record, self.network.architecture(), self.rate)?;
         let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
         let mut y = vec![0.0; record.len()];
         simulator.reset();
@@ -196,10 +187,7 @@ impl Model {
         let mut sums = ErrorSums::default();
         let mut simulator = self.network.simulator();
         for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(
-                record.output(),
-                &self.simulate_with(&mut simulator, record)?,
-            );
+            sums.add(record.output(), &self.simulate_with(&mut simulator, record)?);
         }
         sums.errors(&data.names().output).ok_or_else(|| {
             let output = Some(crate::error::Channel::Output);
@@ -223,40 +211,27 @@ impl Model {
     /// A rate that cannot be computed.
     pub fn range_warnings(&self, data: &Dataset) -> Result<Vec<Warning>> {
         let mut warnings = Vec::new();
-        let mut check =
-            |name: String, trained: (f64, f64), values: &mut dyn Iterator<Item = f64>| {
-                // A rounding beyond the range is not outside it.
-                let slack = 1e-9 * (trained.1 - trained.0);
-                let (mut rows, mut outside, mut seen) =
-                    (0usize, 0usize, (f64::INFINITY, f64::NEG_INFINITY));
-                for value in values {
-                    rows += 1;
-                    outside += usize::from(value < trained.0 - slack || value > trained.1 + slack);
-                    seen = (seen.0.min(value), seen.1.max(value));
-                }
-                if outside > 0 {
-                    let share_percent = 100.0 * outside as f64 / rows as f64;
-                    warnings.push(Warning::OutsideTrainedRange {
-                        name,
-                        share_percent,
-                        trained,
-                        seen,
-                    });
-                }
-            };
+        let mut check = |name: String, trained: (f64, f64), values: &mut dyn Iterator<Item = f64>| {
+            // A rounding beyond the range is not outside it.
+            let slack = 1e-9 * (trained.1 - trained.0);
+            let (mut rows, mut outside, mut seen) = (0usize, 0usize, (f64::INFINITY, f64::NEG_INFINITY));
+            for value in values {
+                rows += 1;
+                outside += usize::from(value < trained.0 - slack || value > trained.1 + slack);
+                seen = (seen.0.min(value), seen.1.max(value));
+            }
+            if outside > 0 {
+                let share_percent = 100.0 * outside as f64 / rows as f64;
+                warnings.push(Warning::OutsideTrainedRange { name, share_percent, trained, seen });
+            }
+        };
         for (input, name) in self.names.inputs.iter().enumerate() {
-            let mut values = data
-                .records()
-                .iter()
-                .flat_map(|record| record.inputs()[input].iter().copied());
+            let mut values = data.records().iter().flat_map(|record| record.inputs()[input].iter().copied());
             check(name.clone(), self.trained.inputs[input], &mut values);
         }
         if let (Some(method), Some(trained)) = (self.rate, self.trained.rate) {
-            let rates: Result<Vec<Vec<f64>>> = data
-                .records()
-                .iter()
-                .map(|record| method.rate(record))
-                .collect();
+            let rates: Result<Vec<Vec<f64>>> =
+                data.records().iter().map(|record| method.rate(record)).collect();
             let name = format!("the rate of {}", self.names.inputs[0]);
             check(name, trained, &mut rates?.into_iter().flatten());
         }
@@ -296,9 +271,7 @@ impl Stepper<'_> {
             None => 0.0,
         };
         if self.model.needs_time() && self.last.is_some() && !(elapsed > 0.0) {
-            return Err(Error::Option(format!(
-                "time {time} does not come after the last sample's"
-            )));
+            return Err(Error::Option(format!("time {time} does not come after the last sample's")));
         }
         let mut u = self.u.iter_mut();
         for (input, (&x, &scale)) in inputs.iter().zip(&scaling.inputs).enumerate() {
@@ -314,9 +287,7 @@ impl Stepper<'_> {
             }
         }
         if let Some(bad) = self.u.iter().find(|u| !u.is_finite()) {
-            return Err(Error::Option(format!(
-                "an input or its rate is {bad}, not a finite number"
-            )));
+            return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
         }
         self.last = Some((time, inputs[0]));
         Ok(scaling.output(self.simulator.step(&self.u, elapsed)))

@@ -54,18 +54,9 @@ impl Network {
                 architecture.output_weights()
             )));
         }
-        match output
-            .iter()
-            .find(|weight| !(weight.abs() <= LARGEST_OUTPUT_WEIGHT))
-        {
-            Some(weight) => Err(Error::Option(format!(
-                "output weight {weight} is not a usable number"
-            ))),
-            None => Ok(Self {
-                architecture,
-                parameters,
-                output,
-            }),
+        match output.iter().find(|weight| !(weight.abs() <= LARGEST_OUTPUT_WEIGHT)) {
+            Some(weight) => Err(Error::Option(format!("output weight {weight} is not a usable number"))),
+            None => Ok(Self { architecture, parameters, output }),
         }
     }
 
@@ -137,39 +128,22 @@ impl Simulator {
     /// If the lengths differ.
     pub fn run(&mut self, u: &[&[f64]], steps: &[f64], y: &mut [f64]) {
         assert_eq!(u.len(), self.u.len(), "one slice for each channel");
-        assert!(
-            u.iter().all(|u| u.len() == y.len()),
-            "as many inputs as outputs"
-        );
-        assert!(
-            steps.len() == y.len() || steps.is_empty(),
-            "as many time steps as outputs"
-        );
-        simd::run(Run {
-            simulator: self,
-            u,
-            steps,
-            y,
-        });
+        assert!(u.iter().all(|u| u.len() == y.len()), "as many inputs as outputs");
+        assert!(steps.len() == y.len() || steps.is_empty(), "as many time steps as outputs");
+        simd::run(Run { simulator: self, u, steps, y });
     }
 
     /// One sample: [`Simulator::run`] with one row.
     pub fn step(&mut self, u: &[f64], step: f64) -> f64 {
         let mut y = [0.0];
         assert_eq!(u.len(), self.u.len(), "one value for each channel");
-        simd::run(Step {
-            simulator: self,
-            u,
-            step,
-            y: &mut y[0],
-        });
+        simd::run(Step { simulator: self, u, step, y: &mut y[0] });
         y[0]
     }
 
     #[inline(always)]
     fn block<S: Simd>(&mut self, simd: S, steps: &Row, rows: usize, y: &mut Row) {
-        self.memory
-            .forward::<S>(&mut self.state, &self.u, steps, rows, &mut self.z);
+        self.memory.forward::<S>(&mut self.state, &self.u, steps, rows, &mut self.z);
         self.readout.tanh_layer(simd, &self.z, rows, &mut self.h);
         self.readout.output::<S>(&self.output, &self.z, &self.h, y);
     }
@@ -178,16 +152,8 @@ impl Simulator {
 /// A scaled input as the network takes it.
 #[inline(always)]
 fn limited(u: f64) -> f64 {
-    let low = if u > -LARGEST_SCALED {
-        u
-    } else {
-        -LARGEST_SCALED
-    };
-    if low < LARGEST_SCALED {
-        low
-    } else {
-        LARGEST_SCALED
-    }
+    let low = if u > -LARGEST_SCALED { u } else { -LARGEST_SCALED };
+    if low < LARGEST_SCALED { low } else { LARGEST_SCALED }
 }
 
 struct Run<'a> {

@@ -88,9 +88,7 @@ pub enum InvalidOperator {
     #[error("capacity beta = {0}: it must be greater than 0 (infinity: never deteriorates)")]
     Capacity(f64),
     /// Relaxation time.
-    #[error(
-        "relaxation time tau = {0}: it must be greater than 0 (infinity: a spring that never relaxes)"
-    )]
+    #[error("relaxation time tau = {0}: it must be greater than 0 (infinity: a spring that never relaxes)")]
     RelaxationTime(f64),
     /// A time that lies before the one of the previous row. Rows count from 0.
     #[error("row {row}: time {time} follows {previous}: times must not decrease")]
@@ -122,20 +120,13 @@ pub enum InvalidOperator {
 
 /// `r` itself if it is finite and greater than 0.
 fn checked_threshold(r: f64) -> Result<f64, InvalidOperator> {
-    if r.is_finite() && r > 0.0 {
-        Ok(r)
-    } else {
-        Err(InvalidOperator::Threshold(r))
-    }
+    if r.is_finite() && r > 0.0 { Ok(r) } else { Err(InvalidOperator::Threshold(r)) }
 }
 
 /// Whether the input may enter the memory; see "Input that is not finite" in the module
 /// documentation.
 #[inline(always)]
 fn is_usable(x: f64) -> bool {
-    debug_assert!(
-        x.is_finite(),
-        "the input of an operator must be finite, not {x}"
-    );
+    debug_assert!(x.is_finite(), "the input of an operator must be finite, not {x}");
     x.is_finite()
 }

@@ -69,11 +69,7 @@ impl std::str::FromStr for RateMethod {
 
 /// Backward difference at `row`, 0 at the first: theory.md (4.3).
 fn backward_at(time: &[f64], x: &[f64], row: usize) -> f64 {
-    if row == 0 {
-        0.0
-    } else {
-        (x[row] - x[row - 1]) / (time[row] - time[row - 1])
-    }
+    if row == 0 { 0.0 } else { (x[row] - x[row - 1]) / (time[row] - time[row - 1]) }
 }
 
 fn backward(time: &[f64], x: &[f64]) -> Vec<f64> {
@@ -85,11 +81,7 @@ fn central(time: &[f64], x: &[f64]) -> Vec<f64> {
     (0..x.len())
         .map(|k| {
             if k == 0 {
-                if last == 0 {
-                    0.0
-                } else {
-                    backward_at(time, x, 1)
-                }
+                if last == 0 { 0.0 } else { backward_at(time, x, 1) }
             } else if k == last {
                 backward_at(time, x, k)
             } else {
@@ -132,11 +124,7 @@ fn slope_of_parabola(time: &[f64], x: &[f64], centre: usize) -> f64 {
     let q = |i: usize| t[i] * t[i] - t2 - s * (t[i] - t1);
     let linear = mean(&|i| (x[i] - x1) * (t[i] - t1)) / spread;
     let q_norm = mean(&|i| q(i) * q(i));
-    let quadratic = if time.len() < 3 {
-        0.0
-    } else {
-        mean(&|i| (x[i] - x1) * q(i)) / q_norm
-    };
+    let quadratic = if time.len() < 3 { 0.0 } else { mean(&|i| (x[i] - x1) * q(i)) / q_norm };
     // d/dt at t = 0 of linear p + quadratic q
     (linear - quadratic * s) / unit
 }
@@ -146,9 +134,7 @@ mod tests {
     use super::*;
 
     fn uneven(n: usize) -> Vec<f64> {
-        (0..n)
-            .map(|k| k as f64 + 0.3 * (1.7 * k as f64).sin())
-            .collect()
+        (0..n).map(|k| k as f64 + 0.3 * (1.7 * k as f64).sin()).collect()
     }
 
     /// Central differences and Savitzky-Golay are exact for a parabola, whatever the steps.
@@ -170,17 +156,8 @@ mod tests {
     fn savitzky_golay_averages_noise_away() {
         let time = uneven(400);
         let noise = |k: usize| ((k * 7919 % 101) as f64 / 101.0 - 0.5) * 0.1;
-        let x: Vec<f64> = time
-            .iter()
-            .enumerate()
-            .map(|(k, t)| 3.0 * t + noise(k))
-            .collect();
-        let error = |rate: Vec<f64>| {
-            rate[10..390]
-                .iter()
-                .map(|r| (r - 3.0f64).powi(2))
-                .sum::<f64>()
-        };
+        let x: Vec<f64> = time.iter().enumerate().map(|(k, t)| 3.0 * t + noise(k)).collect();
+        let error = |rate: Vec<f64>| rate[10..390].iter().map(|r| (r - 3.0f64).powi(2)).sum::<f64>();
         assert!(error(savitzky_golay(&time, &x)) < 0.1 * error(central(&time, &x)));
     }
 
@@ -188,10 +165,6 @@ mod tests {
     fn short_records_have_a_rate() {
         assert_eq!(central(&[0.0], &[1.0]), [0.0]);
         assert_eq!(savitzky_golay(&[0.0], &[1.0]), [0.0]);
-        approx::assert_relative_eq!(
-            savitzky_golay(&[0.0, 2.0], &[1.0, 5.0])[1],
-            2.0,
-            epsilon = 1e-12
-        );
+        approx::assert_relative_eq!(savitzky_golay(&[0.0, 2.0], &[1.0, 5.0])[1], 2.0, epsilon = 1e-12);
     }
 }

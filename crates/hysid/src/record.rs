@@ -22,22 +22,9 @@ impl Record {
     /// # Errors
     /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
-        let record = Self {
-            name: name.into(),
-            time: None,
-            inputs,
-            given_rate: None,
-            output,
-        };
+        let record = Self { name: name.into(), time: None, inputs, given_rate: None, output };
         if record.inputs.is_empty() {
-            return Err(record.defect(
-                None,
-                None,
-                DataProblem::Inputs {
-                    expected: 1,
-                    found: 0,
-                },
-            ));
+            return Err(record.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
         }
         if record.is_empty() {
             return Err(record.defect(None, None, DataProblem::Empty));
@@ -57,10 +44,7 @@ impl Record {
         self.check_column(Channel::Time, &time, false)?;
         for (index, pair) in time.windows(2).enumerate() {
             if pair[1] <= pair[0] {
-                let problem = DataProblem::TimeNotIncreasing {
-                    before: pair[0],
-                    now: pair[1],
-                };
+                let problem = DataProblem::TimeNotIncreasing { before: pair[0], now: pair[1] };
                 return Err(self.defect(Some(index + 1), Some(Channel::Time), problem));
             }
         }
@@ -80,10 +64,7 @@ impl Record {
 
     fn check_column(&self, channel: Channel, values: &[f64], may_be_blank: bool) -> Result<()> {
         if values.len() != self.len() {
-            let problem = DataProblem::Length {
-                expected: self.len(),
-                found: values.len(),
-            };
+            let problem = DataProblem::Length { expected: self.len(), found: values.len() };
             return Err(self.defect(None, Some(channel), problem));
         }
         for (row, &value) in values.iter().enumerate() {
@@ -99,18 +80,8 @@ impl Record {
         Ok(())
     }
 
-    pub(crate) fn defect(
-        &self,
-        row: Option<usize>,
-        channel: Option<Channel>,
-        problem: DataProblem,
-    ) -> Error {
-        Error::Data(DataError {
-            record: self.name.clone(),
-            row,
-            channel,
-            problem,
-        })
+    pub(crate) fn defect(&self, row: Option<usize>, channel: Option<Channel>, problem: DataProblem) -> Error {
+        Error::Data(DataError { record: self.name.clone(), row, channel, problem })
     }
 
     /// Name of the record.
@@ -159,9 +130,7 @@ impl Record {
     /// `fraction` is clamped so that both parts keep at least one scored row; a record with fewer
     /// than two scored rows cannot be split and gives `None`.
     pub fn split_at_fraction(&self, fraction: f64) -> Option<(Record, Record)> {
-        let scored: Vec<usize> = (0..self.len())
-            .filter(|&row| !self.output[row].is_nan())
-            .collect();
+        let scored: Vec<usize> = (0..self.len()).filter(|&row| !self.output[row].is_nan()).collect();
         if scored.len() < 2 {
             return None;
         }
@@ -198,11 +167,7 @@ impl ColumnNames {
     /// Plain names: `t`, `x` (or `x1`, `x2`, ...), `y`.
     pub fn plain(inputs: usize) -> Self {
         let name = |index| {
-            if inputs == 1 {
-                "x".into()
-            } else {
-                format!("x{}", index + 1)
-            }
+            if inputs == 1 { "x".into() } else { format!("x{}", index + 1) }
         };
         Self {
             time: Some("t".into()),
@@ -290,17 +255,13 @@ impl Dataset {
     /// The records held out are those in the middle when ordered by the range of the first input, so
     /// that what is judged lies between what is trained on. `None` if the data are too few to split.
     pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
-        let part = |records| Dataset {
-            names: self.names.clone(),
-            records,
-        };
+        let part = |records| Dataset { names: self.names.clone(), records };
         if let [record] = self.records.as_slice() {
             let (head, tail) = record.split_at_fraction(1.0 - held_out)?;
             return Some((part(vec![head]), part(vec![tail])));
         }
-        let mut order: Vec<usize> = (0..self.records.len())
-            .filter(|&i| self.records[i].scored() > 0)
-            .collect();
+        let mut order: Vec<usize> =
+            (0..self.records.len()).filter(|&i| self.records[i].scored() > 0).collect();
         if order.len() < 2 {
             return None;
         }
@@ -345,11 +306,7 @@ impl Dataset {
         }
         let (low, high) = self.output_range();
         if high - low <= low.abs().max(high.abs()) * 1e-14 + 1e-100 {
-            return Err(first.defect(
-                None,
-                Some(Channel::Output),
-                DataProblem::ConstantOutput(low),
-            ));
+            return Err(first.defect(None, Some(Channel::Output), DataProblem::ConstantOutput(low)));
         }
         Ok(())
     }
@@ -359,9 +316,7 @@ impl Dataset {
 fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     values
         .filter(|v| !v.is_nan())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| {
-            (low.min(v), high.max(v))
-        })
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
 }
 
 #[cfg(test)]
@@ -385,14 +340,9 @@ mod tests {
 
     #[test]
     fn records_of_middling_range_are_held_out() {
-        let scaled = |factor: f64, name: &str| {
-            Record::new(name, vec![vec![0.0, factor]], vec![0.0, 1.0]).unwrap()
-        };
-        let records = vec![
-            scaled(3.0, "large"),
-            scaled(1.0, "small"),
-            scaled(2.0, "middle"),
-        ];
+        let scaled =
+            |factor: f64, name: &str| Record::new(name, vec![vec![0.0, factor]], vec![0.0, 1.0]).unwrap();
+        let records = vec![scaled(3.0, "large"), scaled(1.0, "small"), scaled(2.0, "middle")];
         let data = Dataset::new(ColumnNames::plain(1), records).unwrap();
         let (kept, held) = data.split_for_validation(0.25).unwrap();
         assert_eq!(held.records()[0].name(), "middle");
@@ -401,17 +351,10 @@ mod tests {
 
     #[test]
     fn defects_name_their_place() {
-        let error = record(vec![0.0; 3])
-            .with_time(vec![0.0, 1.0, 1.0])
-            .unwrap_err();
-        let Error::Data(defect) = error else {
-            panic!("{error}")
-        };
+        let error = record(vec![0.0; 3]).with_time(vec![0.0, 1.0, 1.0]).unwrap_err();
+        let Error::Data(defect) = error else { panic!("{error}") };
         assert_eq!((defect.row, defect.channel), (Some(2), Some(Channel::Time)));
         let error = Record::new("r", vec![vec![0.0, f64::NAN]], vec![0.0; 2]).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "record \"r\", row 2, input: NaN is not a finite number"
-        );
+        assert_eq!(error.to_string(), "record \"r\", row 2, input: NaN is not a finite number");
     }
 }

@@ -33,23 +33,14 @@ impl Scaling {
         let mut largest_rate: f64 = 0.0;
         if let Some(method) = rate {
             for record in data.records() {
-                largest_rate = method
-                    .rate(record)?
-                    .iter()
-                    .fold(largest_rate, |most, rate| most.max(rate.abs()));
+                largest_rate =
+                    method.rate(record)?.iter().fold(largest_rate, |most, rate| most.max(rate.abs()));
             }
         }
-        let outputs = || {
-            data.records()
-                .iter()
-                .flat_map(|record| record.output())
-                .filter(|y| !y.is_nan())
-        };
+        let outputs = || data.records().iter().flat_map(|record| record.output()).filter(|y| !y.is_nan());
         let n = outputs().count().max(1) as f64;
         let mean = outputs().map(|y| y / n).sum::<f64>();
-        let variance = outputs()
-            .map(|y| (y - mean) * ((y - mean) / n))
-            .sum::<f64>();
+        let variance = outputs().map(|y| (y - mean) * ((y - mean) / n)).sum::<f64>();
         Ok(Self {
             inputs: inputs.collect(),
             rate: rate.map(|_| usable(largest_rate)),
@@ -69,12 +60,8 @@ impl Scaling {
         rate: Option<RateMethod>,
     ) -> Result<Drive> {
         let scaled = |values: &[f64], scale: f64| values.iter().map(|v| v / scale).collect();
-        let mut channels: Vec<Vec<f64>> = record
-            .inputs()
-            .iter()
-            .zip(&self.inputs)
-            .map(|(x, &scale)| scaled(x, scale))
-            .collect();
+        let mut channels: Vec<Vec<f64>> =
+            record.inputs().iter().zip(&self.inputs).map(|(x, &scale)| scaled(x, scale)).collect();
         if let (true, Some(method), Some(scale)) = (architecture.rate, rate, self.rate) {
             channels.insert(1, scaled(&method.rate(record)?, scale));
         }
@@ -90,10 +77,7 @@ impl Scaling {
 
     /// Measured outputs in scaled units; blanks stay NaN.
     pub fn scaled_output(&self, output: &[f64]) -> Vec<f64> {
-        output
-            .iter()
-            .map(|y| (y - self.output_mean) / self.output_deviation)
-            .collect()
+        output.iter().map(|y| (y - self.output_mean) / self.output_deviation).collect()
     }
 
     /// A scaled output in the user's unit.

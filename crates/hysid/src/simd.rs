@@ -30,9 +30,5 @@ pub fn instruction_set() -> &'static str {
 /// call a library function hundreds of times slower.
 #[inline(always)]
 pub(crate) fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
-    if S::IS_SCALAR || cfg!(target_family = "wasm") {
-        a * b + c
-    } else {
-        a.mul_add(b, c)
-    }
+    if S::IS_SCALAR || cfg!(target_family = "wasm") { a * b + c } else { a.mul_add(b, c) }
 }

@@ -46,9 +46,7 @@ pub struct RecordSummary {
 impl Summary {
     /// Looks through a data set.
     pub fn of(data: &Dataset) -> Self {
-        let inputs: Vec<(f64, f64)> = (0..data.names().inputs.len())
-            .map(|i| data.input_range(i))
-            .collect();
+        let inputs: Vec<(f64, f64)> = (0..data.names().inputs.len()).map(|i| data.input_range(i)).collect();
         let smallest = SMALLEST_REVERSAL * (inputs[0].1 - inputs[0].0);
         let of_record = |record: &Record| RecordSummary {
             name: record.name().into(),
@@ -68,10 +66,7 @@ impl Summary {
 
     /// Turning points of all records together.
     pub fn turning_points(&self) -> usize {
-        self.records
-            .iter()
-            .map(|record| record.turning_points)
-            .sum()
+        self.records.iter().map(|record| record.turning_points).sum()
     }
 
     /// What to know before training on these data.
@@ -80,10 +75,7 @@ impl Summary {
         if self.turning_points() < FEW_TURNING_POINTS {
             for record in &self.records {
                 let found = record.turning_points;
-                warnings.push(Warning::FewTurningPoints {
-                    record: record.name.clone(),
-                    found,
-                });
+                warnings.push(Warning::FewTurningPoints { record: record.name.clone(), found });
             }
         }
         for (summary, record) in self.records.iter().zip(data.records()) {
@@ -91,21 +83,14 @@ impl Summary {
             if let Some((shortest, _, longest)) = summary.time_steps
                 && longest > WILD_STEPS * shortest
             {
-                warnings.push(Warning::UnevenTimeSteps {
-                    record: name(),
-                    shortest,
-                    longest,
-                });
+                warnings.push(Warning::UnevenTimeSteps { record: name(), shortest, longest });
             }
             let mut outputs = record.output().iter().copied().filter(|y| !y.is_nan());
             if let Some(first) = outputs.next()
                 && summary.scored > 1
                 && outputs.all(|y| y == first)
             {
-                warnings.push(Warning::ConstantOutput {
-                    record: name(),
-                    value: first,
-                });
+                warnings.push(Warning::ConstantOutput { record: name(), value: first });
             }
         }
         warnings
@@ -113,11 +98,7 @@ impl Summary {
 }
 
 fn time_steps(record: &Record) -> Option<(f64, f64, f64)> {
-    let mut steps: Vec<f64> = record
-        .time()?
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .collect();
+    let mut steps: Vec<f64> = record.time()?.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if steps.is_empty() {
         return None;
     }
@@ -134,20 +115,13 @@ mod tests {
     use crate::record::ColumnNames;
 
     fn data(time: Vec<f64>, x: Vec<f64>, y: Vec<f64>) -> Dataset {
-        let record = Record::new("r", vec![x], y)
-            .unwrap()
-            .with_time(time)
-            .unwrap();
+        let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
         Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
     }
 
     #[test]
     fn a_poor_record_is_warned_of() {
-        let data = data(
-            vec![0.0, 0.001, 5.0, 5.1],
-            vec![0.0, 1.0, 2.0, 3.0],
-            vec![1.0; 4],
-        );
+        let data = data(vec![0.0, 0.001, 5.0, 5.1], vec![0.0, 1.0, 2.0, 3.0], vec![1.0; 4]);
         let summary = Summary::of(&data);
         assert_eq!(summary.records[0].time_steps.unwrap().2, 4.999);
         let warnings = summary.warnings(&data);

@@ -148,15 +148,10 @@ pub fn fit(
     data.check_identifiable(FEWEST_ROWS)?;
     let architecture = architecture(data, options)?;
     let scaling = Scaling::of(data, options.rate)?;
-    let watch = Watch {
-        observer: Mutex::new(observer),
-        options,
-        finished: Mutex::new(0),
-    };
+    let watch = Watch { observer: Mutex::new(observer), options, finished: Mutex::new(0) };
 
-    let split = data
-        .split_for_validation(options.validation)
-        .filter(|(kept, _)| kept.scored() >= FEWEST_ROWS);
+    let split =
+        data.split_for_validation(options.validation).filter(|(kept, _)| kept.scored() >= FEWEST_ROWS);
     let (kept, held_out) = match &split {
         Some((kept, held_out)) => (kept, Some(held_out)),
         None => (data, None),
@@ -166,22 +161,13 @@ pub fn fit(
         .into_par_iter()
         .map(|start| {
             let parameters = start::random(&objective, options.seed, start);
-            let descent = watch.descend(
-                &objective.thinned(options.thin),
-                Phase::Starts,
-                start,
-                parameters,
-            );
+            let descent = watch.descend(&objective.thinned(options.thin), Phase::Starts, start, parameters);
             let network = descent.network(&architecture)?;
             let validation = match held_out {
                 Some(held_out) => errors_of(&network, held_out, &scaling, options.rate)?,
                 None => errors_of(&network, kept, &scaling, options.rate)?,
             };
-            Ok(Judged {
-                start,
-                descent,
-                validation,
-            })
+            Ok(Judged { start, descent, validation })
         })
         .collect::<Result<_>>()?;
     let best = judged
@@ -189,10 +175,7 @@ pub fn fit(
         .min_by(|a, b| a.validation.mse.total_cmp(&b.validation.mse))
         .ok_or_else(|| Error::Option("a fit needs at least one start".into()))?;
 
-    let mut runs: Vec<Run> = judged
-        .iter()
-        .map(|judged| judged.run(held_out.is_some()))
-        .collect();
+    let mut runs: Vec<Run> = judged.iter().map(|judged| judged.run(held_out.is_some())).collect();
     let mut evaluations: usize = judged.iter().map(|judged| judged.descent.evaluations).sum();
     let mut network = best.descent.network(&architecture)?;
     let mut termination = best.descent.termination;
@@ -215,36 +198,22 @@ pub fn fit(
         train: errors_of(&network, data, &scaling, options.rate)?,
         validation: held_out.is_some().then(|| best.validation.clone()),
     };
-    let model = Model::new(
-        options.model,
-        network,
-        scaling,
-        options.rate,
-        data,
-        provenance,
-    )?;
+    let model = Model::new(options.model, network, scaling, options.rate, data, provenance)?;
     Ok(Fit { model, evaluations })
 }
 
 /// The architecture that options and data ask for.
 fn architecture(data: &Dataset, options: &FitOptions) -> Result<Architecture> {
     if !(options.validation > 0.0 && options.validation < 1.0) {
-        return Err(Error::Option(format!(
-            "validation {} is not between 0 and 1",
-            options.validation
-        )));
+        return Err(Error::Option(format!("validation {} is not between 0 and 1", options.validation)));
     }
     if options.starts == 0 || options.starts > 10_000 {
-        return Err(Error::Option(format!(
-            "{} starts: choose 1 to 10000",
-            options.starts
-        )));
+        return Err(Error::Option(format!("{} starts: choose 1 to 10000", options.starts)));
     }
     options.regularisation.check()?;
     let inputs = data.names().inputs.len();
     let rate = options.rate.is_some();
-    let mut architecture =
-        Architecture::new(options.model, options.sizes, inputs, rate, data.has_time())?;
+    let mut architecture = Architecture::new(options.model, options.sizes, inputs, rate, data.has_time())?;
     architecture.deterioration &= !options.no_deterioration;
     Ok(architecture)
 }
@@ -267,9 +236,8 @@ fn errors_of(
         y.iter_mut().for_each(|y| *y = scaling.output(*y));
         sums.add(record.output(), &y);
     }
-    sums.errors(&data.names().output).ok_or_else(|| {
-        data.records()[0].defect(None, None, crate::error::DataProblem::NothingToScore)
-    })
+    sums.errors(&data.names().output)
+        .ok_or_else(|| data.records()[0].defect(None, None, crate::error::DataProblem::NothingToScore))
 }
 
 /// A descent and how well it does on the data held out.
@@ -315,36 +283,19 @@ const LAST_EPOCHS_ON_ALL_ROWS: usize = 4;
 
 impl Watch<'_> {
     fn stopped(&self) -> bool {
-        *self
-            .finished
-            .lock()
-            .expect("no thread panics with the lock")
-            == usize::MAX
+        *self.finished.lock().expect("no thread panics with the lock") == usize::MAX
     }
 
     /// One descent on an objective, told to the observer.
-    fn descend(
-        &self,
-        objective: &Objective,
-        phase: Phase,
-        start: usize,
-        parameters: Vec<f64>,
-    ) -> Descent {
+    fn descend(&self, objective: &Objective, phase: Phase, start: usize, parameters: Vec<f64>) -> Descent {
         let epochs = self.options.epochs;
         let mut told = 0;
-        let descent = levenberg_marquardt::descend(
-            objective,
-            parameters,
-            epochs,
-            |epoch, train_nrmse_percent| {
+        let descent =
+            levenberg_marquardt::descend(objective, parameters, epochs, |epoch, train_nrmse_percent| {
                 told += 1;
                 self.tell(phase, start, epoch, train_nrmse_percent, 1)
-            },
-        );
-        let mut finished = self
-            .finished
-            .lock()
-            .expect("no thread panics with the lock");
+            });
+        let mut finished = self.finished.lock().expect("no thread panics with the lock");
         *finished = finished.saturating_add(epochs.saturating_sub(told));
         descent
     }
@@ -354,12 +305,7 @@ impl Watch<'_> {
         if objective.scored() <= self.options.thin {
             return self.descend(objective, Phase::Refit, start, parameters);
         }
-        let mut first = self.descend(
-            &objective.thinned(self.options.thin),
-            Phase::Refit,
-            start,
-            parameters,
-        );
+        let mut first = self.descend(&objective.thinned(self.options.thin), Phase::Refit, start, parameters);
         if self.stopped() {
             return first;
         }
@@ -372,29 +318,12 @@ impl Watch<'_> {
         let done = first.history.last().map_or(0, |point| point.epoch);
         first
             .history
-            .extend(last.history.iter().map(|point| HistoryPoint {
-                epoch: done + point.epoch,
-                ..*point
-            }));
-        Descent {
-            history: first.history,
-            evaluations: first.evaluations + last.evaluations,
-            ..last
-        }
+            .extend(last.history.iter().map(|point| HistoryPoint { epoch: done + point.epoch, ..*point }));
+        Descent { history: first.history, evaluations: first.evaluations + last.evaluations, ..last }
     }
 
-    fn tell(
-        &self,
-        phase: Phase,
-        start: usize,
-        epoch: usize,
-        nrmse: f64,
-        weight: usize,
-    ) -> ControlFlow<()> {
-        let mut finished = self
-            .finished
-            .lock()
-            .expect("no thread panics with the lock");
+    fn tell(&self, phase: Phase, start: usize, epoch: usize, nrmse: f64, weight: usize) -> ControlFlow<()> {
+        let mut finished = self.finished.lock().expect("no thread panics with the lock");
         if *finished == usize::MAX {
             return ControlFlow::Break(());
         }
@@ -407,10 +336,7 @@ impl Watch<'_> {
             train_nrmse_percent: nrmse,
             done: *finished as f64 / all.max(1) as f64,
         };
-        let mut observer = self
-            .observer
-            .lock()
-            .expect("no thread panics with the lock");
+        let mut observer = self.observer.lock().expect("no thread panics with the lock");
         let flow = observer(&progress);
         if flow.is_break() {
             *finished = usize::MAX;

@@ -57,12 +57,7 @@ impl fmt::Display for Warning {
                      (measure several cycles of different amplitude)"
                 )
             }
-            Self::OutsideTrainedRange {
-                name,
-                share_percent,
-                trained,
-                seen,
-            } => write!(
+            Self::OutsideTrainedRange { name, share_percent, trained, seen } => write!(
                 f,
                 "{name}: {share_percent:.1} % of the rows are outside the trained range {:.4} to {:.4} (here {:.4} to {:.4}); \
                  the model extrapolates there (train on data that cover the range)",
@@ -71,11 +66,7 @@ impl fmt::Display for Warning {
                 Significant(seen.0),
                 Significant(seen.1)
             ),
-            Self::UnevenTimeSteps {
-                record,
-                shortest,
-                longest,
-            } => write!(
+            Self::UnevenTimeSteps { record, shortest, longest } => write!(
                 f,
                 "record \"{record}\": time steps vary from {:.3} to {:.3}, so rates are uncertain \
                  (are records joined, or samples missing? name records in a column `record`, or use --rate none)",
@@ -102,9 +93,7 @@ impl fmt::Display for Significant {
             return write!(f, "{value}");
         }
         let scientific = format!("{value:.*e}", digits - 1);
-        let (mantissa, exponent) = scientific
-            .split_once('e')
-            .expect("the format has an exponent");
+        let (mantissa, exponent) = scientific.split_once('e').expect("the format has an exponent");
         let exponent: i32 = exponent.parse().expect("the exponent is a number");
         let trimmed = |text: &str| match text.contains('.') {
             true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
@@ -137,10 +126,7 @@ mod tests {
 
     #[test]
     fn warnings_say_what_helps() {
-        let warning = Warning::FewTurningPoints {
-            record: "r1".into(),
-            found: 1,
-        };
+        let warning = Warning::FewTurningPoints { record: "r1".into(), found: 1 };
         assert!(warning.to_string().contains("turns only once"));
         assert!(warning.to_string().contains("several cycles"));
     }

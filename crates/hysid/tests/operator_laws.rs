@@ -84,11 +84,7 @@ fn relay(r: f64, s: f64) -> Relay {
 /// The three operators that remember turning points alone and compute without rounding in their
 /// memory: laws about memory hold for them to the last bit.
 fn exact_operators(r: f64, s: f64) -> [(&'static str, Box<dyn Operator>); 3] {
-    [
-        ("play", Box::new(play(r))),
-        ("stop", Box::new(stop(r))),
-        ("relay", Box::new(relay(r, s))),
-    ]
+    [("play", Box::new(play(r))), ("stop", Box::new(stop(r))), ("relay", Box::new(relay(r, s)))]
 }
 
 /// Weighted sum of operators: a model of Prandtl-Ishlinskii type.
@@ -104,10 +100,7 @@ fn bank<O: Operator>(elements: impl Iterator<Item = (f64, O)>, x: &[f64]) -> Vec
 
 fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {
@@ -117,17 +110,13 @@ fn bits(values: &[f64]) -> Vec<u64> {
 /// `cycles` cycles of `amplitude sin`, from 0; with 4 dividing `samples`, peaks are hit exactly.
 fn sine(amplitude: f64, samples: usize, cycles: usize) -> Vec<f64> {
     let phase = |k: usize| TAU * ((k % samples) as f64 / samples as f64);
-    (0..=samples * cycles)
-        .map(|k| amplitude * phase(k).sin())
-        .collect()
+    (0..=samples * cycles).map(|k| amplitude * phase(k).sin()).collect()
 }
 
 /// Area enclosed by the last cycle of `samples` samples in the plane of input and output, positive
 /// if work is done on the element.
 fn loop_area(x: &[f64], y: &[f64], samples: usize) -> f64 {
-    (x.len() - samples..x.len())
-        .map(|k| (y[k] + y[k - 1]) / 2.0 * (x[k] - x[k - 1]))
-        .sum()
+    (x.len() - samples..x.len()).map(|k| (y[k] + y[k - 1]) / 2.0 * (x[k] - x[k - 1])).sum()
 }
 
 // ---------------------------------------------------------------- definitions and identities
@@ -262,11 +251,7 @@ fn relay_switches_where_the_play_of_its_own_threshold_crosses() {
     let outputs = relay(0.7, 0.3).run(&x);
     let disagreeing_with = |r: f64| {
         let side = play(r).run(&x).into_iter().map(|p| (p - 0.3).signum());
-        outputs
-            .iter()
-            .zip(side)
-            .filter(|(output, side)| *output != side)
-            .count()
+        outputs.iter().zip(side).filter(|(output, side)| *output != side).count()
     };
     assert!(outputs.contains(&1.0) && outputs.contains(&-1.0));
     assert_eq!(disagreeing_with(0.7), 0);
@@ -708,22 +693,10 @@ fn times_that_are_none_are_refused_with_their_row() {
     element.run(&[0.0, 1.0], &[1.0, 2.0]).unwrap();
     let before = element.clone();
     for (time, message) in [
-        (
-            &[0.0, 1.0, 0.5, 0.2][..],
-            "row 2: time 0.5 follows 1: times must not decrease",
-        ),
-        (
-            &[0.0, 1.0, f64::INFINITY, 2.0],
-            "row 2: time inf: times must be finite",
-        ),
-        (
-            &[f64::NAN, 1.0, 2.0, 3.0],
-            "row 0: time NaN: times must be finite",
-        ),
-        (
-            &[0.0],
-            "1 times for 4 inputs: there must be one time for each input",
-        ),
+        (&[0.0, 1.0, 0.5, 0.2][..], "row 2: time 0.5 follows 1: times must not decrease"),
+        (&[0.0, 1.0, f64::INFINITY, 2.0], "row 2: time inf: times must be finite"),
+        (&[f64::NAN, 1.0, 2.0, 3.0], "row 0: time NaN: times must be finite"),
+        (&[0.0], "1 times for 4 inputs: there must be one time for each input"),
     ] {
         let refusal = element.run(time, &[0.0; 4]).unwrap_err();
         assert_eq!(refusal.to_string(), message);
@@ -739,11 +712,7 @@ fn parameters_are_checked_and_the_message_has_value_and_rule() {
         assert!(Relay::new(value, 0.0).is_err(), "{value}");
         assert!(DeterioratingStop::new(value, 1.0).is_err(), "{value}");
         assert_eq!(Play::new(value).is_ok(), zero, "{value}");
-        assert_eq!(
-            DeterioratingStop::new(1.0, value).is_ok(),
-            infinite,
-            "{value}"
-        );
+        assert_eq!(DeterioratingStop::new(1.0, value).is_ok(), infinite, "{value}");
         assert_eq!(Relaxation::new(value).is_ok(), infinite, "{value}");
         assert_eq!(Relay::new(1.0, value).is_ok(), value.is_finite(), "{value}");
     }
@@ -763,10 +732,7 @@ fn parameters_are_checked_and_the_message_has_value_and_rule() {
 #[cfg(not(debug_assertions))]
 fn bad_samples_leave_no_trace() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let worn = (
-            "worn",
-            Box::new(deteriorating(0.5, 5.0)) as Box<dyn Operator>,
-        );
+        let worn = ("worn", Box::new(deteriorating(0.5, 5.0)) as Box<dyn Operator>);
         for (name, mut operator) in exact_operators(0.5, 0.7).into_iter().chain([worn]) {
             let y = operator.run(&[0.0, 2.0, 1.0]);
             let disturbed = operator.run(&[bad, 0.0, 2.0, bad, 1.0]);

@@ -11,9 +11,7 @@ pub const THEORY: &str = "docs/theory.md";
 const LONGEST_SOURCE: usize = 800;
 
 /// Names that say nothing about what is inside.
-const EMPTY_NAMES: [&str; 7] = [
-    "utils", "util", "helpers", "helper", "manager", "common", "misc",
-];
+const EMPTY_NAMES: [&str; 7] = ["utils", "util", "helpers", "helper", "manager", "common", "misc"];
 
 const LIBRARY: &str = "crates/hysid/src/";
 
@@ -32,11 +30,7 @@ const NOT_IN_LIBRARY: [(&str, &str); 10] = [
 ];
 
 /// Written in two parts, or this file would break its own rule.
-const LEFT_TO_DO: [&str; 3] = [
-    concat!("TO", "DO"),
-    concat!("FIX", "ME"),
-    concat!("XX", "X"),
-];
+const LEFT_TO_DO: [&str; 3] = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
 
 fn violation(path: &str, line: usize, what: impl Into<String>) -> Violation {
     let path = path.to_owned();
@@ -169,10 +163,7 @@ pub fn equations_unique(path: &str, text: &str) -> Vec<Violation> {
 
 /// The numbers of the equations displayed in the text.
 pub fn equations(text: &str) -> BTreeSet<String> {
-    displayed_equations(text)
-        .into_iter()
-        .map(|(_, equation)| equation)
-        .collect()
+    displayed_equations(text).into_iter().map(|(_, equation)| equation).collect()
 }
 
 /// The equations of the text with their lines: in a code block, a line that ends with `(X.Y)`.
@@ -200,10 +191,7 @@ fn cited_equations(line: &str) -> Vec<String> {
         while let Some((equation, after)) = equation_number(rest.trim_start()) {
             cited.push(equation);
             rest = after.trim_start_matches([',', ' ', '-', '–']);
-            rest = ["and ", "or ", "to "]
-                .iter()
-                .find_map(|word| rest.strip_prefix(word))
-                .unwrap_or(rest);
+            rest = ["and ", "or ", "to "].iter().find_map(|word| rest.strip_prefix(word)).unwrap_or(rest);
         }
     }
     cited
@@ -219,12 +207,7 @@ fn equation_number(text: &str) -> Option<(String, &str)> {
 
 /// Every relative link in the repository's documents leads to a file or folder of the repository.
 pub fn links_lead_somewhere(path: &str, text: &str, paths: &BTreeSet<String>) -> Vec<Violation> {
-    let at_the_door = [
-        "README.md",
-        "ARCHITECTURE.md",
-        "CONTRIBUTING.md",
-        "CHANGELOG.md",
-    ];
+    let at_the_door = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"];
     let is_document = path.starts_with("docs/") && path.ends_with(".md");
     if !is_document && !at_the_door.contains(&path) {
         return Vec::new();
@@ -251,11 +234,7 @@ pub fn links_lead_somewhere(path: &str, text: &str, paths: &BTreeSet<String>) ->
                     || paths.iter().any(|path| path.starts_with(&folder))
             });
             if !leads_somewhere {
-                found.push(violation(
-                    path,
-                    number,
-                    format!("broken link to `{target}`"),
-                ));
+                found.push(violation(path, number, format!("broken link to `{target}`")));
             }
         }
     }
@@ -306,9 +285,7 @@ pub fn version_in_changelog(manifest: &str, changelog: &str) -> Vec<Violation> {
         let what = "no version in [workspace.package]";
         return vec![violation("Cargo.toml", 1, what)];
     };
-    let mut headings = changelog
-        .lines()
-        .filter_map(|line| line.strip_prefix("## "));
+    let mut headings = changelog.lines().filter_map(|line| line.strip_prefix("## "));
     let known = headings.any(|heading| {
         let name = heading.split_whitespace().next().unwrap_or_default();
         let name = name.trim_matches(['[', ']']);

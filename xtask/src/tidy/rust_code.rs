@@ -85,10 +85,8 @@ fn block_comment_length(rest: &str) -> usize {
 
 /// `r"..."`, `r#"..."#`, and the same after `b` or `c`.
 fn raw_string_length(rest: &str) -> Option<usize> {
-    let after_prefix = rest
-        .strip_prefix("br")
-        .or_else(|| rest.strip_prefix("cr"))
-        .or_else(|| rest.strip_prefix('r'))?;
+    let after_prefix =
+        rest.strip_prefix("br").or_else(|| rest.strip_prefix("cr")).or_else(|| rest.strip_prefix('r'))?;
     let after_hashes = after_prefix.trim_start_matches('#');
     let hashes = after_prefix.len() - after_hashes.len();
     let body = after_hashes.strip_prefix('"')?;
@@ -147,10 +145,7 @@ mod tests {
 
     #[test]
     fn characters_are_no_code_but_lifetimes_are() {
-        assert_eq!(
-            words(r"a('b', '\'', '\\', '\u{e9}', '→');"),
-            "a( , , , , );"
-        );
+        assert_eq!(words(r"a('b', '\'', '\\', '\u{e9}', '→');"), "a( , , , , );");
         assert_eq!(words("fn a<'b>(c: &'b str)"), "fn a<'b>(c: &'b str)");
         assert_eq!(words("('\"', a, '\"')"), "( , a, )");
     }

@@ -68,10 +68,7 @@ struct Readout {
 /// content, and no change of layout or line ends.
 fn checksum(text: &str) -> Option<u32> {
     let end = text.rfind(CHECKSUM_KEY)?;
-    let content: Vec<u8> = text[..end]
-        .bytes()
-        .filter(|byte| !byte.is_ascii_whitespace())
-        .collect();
+    let content: Vec<u8> = text[..end].bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     Some(crc32fast::hash(&content))
 }
 
@@ -80,10 +77,8 @@ pub(super) fn write(model: &Model) -> String {
     let layout = Layout::new(architecture);
     let parameters = model.network.parameters();
     let ln_beta = &parameters[layout.ln_beta];
-    let stop = |(j, weights): (usize, &[f64])| Stop {
-        weights: weights.to_vec(),
-        ln_beta: ln_beta.get(j).copied(),
-    };
+    let stop =
+        |(j, weights): (usize, &[f64])| Stop { weights: weights.to_vec(), ln_beta: ln_beta.get(j).copied() };
     let run = 1 + architecture.memory_neurons();
     let file = File {
         format: FORMAT.into(),
@@ -101,23 +96,18 @@ pub(super) fn write(model: &Model) -> String {
                 .enumerate()
                 .map(stop)
                 .collect(),
-            linear: architecture
-                .linear
-                .then(|| parameters[layout.linear].to_vec()),
+            linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
             relaxation_ln_tau: parameters[layout.ln_tau].to_vec(),
         },
         readout: Readout {
-            hidden: parameters[layout.hidden]
-                .chunks_exact(run)
-                .map(<[f64]>::to_vec)
-                .collect(),
+            hidden: parameters[layout.hidden].chunks_exact(run).map(<[f64]>::to_vec).collect(),
             output: model.network.output().to_vec(),
         },
         training: model.provenance.clone(),
         checksum: "00000000".into(),
     };
-    let mut text = serde_json::to_string_pretty(&file)
-        .expect("a model has no map with keys other than strings");
+    let mut text =
+        serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
     let sum = checksum(&text).expect("the key is there");
     let end = text.rfind("00000000").expect("the value is there");
     text.replace_range(end..end + 8, &format!("{sum:08x}"));
@@ -127,29 +117,20 @@ pub(super) fn write(model: &Model) -> String {
 
 pub(super) fn read(text: &str) -> Result<Model> {
     let damaged = |what: String| {
-        Error::ModelFile(format!(
-            "{what} (fit the model anew, or restore the file from a copy)"
-        ))
+        Error::ModelFile(format!("{what} (fit the model anew, or restore the file from a copy)"))
     };
     if text.trim().is_empty() {
         return Err(damaged("the model file is empty".into()));
     }
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| {
         if error.is_eof() {
-            damaged(format!(
-                "the model file is cut off at line {}",
-                error.line()
-            ))
+            damaged(format!("the model file is cut off at line {}", error.line()))
         } else if !text.trim_start().starts_with('{') {
             Error::ModelFile(
                 "this is not a Hysid model file (expected the JSON that `hysid fit` writes)".into(),
             )
         } else {
-            damaged(format!(
-                "the model file is damaged at line {}, column {}",
-                error.line(),
-                error.column()
-            ))
+            damaged(format!("the model file is damaged at line {}, column {}", error.line(), error.column()))
         }
     })?;
     if value.get("format").and_then(|format| format.as_str()) != Some(FORMAT) {
@@ -166,19 +147,14 @@ pub(super) fn read(text: &str) -> Result<Model> {
         }
         _ => return Err(damaged("the model file has no valid format version".into())),
     }
-    let written = value
-        .get("checksum")
-        .and_then(|sum| sum.as_str())
-        .unwrap_or_default();
+    let written = value.get("checksum").and_then(|sum| sum.as_str()).unwrap_or_default();
     if checksum(text).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
         return Err(damaged(
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
     let file: File = serde_json::from_str(text).map_err(|error| {
-        damaged(format!(
-            "the model file does not have the layout of version {FORMAT_VERSION}: {error}"
-        ))
+        damaged(format!("the model file does not have the layout of version {FORMAT_VERSION}: {error}"))
     })?;
     assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
 }
@@ -192,19 +168,11 @@ fn assemble(file: File) -> Result<Model> {
     parameters.extend(&file.memory.relaxation_ln_tau);
     parameters.extend(file.readout.hidden.iter().flatten());
     let inputs = file.architecture.inputs;
-    if [
-        file.scaling.inputs.len(),
-        file.columns.inputs.len(),
-        file.trained_ranges.inputs.len(),
-    ] != [inputs; 3]
+    if [file.scaling.inputs.len(), file.columns.inputs.len(), file.trained_ranges.inputs.len()] != [inputs; 3]
     {
-        return Err(Error::Option(format!(
-            "it does not describe {inputs} inputs throughout"
-        )));
+        return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
     }
-    if file.architecture.rate != file.rate.is_some()
-        || file.rate.is_some() != file.scaling.rate.is_some()
-    {
+    if file.architecture.rate != file.rate.is_some() || file.rate.is_some() != file.scaling.rate.is_some() {
         return Err(Error::Option("it has a rate in some places only".into()));
     }
     Ok(Model {

@@ -27,13 +27,8 @@ pub enum Family {
 
 impl Family {
     /// All families.
-    pub const ALL: [Family; 5] = [
-        Family::Pnn,
-        Family::Gpnn,
-        Family::PreisachNn,
-        Family::Xpnn,
-        Family::XpnnPlus,
-    ];
+    pub const ALL: [Family; 5] =
+        [Family::Pnn, Family::Gpnn, Family::PreisachNn, Family::Xpnn, Family::XpnnPlus];
 
     /// The name on the command line and in model files.
     pub fn name(self) -> &'static str {
@@ -62,13 +57,10 @@ impl std::str::FromStr for Family {
 
     fn from_str(name: &str) -> Result<Self> {
         let known = if name == "epnn" { "xpnn" } else { name };
-        Family::ALL
-            .into_iter()
-            .find(|family| family.name() == known)
-            .ok_or_else(|| {
-                let names = Family::ALL.map(Family::name).join(", ");
-                Error::Option(format!("model `{name}` is unknown: choose one of {names}"))
-            })
+        Family::ALL.into_iter().find(|family| family.name() == known).ok_or_else(|| {
+            let names = Family::ALL.map(Family::name).join(", ");
+            Error::Option(format!("model `{name}` is unknown: choose one of {names}"))
+        })
     }
 }
 
@@ -85,11 +77,7 @@ pub struct Sizes {
 
 impl Default for Sizes {
     fn default() -> Self {
-        Self {
-            stops: 10,
-            hidden: 10,
-            relaxation: 4,
-        }
+        Self { stops: 10, hidden: 10, relaxation: 4 }
     }
 }
 
@@ -126,13 +114,7 @@ impl Architecture {
     /// # Errors
     /// No stops or hidden neurons where the family needs them, more than 1000 of one kind, further
     /// inputs for a family that takes one.
-    pub fn new(
-        family: Family,
-        sizes: Sizes,
-        inputs: usize,
-        rate: bool,
-        time: bool,
-    ) -> Result<Self> {
+    pub fn new(family: Family, sizes: Sizes, inputs: usize, rate: bool, time: bool) -> Result<Self> {
         let neural = !matches!(family, Family::Pnn | Family::Gpnn);
         if inputs != 1 && !family.takes_further_inputs() {
             return Err(Error::Option(format!(
@@ -141,9 +123,7 @@ impl Architecture {
             )));
         }
         if inputs > 100 {
-            return Err(Error::Option(format!(
-                "{inputs} inputs are too many: at most 100"
-            )));
+            return Err(Error::Option(format!("{inputs} inputs are too many: at most 100")));
         }
         if sizes.stops == 0 {
             return Err(Error::Option("a network needs at least one stop".into()));
@@ -161,9 +141,7 @@ impl Architecture {
             (sizes.relaxation, "relaxation neurons"),
         ] {
             if count > MOST_NEURONS {
-                return Err(Error::Option(format!(
-                    "{count} {kind} are too many: at most {MOST_NEURONS}"
-                )));
+                return Err(Error::Option(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
             }
         }
         Ok(Self {
@@ -201,11 +179,7 @@ impl Architecture {
 
     /// Output weights, found by least squares: constant, tanh neurons, direct path, in this order.
     pub fn output_weights(&self) -> usize {
-        let direct = if self.has_direct_path() {
-            self.memory_neurons()
-        } else {
-            0
-        };
+        let direct = if self.has_direct_path() { self.memory_neurons() } else { 0 };
         usize::from(self.constant) + self.hidden + direct
     }
 
@@ -234,11 +208,7 @@ mod tests {
     use super::*;
 
     fn xpnn(stops: usize, hidden: usize, rate: bool) -> Architecture {
-        let sizes = Sizes {
-            stops,
-            hidden,
-            relaxation: 0,
-        };
+        let sizes = Sizes { stops, hidden, relaxation: 0 };
         Architecture::new(Family::Xpnn, sizes, 1, rate, rate).unwrap()
     }
 
@@ -250,10 +220,7 @@ mod tests {
                 assert_eq!(ours, stops * hidden + 3 * stops + 2 * hidden + 2);
                 assert_eq!(Architecture::paper_count(stops, hidden), ours - stops);
                 let without_rate = xpnn(stops, hidden, false).searched_parameters();
-                assert_eq!(
-                    without_rate,
-                    stops * hidden + stops + 2 * hidden + 1 + stops
-                );
+                assert_eq!(without_rate, stops * hidden + stops + 2 * hidden + 1 + stops);
             }
         }
         assert_eq!(xpnn(10, 10, true).searched_parameters(), 152);
@@ -261,11 +228,7 @@ mod tests {
 
     #[test]
     fn prandtl_networks_have_two_and_three_parameters_a_stop() {
-        let sizes = Sizes {
-            stops: 7,
-            hidden: 9,
-            relaxation: 3,
-        };
+        let sizes = Sizes { stops: 7, hidden: 9, relaxation: 3 };
         let constant = 1;
         let pnn = Architecture::new(Family::Pnn, sizes, 1, true, true).unwrap();
         assert_eq!(pnn.parameters(), 2 * 7 + constant);
@@ -275,11 +238,7 @@ mod tests {
 
     #[test]
     fn families_have_their_parts() {
-        let sizes = Sizes {
-            stops: 3,
-            hidden: 2,
-            relaxation: 4,
-        };
+        let sizes = Sizes { stops: 3, hidden: 2, relaxation: 4 };
         let of = |family| Architecture::new(family, sizes, 1, true, true).unwrap();
         assert!(!of(Family::PreisachNn).rate && !of(Family::PreisachNn).deterioration);
         assert_eq!(of(Family::Xpnn).relaxation, 0);

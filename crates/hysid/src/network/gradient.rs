@@ -68,12 +68,7 @@ impl Network {
             parameters: &self.parameters,
             output: Some(&self.output),
         };
-        simd::run(CollectRows {
-            columns,
-            drive,
-            target: &target,
-            rows: &mut rows,
-        });
+        simd::run(CollectRows { columns, drive, target: &target, rows: &mut rows });
         let jacobian = rows.columns.split_off(1);
         let mut output = vec![0.0; drive.len()];
         let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
@@ -94,11 +89,7 @@ pub(crate) struct Columns<'a> {
 impl Columns<'_> {
     /// Number of columns.
     pub fn count(&self) -> usize {
-        let jacobian = if self.output.is_some() {
-            self.parameters.len()
-        } else {
-            0
-        };
+        let jacobian = if self.output.is_some() { self.parameters.len() } else { 0 };
         self.architecture.output_weights() + 1 + jacobian
     }
 }
@@ -282,10 +273,7 @@ impl<'a> Workspace<'a> {
             } else {
                 self.memory.forward::<S>(&mut state, u, &steps, rows, z);
             }
-            let wanted = self.block.target[..rows]
-                .iter()
-                .filter(|y| !y.is_nan())
-                .count();
+            let wanted = self.block.target[..rows].iter().filter(|y| !y.is_nan()).count();
             if wanted == BLOCK && self.filled == 0 {
                 std::mem::swap(&mut self.block, &mut self.pending);
                 self.filled = BLOCK;
@@ -299,8 +287,7 @@ impl<'a> Workspace<'a> {
                 if self.block.target[t].is_nan() {
                     continue;
                 }
-                self.pending
-                    .copy_row(self.filled, &self.block, t, self.spec.output.is_some());
+                self.pending.copy_row(self.filled, &self.block, t, self.spec.output.is_some());
                 self.filled += 1;
                 if self.filled == BLOCK {
                     self.flush(simd, &mut hand_on);
@@ -316,8 +303,7 @@ impl<'a> Workspace<'a> {
         if rows == 0 {
             return;
         }
-        self.readout
-            .tanh_layer(simd, &self.pending.z, rows, &mut self.h);
+        self.readout.tanh_layer(simd, &self.pending.z, rows, &mut self.h);
         let m = self.spec.architecture.output_weights();
         let (features, rest) = self.columns.split_at_mut(m);
         self.readout.features(&self.pending.z, &self.h, features);
@@ -358,10 +344,7 @@ impl<'a> Workspace<'a> {
         let (linear, rest) = self.q.split_at(usize::from(!self.layout.linear.is_empty()));
         let (stops, relaxation) = rest.split_at(self.spec.architecture.stops);
         let channels = u.len();
-        for (k, column) in jacobian[self.layout.stop_weights.clone()]
-            .iter_mut()
-            .enumerate()
-        {
+        for (k, column) in jacobian[self.layout.stop_weights.clone()].iter_mut().enumerate() {
             product(&stops[k / channels], &slopes.weights[k], column);
         }
         for (j, column) in jacobian[self.layout.ln_beta.clone()].iter_mut().enumerate() {

@@ -103,27 +103,15 @@ impl MemoryLayer {
         let ln_beta = &parameters[layout.ln_beta];
         let group = |first: usize| {
             let lane = |value: &dyn Fn(usize) -> f64| {
-                std::array::from_fn(|l| {
-                    if first + l < architecture.stops {
-                        value(first + l)
-                    } else {
-                        0.0
-                    }
-                })
+                std::array::from_fn(|l| if first + l < architecture.stops { value(first + l) } else { 0.0 })
             };
             Group {
-                weights: (0..channels)
-                    .map(|c| lane(&|j| weights[j * channels + c]))
-                    .collect(),
+                weights: (0..channels).map(|c| lane(&|j| weights[j * channels + c])).collect(),
                 inverse_beta: lane(&|j| ln_beta.get(j).map_or(0.0, |ln_beta| (-ln_beta).exp())),
             }
         };
         let channel_of_input = |input: usize| {
-            if input == 0 {
-                0
-            } else {
-                input + usize::from(architecture.rate)
-            }
+            if input == 0 { 0 } else { input + usize::from(architecture.rate) }
         };
         let ln_tau = parameters[layout.ln_tau].iter().enumerate();
         Self {
@@ -131,9 +119,7 @@ impl MemoryLayer {
             stops: architecture.stops,
             deteriorating: architecture.deterioration,
             groups: (0..architecture.stops).step_by(LANES).map(group).collect(),
-            linear: architecture
-                .linear
-                .then(|| parameters[layout.linear].to_vec()),
+            linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
             relaxation: ln_tau
                 .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), ln_tau.exp()))
                 .collect(),
@@ -154,11 +140,7 @@ impl MemoryLayer {
     /// The derivatives of the virgin state.
     pub fn virgin_sensitivity(&self) -> Sensitivity {
         let zeros = || vec![vec![[0.0; LANES]; self.channels]; self.groups.len()];
-        Sensitivity {
-            play: zeros(),
-            slip: zeros(),
-            stress: vec![0.0; self.relaxation.len()],
-        }
+        Sensitivity { play: zeros(), slip: zeros(), stress: vec![0.0; self.relaxation.len()] }
     }
 
     fn neurons(&self) -> usize {
@@ -185,10 +167,7 @@ impl MemoryLayer {
         let mut done = 0;
         while done + 2 <= self.groups.len() {
             let groups = &self.groups[done..done + 2];
-            let (play, slip) = (
-                &mut state.play[done..done + 2],
-                &mut state.slip[done..done + 2],
-            );
+            let (play, slip) = (&mut state.play[done..done + 2], &mut state.slip[done..done + 2]);
             if self.deteriorating {
                 advance::<S, 2, true>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
             } else {
@@ -240,26 +219,10 @@ impl MemoryLayer {
             };
             let weights = &mut slopes.weights[first * self.channels..];
             let ln_beta = slopes.ln_beta.get_mut(first..).unwrap_or(&mut []);
-            advance_with_slopes::<S>(
-                group,
-                memory,
-                u,
-                rows,
-                &mut stops[first..],
-                weights,
-                ln_beta,
-            );
+            advance_with_slopes::<S>(group, memory, u, rows, &mut stops[first..], weights, ln_beta);
         }
         self.run_linear::<S>(u, linear);
-        self.relax(
-            state,
-            Some(sensitivity),
-            u,
-            steps,
-            rows,
-            stress,
-            &mut slopes.ln_tau,
-        );
+        self.relax(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
         self.remember(state, u, rows);
     }
 
@@ -273,9 +236,7 @@ impl MemoryLayer {
         state.started = true;
         for (group, play) in self.groups.iter().zip(&mut state.play) {
             for l in 0..LANES {
-                let v: f64 = (0..self.channels)
-                    .map(|c| group.weights[c][l] * u[c][0])
-                    .sum();
+                let v: f64 = (0..self.channels).map(|c| group.weights[c][l] * u[c][0]).sum();
                 play[l] = play::follow(play[l], v, 1.0);
             }
         }
@@ -285,9 +246,7 @@ impl MemoryLayer {
     fn begin_slopes(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
         for (group, slopes) in self.groups.iter().zip(&mut sensitivity.play) {
             for l in 0..LANES {
-                let v: f64 = (0..self.channels)
-                    .map(|c| group.weights[c][l] * u[c][0])
-                    .sum();
+                let v: f64 = (0..self.channels).map(|c| group.weights[c][l] * u[c][0]).sum();
                 if v.abs() > 1.0 {
                     for c in 0..self.channels {
                         slopes[c][l] = u[c][0];
@@ -373,11 +332,7 @@ fn drive<S: Simd>(group: &Group, u: &[Row], t: usize, l: usize) -> f64 {
 
 /// Fills the tiles of `G` groups with their inputs `v`.
 #[inline(always)]
-fn drive_tiles<S: Simd, const G: usize>(
-    groups: &[Group],
-    u: &[Row],
-    tile: &mut [[Lanes; G]; BLOCK],
-) {
+fn drive_tiles<S: Simd, const G: usize>(groups: &[Group], u: &[Row], tile: &mut [[Lanes; G]; BLOCK]) {
     for g in 0..G {
         let group = &groups[g];
         let first = &group.weights[0];
@@ -421,8 +376,7 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
                 let mut output = stop::elongation(v, after);
                 if DETERIORATING {
                     slips[g][l] = deteriorating_stop::accumulate(slips[g][l], before, after);
-                    output *=
-                        deteriorating_stop::remaining_strength(slips[g][l], inverse_beta[g][l]);
+                    output *= deteriorating_stop::remaining_strength(slips[g][l], inverse_beta[g][l]);
                 }
                 tile[g][l] = output;
             }
@@ -492,11 +446,7 @@ fn advance_with_slopes<S: Simd>(
             memory.slip[l] = slip;
             let left = deteriorating_stop::remaining_strength(slip, group.inverse_beta[l]);
             let elongation = stop::elongation(v, after);
-            let wears = if left > 0.0 {
-                elongation * group.inverse_beta[l]
-            } else {
-                0.0
-            };
+            let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
             output[t][l] = elongation * left;
             strength[t][l] = left;
             wear[t][l] = wears;

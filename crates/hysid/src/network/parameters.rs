@@ -64,13 +64,8 @@ impl Layout {
             (1, true) => "rate".to_string(),
             (c, rate) => format!("x{}", c + 1 - usize::from(rate)),
         };
-        let relaxation = |m: usize| {
-            format!(
-                "relaxation {} of x{}",
-                m % a.relaxation + 1,
-                m / a.relaxation + 1
-            )
-        };
+        let relaxation =
+            |m: usize| format!("relaxation {} of x{}", m % a.relaxation + 1, m / a.relaxation + 1);
         let mut memory = vec!["bias".to_string()];
         memory.extend(a.linear.then(|| "linear neuron".to_string()));
         memory.extend((0..a.stops).map(|j| format!("stop {}", j + 1)));
@@ -78,29 +73,15 @@ impl Layout {
 
         let mut names = Vec::with_capacity(self.len());
         for j in 0..a.stops {
-            names.extend(
-                (0..a.channels()).map(|c| format!("stop {} weight of {}", j + 1, channel(c))),
-            );
+            names.extend((0..a.channels()).map(|c| format!("stop {} weight of {}", j + 1, channel(c))));
         }
+        names.extend(self.ln_beta.clone().enumerate().map(|(j, _)| format!("stop {} ln beta", j + 1)));
         names.extend(
-            self.ln_beta
-                .clone()
-                .enumerate()
-                .map(|(j, _)| format!("stop {} ln beta", j + 1)),
-        );
-        names.extend(
-            self.linear
-                .clone()
-                .enumerate()
-                .map(|(c, _)| format!("linear neuron weight of {}", channel(c))),
+            self.linear.clone().enumerate().map(|(c, _)| format!("linear neuron weight of {}", channel(c))),
         );
         names.extend((0..a.relaxation_neurons()).map(|m| format!("{} ln tau", relaxation(m))));
         for i in 0..a.hidden {
-            names.extend(
-                memory
-                    .iter()
-                    .map(|z| format!("hidden {} weight of {z}", i + 1)),
-            );
+            names.extend(memory.iter().map(|z| format!("hidden {} weight of {z}", i + 1)));
         }
         names
     }
@@ -146,9 +127,7 @@ impl Layout {
             let slack = 1e-9 * low.abs().max(high.abs());
             if !(low - slack..=high + slack).contains(&value) {
                 let name = &self.names()[index];
-                return Err(Error::Option(format!(
-                    "parameter `{name}` is {value}, outside {low} to {high}"
-                )));
+                return Err(Error::Option(format!("parameter `{name}` is {value}, outside {low} to {high}")));
             }
         }
         Ok(())
@@ -164,8 +143,7 @@ mod tests {
     fn every_parameter_has_its_own_name_and_sound_bounds() {
         for family in Family::ALL {
             let inputs = if family.takes_further_inputs() { 3 } else { 1 };
-            let architecture =
-                Architecture::new(family, Sizes::default(), inputs, true, true).unwrap();
+            let architecture = Architecture::new(family, Sizes::default(), inputs, true, true).unwrap();
             let layout = Layout::new(architecture);
             let mut names = layout.names();
             assert_eq!(names.len(), architecture.searched_parameters());

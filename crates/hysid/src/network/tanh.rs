@@ -75,20 +75,13 @@ mod tests {
         dispatch(All(&x, &mut y));
         for (&x, &y) in x.iter().zip(&y) {
             let exact = x.tanh();
-            assert!(
-                (y - exact).abs() <= 5e-16 * exact.abs(),
-                "tanh({x}) = {y}, not {exact}"
-            );
+            assert!((y - exact).abs() <= 5e-16 * exact.abs(), "tanh({x}) = {y}, not {exact}");
             assert!(y.abs() <= 1.0);
         }
         let negative: Vec<f64> = x.iter().map(|x| -x).collect();
         let mut odd = vec![0.0; x.len()];
         dispatch(All(&negative, &mut odd));
-        assert!(
-            y.iter()
-                .zip(&odd)
-                .all(|(y, odd)| y.to_bits() == (-odd).to_bits())
-        );
+        assert!(y.iter().zip(&odd).all(|(y, odd)| y.to_bits() == (-odd).to_bits()));
     }
 
     #[test]

@@ -72,13 +72,7 @@ impl DeterioratingStop {
         let r = checked_threshold(r)?;
         // NaN is not greater than 0 either.
         if beta > 0.0 {
-            Ok(Self {
-                r,
-                inverse_capacity: 1.0 / (r * beta),
-                play: 0.0,
-                slip: 0.0,
-                started: false,
-            })
+            Ok(Self { r, inverse_capacity: 1.0 / (r * beta), play: 0.0, slip: 0.0, started: false })
         } else {
             Err(InvalidOperator::Capacity(beta))
         }

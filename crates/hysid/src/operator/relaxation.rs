@@ -28,11 +28,7 @@ use super::{InvalidOperator, is_usable};
 #[inline(always)]
 pub fn decay(time_step: f64, tau: f64) -> (f64, f64) {
     let steps = time_step / tau;
-    if steps > 0.0 {
-        ((-steps).exp(), -(-steps).exp_m1() / steps)
-    } else {
-        (1.0, 1.0)
-    }
+    if steps > 0.0 { ((-steps).exp(), -(-steps).exp_m1() / steps) } else { (1.0, 1.0) }
 }
 
 /// The stress after the input has moved by `x_increment`, given the `stress` before and the factors
@@ -77,12 +73,7 @@ impl Relaxation {
     pub fn new(tau: f64) -> Result<Self, InvalidOperator> {
         // NaN is not greater than 0 either.
         if tau > 0.0 {
-            Ok(Self {
-                tau,
-                stress: 0.0,
-                x: 0.0,
-                started: false,
-            })
+            Ok(Self { tau, stress: 0.0, x: 0.0, started: false })
         } else {
             Err(InvalidOperator::RelaxationTime(tau))
         }
@@ -124,21 +115,14 @@ impl Relaxation {
     /// as it was before.
     pub fn run(&mut self, time: &[f64], x: &[f64]) -> Result<Vec<f64>, InvalidOperator> {
         if time.len() != x.len() {
-            return Err(InvalidOperator::Lengths {
-                times: time.len(),
-                inputs: x.len(),
-            });
+            return Err(InvalidOperator::Lengths { times: time.len(), inputs: x.len() });
         }
         for (row, &t) in time.iter().enumerate() {
             if !t.is_finite() {
                 return Err(InvalidOperator::TimeNotFinite { row, time: t });
             }
             if row > 0 && t < time[row - 1] {
-                return Err(InvalidOperator::TimeDecreases {
-                    row,
-                    previous: time[row - 1],
-                    time: t,
-                });
+                return Err(InvalidOperator::TimeDecreases { row, previous: time[row - 1], time: t });
             }
         }
         self.reset();

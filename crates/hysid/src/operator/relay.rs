@@ -60,12 +60,7 @@ impl Relay {
             return Err(InvalidOperator::Centre(s));
         }
         let virgin = virgin(s);
-        Ok(Self {
-            lower: s - r,
-            upper: s + r,
-            virgin,
-            output: virgin,
-        })
+        Ok(Self { lower: s - r, upper: s + r, virgin, output: virgin })
     }
 }
 

@@ -46,10 +46,7 @@ impl Stop {
     ///
     /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0.
     pub fn new(r: f64) -> Result<Self, InvalidOperator> {
-        Ok(Self {
-            r: checked_threshold(r)?,
-            play: 0.0,
-        })
+        Ok(Self { r: checked_threshold(r)?, play: 0.0 })
     }
 }
 

@@ -62,12 +62,7 @@ impl OutputProblem<'_> {
             }
         }
         let mean_square = mean_square.max(0.0);
-        OutputSolution {
-            objective: 0.5 * (mean_square + penalty),
-            weights,
-            mean_square,
-            factor,
-        }
+        OutputSolution { objective: 0.5 * (mean_square + penalty), weights, mean_square, factor }
     }
 
     /// Gradient `Jᵀr/N`, theory.md (3.3), and Gauss-Newton matrix (3.4) without the decay terms, for a
@@ -77,9 +72,7 @@ impl OutputProblem<'_> {
         let first = m + 1;
         let gradient = (0..p)
             .map(|k| {
-                let predicted: f64 = (0..m)
-                    .map(|i| self.gram.at(first + k, i) * solution.weights[i])
-                    .sum();
+                let predicted: f64 = (0..m).map(|i| self.gram.at(first + k, i) * solution.weights[i]).sum();
                 (predicted - self.gram.at(first + k, m)) / self.rows
             })
             .collect();
@@ -90,8 +83,7 @@ impl OutputProblem<'_> {
             }
             solution.factor.solve_lower(row);
         }
-        let mut matrix =
-            Symmetric::from_fn(p, |i, j| self.gram.at(first + i, first + j) / self.rows);
+        let mut matrix = Symmetric::from_fn(p, |i, j| self.gram.at(first + i, first + j) / self.rows);
         matrix.subtract_product(&projected, m);
         (gradient, matrix)
     }

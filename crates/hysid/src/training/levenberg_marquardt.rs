@@ -67,13 +67,9 @@ pub fn descend(
             descent.termination = Termination::GradientVanished;
             break;
         }
-        let Some((parameters, better)) = damping.step(
-            objective,
-            &slope,
-            &descent.parameters,
-            &value,
-            &mut descent.evaluations,
-        ) else {
+        let Some((parameters, better)) =
+            damping.step(objective, &slope, &descent.parameters, &value, &mut descent.evaluations)
+        else {
             descent.termination = Termination::NoFurtherImprovement;
             break;
         };
@@ -97,10 +93,7 @@ pub fn descend(
 }
 
 fn point(epoch: usize, value: &Value) -> HistoryPoint {
-    HistoryPoint {
-        epoch,
-        train_nrmse_percent: 100.0 * value.mean_square.sqrt(),
-    }
+    HistoryPoint { epoch, train_nrmse_percent: 100.0 * value.mean_square.sqrt() }
 }
 
 /// μ and D of theory.md (3.5). D is the largest curvature seen in each direction (Moré), so that a
@@ -113,11 +106,7 @@ struct Damping {
 
 impl Damping {
     fn new() -> Self {
-        Self {
-            mu: FIRST_DAMPING,
-            growth: 2.0,
-            scale: Vec::new(),
-        }
+        Self { mu: FIRST_DAMPING, growth: 2.0, scale: Vec::new() }
     }
 
     fn see(&mut self, slope: &Slope) {
@@ -161,12 +150,7 @@ impl Damping {
     }
 
     /// The damped step, kept within bounds, and the fall that the quadratic model foretells for it.
-    fn candidate(
-        &self,
-        objective: &Objective,
-        slope: &Slope,
-        parameters: &[f64],
-    ) -> Option<Candidate> {
+    fn candidate(&self, objective: &Objective, slope: &Slope, parameters: &[f64]) -> Option<Candidate> {
         let mut damped = slope.matrix.clone();
         for (index, scale) in self.scale.iter().enumerate() {
             damped.add_to_diagonal(index, self.mu * scale);
@@ -182,10 +166,7 @@ impl Damping {
                 .sum::<f64>();
         let mut candidate: Vec<f64> = parameters.iter().zip(&step).map(|(p, d)| p + d).collect();
         objective.layout().clamp(&mut candidate);
-        (foretold_fall > 0.0).then_some(Candidate {
-            parameters: candidate,
-            foretold_fall,
-        })
+        (foretold_fall > 0.0).then_some(Candidate { parameters: candidate, foretold_fall })
     }
 }
 

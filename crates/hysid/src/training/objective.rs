@@ -24,10 +24,7 @@ pub struct Regularisation {
 
 impl Default for Regularisation {
     fn default() -> Self {
-        Self {
-            ridge: 1e-5,
-            decay: 1e-6,
-        }
+        Self { ridge: 1e-5, decay: 1e-6 }
     }
 }
 
@@ -35,9 +32,7 @@ impl Regularisation {
     pub(crate) fn check(&self) -> Result<()> {
         for (name, value) in [("ridge", self.ridge), ("decay", self.decay)] {
             if !(0.0..=1e6).contains(&value) {
-                return Err(Error::Option(format!(
-                    "{name} {value} is not between 0 and 1e6"
-                )));
+                return Err(Error::Option(format!("{name} {value} is not between 0 and 1e6")));
             }
         }
         Ok(())
@@ -92,12 +87,9 @@ impl<'a> Objective<'a> {
         options: &FitOptions,
     ) -> Result<Self> {
         let used = || data.records().iter().filter(|record| record.scored() > 0);
-        let drives: Result<Vec<Drive>> = used()
-            .map(|record| scaling.drive(record, &architecture, options.rate))
-            .collect();
-        let targets: Vec<Vec<f64>> = used()
-            .map(|record| scaling.scaled_output(record.output()))
-            .collect();
+        let drives: Result<Vec<Drive>> =
+            used().map(|record| scaling.drive(record, &architecture, options.rate)).collect();
+        let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
         Ok(Self {
             architecture,
             layout: Layout::new(architecture),
@@ -125,9 +117,7 @@ impl<'a> Objective<'a> {
             for y in targets.iter_mut().flatten().filter(|y| !y.is_nan()) {
                 let (index, place) = (seen / run, seen % run);
                 // A fixed hash (splitmix) picks the place within each run.
-                let mut hash = (index as u64)
-                    .wrapping_add(1)
-                    .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+                let mut hash = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
                 hash = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
                 if place as u64 == (hash >> 33) % run as u64 {
                     rows += 1;
@@ -160,16 +150,9 @@ impl<'a> Objective<'a> {
     /// Shortest and longest span of time that the records tell of: a mean time step and the longest
     /// record; `None` without time.
     pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
-        let durations = self
-            .drives
-            .iter()
-            .map(|drive| drive.steps.iter().sum::<f64>());
+        let durations = self.drives.iter().map(|drive| drive.steps.iter().sum::<f64>());
         let longest = durations.clone().fold(0.0, f64::max);
-        let steps: usize = self
-            .drives
-            .iter()
-            .map(|drive| drive.steps.len().saturating_sub(1))
-            .sum();
+        let steps: usize = self.drives.iter().map(|drive| drive.steps.len().saturating_sub(1)).sum();
         let step = durations.sum::<f64>() / steps.max(1) as f64;
         (longest > 0.0).then_some((step, longest))
     }
@@ -193,9 +176,8 @@ impl<'a> Objective<'a> {
 
     pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Slope {
         let gram = self.sweep(parameters, Some(&value.solution.weights));
-        let (mut gradient, mut matrix) = self
-            .output_problem(&gram)
-            .linearise(&value.solution, parameters.len());
+        let (mut gradient, mut matrix) =
+            self.output_problem(&gram).linearise(&value.solution, parameters.len());
         for (index, weight) in self.weights(parameters) {
             gradient[index] += self.regularisation.decay * weight;
             matrix.add_to_diagonal(index, self.regularisation.decay);
@@ -204,17 +186,8 @@ impl<'a> Objective<'a> {
     }
 
     fn sweep(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
-        let columns = Columns {
-            architecture: &self.architecture,
-            parameters,
-            output,
-        };
-        Sweep {
-            columns,
-            drives: &self.drives,
-            targets: &self.targets,
-        }
-        .gram()
+        let columns = Columns { architecture: &self.architecture, parameters, output };
+        Sweep { columns, drives: &self.drives, targets: &self.targets }.gram()
     }
 
     fn output_problem<'g>(&self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
@@ -228,9 +201,6 @@ impl<'a> Objective<'a> {
     }
 
     fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
-        parameters
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| self.layout.is_weight(*index))
+        parameters.iter().enumerate().filter(|(index, _)| self.layout.is_weight(*index))
     }
 }

@@ -17,16 +17,12 @@ const TYPICAL_BETA: f64 = 1000.0;
 pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {
     let architecture = objective.architecture();
     let layout = objective.layout();
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(
-        seed ^ (start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15),
-    );
+    let mut generator =
+        Xoshiro256PlusPlus::seed_from_u64(seed ^ (start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let mut values = vec![0.0; layout.len()];
     let channels = architecture.channels();
     let first_further_input = 1 + usize::from(architecture.rate);
-    for (j, weights) in values[layout.stop_weights.clone()]
-        .chunks_exact_mut(channels)
-        .enumerate()
-    {
+    for (j, weights) in values[layout.stop_weights.clone()].chunks_exact_mut(channels).enumerate() {
         let place = (j as f64 + generator.random::<f64>()) / architecture.stops as f64;
         let threshold = SMALLEST_THRESHOLD.powf(1.0 - place);
         weights[0] = 1.0 / threshold;
@@ -41,11 +37,7 @@ pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64>
         *ln_beta = TYPICAL_BETA.ln() + normal(&mut generator);
     }
     for (c, weight) in values[layout.linear.clone()].iter_mut().enumerate() {
-        *weight = if c == 0 {
-            1.0
-        } else {
-            0.3 * normal(&mut generator)
-        };
+        *weight = if c == 0 { 1.0 } else { 0.3 * normal(&mut generator) };
     }
     if let Some((step, longest)) = objective.time_scales() {
         for (m, ln_tau) in values[layout.ln_tau.clone()].iter_mut().enumerate() {

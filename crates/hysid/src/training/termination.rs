@@ -21,10 +21,7 @@ pub enum Termination {
 impl Termination {
     /// True if more iterations would not have helped.
     pub fn is_converged(self) -> bool {
-        matches!(
-            self,
-            Self::Converged | Self::GradientVanished | Self::NoFurtherImprovement
-        )
+        matches!(self, Self::Converged | Self::GradientVanished | Self::NoFurtherImprovement)
     }
 }
 

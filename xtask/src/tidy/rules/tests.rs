@@ -16,10 +16,7 @@ fn set<const N: usize>(names: [&str; N]) -> BTreeSet<String> {
 #[test]
 fn a_violation_reads_path_line_what() {
     let found = clean_whitespace("a/b.rs", "fine\nbad ");
-    assert_eq!(
-        found[0].to_string(),
-        "a/b.rs:2: whitespace at the end of the line"
-    );
+    assert_eq!(found[0].to_string(), "a/b.rs:2: whitespace at the end of the line");
 }
 
 #[test]
@@ -89,7 +86,8 @@ fn impure_library_code_is_refused() {
 
 #[test]
 fn comments_strings_and_longer_words_do_not_make_the_library_impure() {
-    let text = "//! println!(\"{}\", x);\n#![forbid(unsafe_code)]\nlet s = \"unsafe\"; /* dbg! */\nlet fs = 1.0;\n";
+    let text =
+        "//! println!(\"{}\", x);\n#![forbid(unsafe_code)]\nlet s = \"unsafe\"; /* dbg! */\nlet fs = 1.0;\n";
     assert_eq!(pure_library(SOURCE, text), []);
 }
 
@@ -138,10 +136,7 @@ fn broken_links_are_refused() {
     assert_eq!(lines(found), [1, 3, 8, 9]);
     let found = links_lead_somewhere("README.md", "[bad](docs/nothing.md)", &paths);
     assert_eq!(lines(found), [1]);
-    assert_eq!(
-        links_lead_somewhere("benchmarks/notes.md", "[bad](nowhere.md)", &paths),
-        []
-    );
+    assert_eq!(links_lead_somewhere("benchmarks/notes.md", "[bad](nowhere.md)", &paths), []);
 }
 
 #[test]
@@ -149,10 +144,7 @@ fn a_version_unknown_to_the_changelog_is_refused() {
     let manifest = "[workspace.package]\nversion = \"0.2.0\"\n[dependencies]\nversion = \"9\"\n";
     let found = version_in_changelog(manifest, "# Changelog\n\n## 0.1.0\n");
     assert_eq!(found[0].path, "CHANGELOG.md");
-    assert_eq!(
-        version_in_changelog(manifest, "## 0.2.0 (2026-03-01)\n"),
-        []
-    );
+    assert_eq!(version_in_changelog(manifest, "## 0.2.0 (2026-03-01)\n"), []);
     assert_eq!(version_in_changelog(manifest, "## [0.2.0]\n"), []);
     assert_eq!(version_in_changelog(manifest, "## Unreleased\n"), []);
     assert_eq!(lines(version_in_changelog("", "## Unreleased\n")), [1]);
