@@ -35,6 +35,7 @@ pub mod metrics;
 pub mod model;
 pub mod network;
 pub mod operator;
+pub mod plant;
 pub mod rate;
 pub mod record;
 pub mod scaling;

@@ -145,7 +145,7 @@ impl Simulator {
     fn block<S: Simd>(&mut self, simd: S, steps: &Row, rows: usize, y: &mut Row) {
         self.memory.forward::<S>(&mut self.state, &self.u, steps, rows, &mut self.z);
         self.readout.tanh_layer(simd, &self.z, rows, &mut self.h);
-        self.readout.output::<S>(&self.output, &self.z, &self.h, y);
+        self.readout.output::<S>(&self.output, &self.z, &self.h, rows, y);
     }
 }
 

@@ -181,7 +181,7 @@ pub fn fit(
     let mut termination = best.descent.termination;
     if !watch.stopped() {
         let objective = Objective::new(data, &scaling, architecture, options)?;
-        let descent = watch.refit(&objective, best.start, best.descent.parameters.clone());
+        let descent = watch.refit(&objective, options.seed, best);
         network = descent.network(&architecture)?;
         termination = descent.termination;
         evaluations += descent.evaluations;
@@ -278,6 +278,9 @@ struct Watch<'a> {
     finished: Mutex<usize>,
 }
 
+/// Descents of the refit.
+const REFITS: usize = 2;
+
 /// Iterations of the refit that see every row.
 const LAST_EPOCHS_ON_ALL_ROWS: usize = 4;
 
@@ -301,25 +304,30 @@ impl Watch<'_> {
     }
 
     /// The winner on all data: thinned first if they are many, then on every row.
-    fn refit(&self, objective: &Objective, start: usize, parameters: Vec<f64>) -> Descent {
-        if objective.scored() <= self.options.thin {
-            return self.descend(objective, Phase::Refit, start, parameters);
-        }
-        let mut first = self.descend(&objective.thinned(self.options.thin), Phase::Refit, start, parameters);
-        if self.stopped() {
+    ///
+    /// It goes on from where it was judged, and once more from its random beginning, because data that
+    /// were held out may lie beyond a barrier from there; the lower objective wins.
+    fn refit(&self, objective: &Objective, seed: u64, best: &Judged) -> Descent {
+        let thinned = objective.thinned(self.options.thin);
+        let (onward, anew) = rayon::join(
+            || self.descend(&thinned, Phase::Refit, best.start, best.descent.parameters.clone()),
+            || self.descend(&thinned, Phase::Refit, best.start, start::random(&thinned, seed, best.start)),
+        );
+        let evaluations = onward.evaluations + anew.evaluations;
+        let mut first = if anew.objective < onward.objective { anew } else { onward };
+        first.evaluations = evaluations;
+        if objective.scored() == thinned.scored() || self.stopped() {
             return first;
         }
-        let last = levenberg_marquardt::descend(
-            objective,
-            first.parameters.clone(),
-            LAST_EPOCHS_ON_ALL_ROWS,
-            |epoch, nrmse| self.tell(Phase::Refit, start, self.options.epochs + epoch, nrmse, 0),
-        );
+        let parameters = first.parameters.clone();
+        let last =
+            levenberg_marquardt::descend(objective, parameters, LAST_EPOCHS_ON_ALL_ROWS, |epoch, nrmse| {
+                self.tell(Phase::Refit, best.start, self.options.epochs + epoch, nrmse, 0)
+            });
         let done = first.history.last().map_or(0, |point| point.epoch);
-        first
-            .history
-            .extend(last.history.iter().map(|point| HistoryPoint { epoch: done + point.epoch, ..*point }));
-        Descent { history: first.history, evaluations: first.evaluations + last.evaluations, ..last }
+        let on_all_rows = last.history.iter().skip(1);
+        first.history.extend(on_all_rows.map(|point| HistoryPoint { epoch: done + point.epoch, ..*point }));
+        Descent { history: first.history, evaluations: evaluations + last.evaluations, ..last }
     }
 
     fn tell(&self, phase: Phase, start: usize, epoch: usize, nrmse: f64, weight: usize) -> ControlFlow<()> {
@@ -328,7 +336,7 @@ impl Watch<'_> {
             return ControlFlow::Break(());
         }
         *finished += weight;
-        let all = (self.options.starts + 1) * self.options.epochs;
+        let all = (self.options.starts + REFITS) * self.options.epochs;
         let progress = Progress {
             phase,
             start,

@@ -113,25 +113,36 @@ impl WithSimd for Sweep<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Gram {
         let n = self.columns.count();
-        let mut gram = Gram::new(n);
-        let mut batch = Batch::new(n);
+        let mut gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n) };
         let mut workspace = Workspace::new(self.columns);
         for (drive, target) in self.drives.iter().zip(self.targets) {
-            workspace.record(simd, drive, target, |rows, columns| {
-                if batch.free() < rows {
-                    gram.add(simd, &mut batch);
-                }
-                batch.append(columns, rows);
-            });
+            workspace.record(simd, drive, target, &mut gathered);
         }
-        workspace.flush(simd, |rows, columns| {
-            if batch.free() < rows {
-                gram.add(simd, &mut batch);
-            }
-            batch.append(columns, rows);
-        });
-        gram.add(simd, &mut batch);
-        gram
+        workspace.flush(simd, &mut gathered);
+        gathered.gram.add(simd, &mut gathered.batch);
+        gathered.gram
+    }
+}
+
+/// Takes the columns of some rows. A trait and no closure, because a closure would not be compiled
+/// for the instruction set of the kernel that calls it.
+trait TakeRows {
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]);
+}
+
+/// Gathers rows into a Gram matrix.
+struct Gathered {
+    gram: Gram,
+    batch: Batch,
+}
+
+impl TakeRows for Gathered {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]) {
+        if self.batch.free() < rows {
+            self.gram.add(simd, &mut self.batch);
+        }
+        self.batch.append(columns, rows);
     }
 }
 
@@ -140,6 +151,16 @@ struct Rows {
     first: usize,
     wanted: usize,
     columns: Vec<Vec<f64>>,
+}
+
+impl TakeRows for Rows {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, _: S, rows: usize, columns: &[Row]) {
+        let wanted = &columns[self.first..self.first + self.wanted];
+        for (kept, column) in self.columns.iter_mut().zip(wanted) {
+            kept.extend_from_slice(&column[..rows]);
+        }
+    }
 }
 
 struct CollectRows<'a> {
@@ -154,16 +175,9 @@ impl WithSimd for CollectRows<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let kept = self.rows;
         let mut workspace = Workspace::new(self.columns);
-        let mut keep = |rows: usize, columns: &[Row]| {
-            let wanted = &columns[kept.first..kept.first + kept.wanted];
-            for (kept, column) in kept.columns.iter_mut().zip(wanted) {
-                kept.extend_from_slice(&column[..rows]);
-            }
-        };
-        workspace.record(simd, self.drive, self.target, &mut keep);
-        workspace.flush(simd, &mut keep);
+        workspace.record(simd, self.drive, self.target, self.rows);
+        workspace.flush(simd, self.rows);
     }
 }
 
@@ -238,13 +252,7 @@ impl<'a> Workspace<'a> {
 
     /// Runs through a record and hands on the columns of whole blocks of rows with a target.
     #[inline(always)]
-    fn record<S: Simd>(
-        &mut self,
-        simd: S,
-        drive: &Drive,
-        target: &[f64],
-        mut hand_on: impl FnMut(usize, &[Row]),
-    ) {
+    fn record<S: Simd>(&mut self, simd: S, drive: &Drive, target: &[f64], to: &mut impl TakeRows) {
         let mut state = self.memory.virgin();
         let mut sensitivity = self.memory.virgin_sensitivity();
         let mut steps = [0.0; BLOCK];
@@ -277,7 +285,7 @@ impl<'a> Workspace<'a> {
             if wanted == BLOCK && self.filled == 0 {
                 std::mem::swap(&mut self.block, &mut self.pending);
                 self.filled = BLOCK;
-                self.flush(simd, &mut hand_on);
+                self.flush(simd, to);
                 continue;
             }
             if wanted == 0 {
@@ -290,7 +298,7 @@ impl<'a> Workspace<'a> {
                 self.pending.copy_row(self.filled, &self.block, t, self.spec.output.is_some());
                 self.filled += 1;
                 if self.filled == BLOCK {
-                    self.flush(simd, &mut hand_on);
+                    self.flush(simd, to);
                 }
             }
         }
@@ -298,7 +306,7 @@ impl<'a> Workspace<'a> {
 
     /// Computes and hands on the columns of the pending rows.
     #[inline(always)]
-    fn flush<S: Simd>(&mut self, simd: S, mut hand_on: impl FnMut(usize, &[Row])) {
+    fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeRows) {
         let rows = std::mem::take(&mut self.filled);
         if rows == 0 {
             return;
@@ -311,7 +319,7 @@ impl<'a> Workspace<'a> {
         if let Some(output) = self.spec.output {
             self.jacobian::<S>(output);
         }
-        hand_on(rows, &self.columns);
+        to.take(simd, rows, &self.columns);
     }
 
     /// Columns of the Jacobian of the pending rows, theory.md (2.11).
@@ -345,7 +353,8 @@ impl<'a> Workspace<'a> {
         let (stops, relaxation) = rest.split_at(self.spec.architecture.stops);
         let channels = u.len();
         for (k, column) in jacobian[self.layout.stop_weights.clone()].iter_mut().enumerate() {
-            product(&stops[k / channels], &slopes.weights[k], column);
+            let (j, c) = (k / channels, k % channels);
+            product(&stops[j], slopes.by_weight(stops.len(), channels, j, c), column);
         }
         for (j, column) in jacobian[self.layout.ln_beta.clone()].iter_mut().enumerate() {
             product(&stops[j], &slopes.ln_beta[j], column);

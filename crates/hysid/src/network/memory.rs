@@ -27,7 +27,7 @@ const LANES: usize = 8;
 type Lanes = [f64; LANES];
 
 /// Values of a group over a block, time-major.
-type Tile = [Lanes; BLOCK];
+type Tile = [[Lanes; 1]; BLOCK];
 
 /// Largest magnitude of a scaled input. Beyond it, far outside anything trained on, the input is
 /// taken as this, so that no sum of products overflows whatever the parameters.
@@ -76,7 +76,7 @@ pub(crate) struct Sensitivity {
 /// Outputs of the memory layer over a block, and their derivatives, each neuron-major.
 #[derive(Debug, Clone)]
 pub(crate) struct MemorySlopes {
-    /// `∂z_j/∂w_jc` at `j * channels + c`.
+    /// `∂z_j/∂w_jc`, see [`MemorySlopes::by_weight`].
     pub weights: Vec<Row>,
     /// `∂z_j/∂ln β_j`; empty without deterioration.
     pub ln_beta: Vec<Row>,
@@ -91,6 +91,13 @@ impl MemorySlopes {
             ln_beta: vec![[0.0; BLOCK]; if a.deterioration { a.stops } else { 0 }],
             ln_tau: vec![[0.0; BLOCK]; a.relaxation_neurons()],
         }
+    }
+
+    /// `∂z_j/∂w_jc`: a group's rows stand together, by channel, then by stop.
+    pub fn by_weight(&self, stops: usize, channels: usize, j: usize, c: usize) -> &Row {
+        let first = j - j % LANES;
+        let live = (stops - first).min(LANES);
+        &self.weights[first * channels + c * live + j % LANES]
     }
 }
 
@@ -184,7 +191,7 @@ impl MemoryLayer {
                 advance::<S, 1, false>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
             }
         }
-        self.run_linear::<S>(u, linear);
+        self.run_linear::<S>(u, rows, linear);
         self.relax(state, None, u, steps, rows, stress, &mut []);
         self.remember(state, u, rows);
     }
@@ -221,7 +228,7 @@ impl MemoryLayer {
             let ln_beta = slopes.ln_beta.get_mut(first..).unwrap_or(&mut []);
             advance_with_slopes::<S>(group, memory, u, rows, &mut stops[first..], weights, ln_beta);
         }
-        self.run_linear::<S>(u, linear);
+        self.run_linear::<S>(u, rows, linear);
         self.relax(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
         self.remember(state, u, rows);
     }
@@ -257,10 +264,10 @@ impl MemoryLayer {
     }
 
     #[inline(always)]
-    fn run_linear<S: Simd>(&self, u: &[Row], z: &mut [Row]) {
+    fn run_linear<S: Simd>(&self, u: &[Row], rows: usize, z: &mut [Row]) {
         if let Some(weights) = &self.linear {
-            let z = &mut z[0];
-            *z = [0.0; BLOCK];
+            let z = &mut z[0][..whole_lanes(rows)];
+            z.fill(0.0);
             for (&weight, u) in weights.iter().zip(u) {
                 for (z, &u) in z.iter_mut().zip(u) {
                     *z = multiply_add::<S>(weight, u, *z);
@@ -332,7 +339,7 @@ fn drive<S: Simd>(group: &Group, u: &[Row], t: usize, l: usize) -> f64 {
 
 /// Fills the tiles of `G` groups with their inputs `v`.
 #[inline(always)]
-fn drive_tiles<S: Simd, const G: usize>(groups: &[Group], u: &[Row], tile: &mut [[Lanes; G]; BLOCK]) {
+fn drive_tiles<S: Simd, const G: usize>(groups: &[Group], u: &[Row], tile: &mut [[Lanes; G]]) {
     for g in 0..G {
         let group = &groups[g];
         let first = &group.weights[0];
@@ -362,7 +369,8 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
     z: &mut [Row],
 ) {
     let mut tile = [[[0.0; LANES]; G]; BLOCK];
-    drive_tiles::<S, G>(groups, u, &mut tile);
+    let tile = &mut tile[..whole_lanes(rows)];
+    drive_tiles::<S, G>(groups, u, tile);
     let inverse_beta: [Lanes; G] = std::array::from_fn(|g| groups[g].inverse_beta);
     let mut plays: [Lanes; G] = std::array::from_fn(|g| play[g]);
     let mut slips: [Lanes; G] = std::array::from_fn(|g| slip[g]);
@@ -386,24 +394,25 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
     slip.copy_from_slice(&slips);
     for g in 0..G {
         let live = z.len().saturating_sub(g * LANES).min(LANES);
-        turn(&tile, g, &mut z[g * LANES..g * LANES + live]);
+        turn(tile, g, &mut z[g * LANES..g * LANES + live]);
     }
+}
+
+/// Rows of whole vectors that hold `rows` rows. Loops run so far and no further: a loop over a whole
+/// block has a length that the compiler knows, and it would unroll the kernel out of the instruction
+/// cache.
+#[inline(always)]
+pub(crate) fn whole_lanes(rows: usize) -> usize {
+    rows.next_multiple_of(LANES).min(BLOCK)
 }
 
 /// Turns a group's tile from time-major to neuron-major.
 #[inline(always)]
-fn turn<const G: usize>(tile: &[[Lanes; G]; BLOCK], g: usize, rows: &mut [Row]) {
-    if let Ok(rows) = <&mut [Row; LANES]>::try_from(&mut *rows) {
-        for t in 0..BLOCK {
-            for l in 0..LANES {
-                rows[l][t] = tile[t][g][l];
-            }
-        }
-    } else {
+fn turn<const G: usize>(tile: &[[Lanes; G]], g: usize, rows: &mut [Row]) {
+    for (chunk, tile) in tile.as_chunks::<LANES>().0.iter().enumerate() {
         for (l, row) in rows.iter_mut().enumerate() {
-            for (value, tile) in row.iter_mut().zip(tile) {
-                *value = tile[g][l];
-            }
+            let row = &mut row.as_chunks_mut::<LANES>().0[chunk];
+            *row = std::array::from_fn(|t| tile[t][g][l]);
         }
     }
 }
@@ -428,14 +437,13 @@ fn advance_with_slopes<S: Simd>(
     weights: &mut [Row],
     ln_beta: &mut [Row],
 ) {
-    let channels = group.weights.len();
     let live = z.len().min(LANES);
-    let mut output: Tile = [[0.0; LANES]; BLOCK];
-    let mut by_ln_beta: Tile = [[0.0; LANES]; BLOCK];
-    let mut strength: Tile = [[0.0; LANES]; BLOCK];
-    let mut wear: Tile = [[0.0; LANES]; BLOCK];
-    let mut slid: [[bool; LANES]; BLOCK] = [[false; LANES]; BLOCK];
-    let mut direction: Tile = [[0.0; LANES]; BLOCK];
+    let reached = whole_lanes(rows);
+    let mut output: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut by_ln_beta: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut strength: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut wear: Tile = [[[0.0; LANES]]; BLOCK];
+    let mut moved: Tile = [[[0.0; LANES]]; BLOCK];
     for t in 0..rows {
         for l in 0..LANES {
             let v = drive::<S>(group, u, t, l);
@@ -447,46 +455,32 @@ fn advance_with_slopes<S: Simd>(
             let left = deteriorating_stop::remaining_strength(slip, group.inverse_beta[l]);
             let elongation = stop::elongation(v, after);
             let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
-            output[t][l] = elongation * left;
-            strength[t][l] = left;
-            wear[t][l] = wears;
-            by_ln_beta[t][l] = wears * slip;
-            slid[t][l] = after != before;
-            direction[t][l] = if after > before { 1.0 } else { -1.0 };
+            output[t][0][l] = elongation * left;
+            strength[t][0][l] = left;
+            wear[t][0][l] = wears;
+            by_ln_beta[t][0][l] = wears * slip;
+            moved[t][0][l] = after - before;
         }
     }
-    for (l, row) in z[..live].iter_mut().enumerate() {
-        for (value, tile) in row.iter_mut().zip(&output) {
-            *value = tile[l];
-        }
-    }
+    turn(&output[..reached], 0, &mut z[..live]);
     if !ln_beta.is_empty() {
-        for (l, row) in ln_beta[..live].iter_mut().enumerate() {
-            for (value, tile) in row.iter_mut().zip(&by_ln_beta) {
-                *value = tile[l];
-            }
-        }
+        turn(&by_ln_beta[..reached], 0, &mut ln_beta[..live]);
     }
-    let mut slope: Tile = [[0.0; LANES]; BLOCK];
-    for c in 0..channels {
+    let mut slope: Tile = [[[0.0; LANES]]; BLOCK];
+    for (c, u) in u.iter().enumerate() {
         let mut play_slope = memory.play_slope[c];
         let mut slip_slope = memory.slip_slope[c];
-        for t in 0..rows {
-            let u = u[c][t];
+        for (t, &u) in u[..rows].iter().enumerate() {
             for l in 0..LANES {
                 let before = play_slope[l];
-                let after = if slid[t][l] { u } else { before };
+                let after = if moved[t][0][l] != 0.0 { u } else { before };
                 play_slope[l] = after;
-                slip_slope[l] += direction[t][l] * (after - before);
-                slope[t][l] = strength[t][l] * (u - after) - wear[t][l] * slip_slope[l];
+                slip_slope[l] += if moved[t][0][l] > 0.0 { after - before } else { before - after };
+                slope[t][0][l] = strength[t][0][l] * (u - after) - wear[t][0][l] * slip_slope[l];
             }
         }
         memory.play_slope[c] = play_slope;
         memory.slip_slope[c] = slip_slope;
-        for l in 0..live {
-            for (value, tile) in weights[l * channels + c].iter_mut().zip(&slope) {
-                *value = tile[l];
-            }
-        }
+        turn(&slope[..reached], 0, &mut weights[c * live..(c + 1) * live]);
     }
 }

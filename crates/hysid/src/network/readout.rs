@@ -9,7 +9,7 @@
 
 use pulp::Simd;
 
-use crate::network::memory::{BLOCK, Row};
+use crate::network::memory::{BLOCK, Row, whole_lanes};
 use crate::network::tanh::tanh;
 use crate::network::{Architecture, Layout};
 use crate::simd::multiply_add;
@@ -83,11 +83,12 @@ impl Readout {
         }
     }
 
-    /// The output of a block, in the scaled unit.
+    /// The output of the first `rows` rows of a block, in the scaled unit.
     #[inline(always)]
-    pub fn output<S: Simd>(&self, output: &[f64], z: &[Row], h: &[Row], y: &mut Row) {
+    pub fn output<S: Simd>(&self, output: &[f64], z: &[Row], h: &[Row], rows: usize, y: &mut Row) {
         let (constant, hidden, direct) = self.split(output);
-        *y = [constant; BLOCK];
+        let y = &mut y[..whole_lanes(rows)];
+        y.fill(constant);
         for (&c, h) in hidden.iter().zip(h) {
             accumulate::<S>(c, h, y);
         }
@@ -110,7 +111,7 @@ impl Readout {
 
 /// `y += factor * x`, row by row.
 #[inline(always)]
-pub(crate) fn accumulate<S: Simd>(factor: f64, x: &Row, y: &mut Row) {
+pub(crate) fn accumulate<S: Simd>(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = multiply_add::<S>(factor, x, *y);
     }

@@ -27,6 +27,8 @@ pub struct Descent {
     pub parameters: Vec<f64>,
     /// Their output weights.
     pub output: Vec<f64>,
+    /// The objective there, theory.md (3.1).
+    pub objective: f64,
     /// Error after each iteration.
     pub history: Vec<HistoryPoint>,
     /// Why it ended.
@@ -53,6 +55,7 @@ pub fn descend(
     let mut descent = Descent {
         output: value.output_weights().to_vec(),
         parameters,
+        objective: value.objective,
         history: vec![point(0, &value)],
         termination: Termination::EpochsUsed,
         evaluations: 1,
@@ -77,6 +80,7 @@ pub fn descend(
         descent.parameters = parameters;
         value = better;
         descent.output.copy_from_slice(value.output_weights());
+        descent.objective = value.objective;
         let point = point(epoch, &value);
         descent.history.push(point);
         if told(epoch, point.train_nrmse_percent).is_break() {

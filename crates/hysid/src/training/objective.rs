@@ -24,7 +24,7 @@ pub struct Regularisation {
 
 impl Default for Regularisation {
     fn default() -> Self {
-        Self { ridge: 1e-5, decay: 1e-6 }
+        Self { ridge: 1e-6, decay: 1e-7 }
     }
 }
 

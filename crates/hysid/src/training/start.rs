@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::training::objective::Objective;
 
 /// Thresholds start between this share of the largest input and the whole of it.
-const SMALLEST_THRESHOLD: f64 = 0.02;
+const SMALLEST_THRESHOLD: f64 = 0.01;
 
 /// β starts here, times or divided by about e.
 const TYPICAL_BETA: f64 = 1000.0;
