@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::warning::Significant;
+
 /// Result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -94,7 +96,7 @@ pub enum DataProblem {
         now: f64,
     },
     /// A rate that overflows, from time steps next to nothing.
-    #[error("the rate here is {0:e}: the time step is too small (is the time column right?)")]
+    #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
     /// A rate was asked for and there is no time.
     #[error("there is no time column to take the rate from (use rate `none`)")]
@@ -114,10 +116,10 @@ pub enum DataProblem {
         found: usize,
     },
     /// The input has one value throughout.
-    #[error("is constant ({0}): nothing moves, so there is nothing to identify")]
+    #[error("is constant ({}): nothing moves, so there is nothing to identify", Significant(*.0))]
     ConstantInput(f64),
     /// The output has one value throughout.
-    #[error("is constant ({0}): there is nothing to identify")]
+    #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantOutput(f64),
     /// The output is blank throughout.
     #[error("is blank in every row: there is nothing to compare with")]

@@ -12,6 +12,7 @@ mod memory;
 mod parameters;
 mod readout;
 mod tanh;
+mod transpose;
 
 pub use architecture::{Architecture, Family, Sizes};
 pub use gradient::{Drive, Linearised};
@@ -143,7 +144,7 @@ impl Simulator {
 
     #[inline(always)]
     fn block<S: Simd>(&mut self, simd: S, steps: &Row, rows: usize, y: &mut Row) {
-        self.memory.forward::<S>(&mut self.state, &self.u, steps, rows, &mut self.z);
+        self.memory.forward(simd, &mut self.state, &self.u, steps, rows, &mut self.z);
         self.readout.tanh_layer(simd, &self.z, rows, &mut self.h);
         self.readout.output::<S>(&self.output, &self.z, &self.h, rows, y);
     }

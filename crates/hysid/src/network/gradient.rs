@@ -269,7 +269,8 @@ impl<'a> Workspace<'a> {
             self.block.target[..rows].copy_from_slice(&target[start..start + rows]);
             let Block { u, z, slopes, .. } = &mut self.block;
             if self.spec.output.is_some() {
-                self.memory.forward_with_slopes::<S>(
+                self.memory.forward_with_slopes(
+                    simd,
                     &mut state,
                     &mut sensitivity,
                     u,
@@ -279,7 +280,7 @@ impl<'a> Workspace<'a> {
                     slopes,
                 );
             } else {
-                self.memory.forward::<S>(&mut state, u, &steps, rows, z);
+                self.memory.forward(simd, &mut state, u, &steps, rows, z);
             }
             let wanted = self.block.target[..rows].iter().filter(|y| !y.is_nan()).count();
             if wanted == BLOCK && self.filled == 0 {

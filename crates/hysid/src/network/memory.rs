@@ -10,6 +10,7 @@
 
 use pulp::Simd;
 
+use crate::network::transpose::transpose;
 use crate::network::{Architecture, Layout};
 use crate::operator::{deteriorating_stop, play, relaxation, stop};
 use crate::simd::multiply_add;
@@ -162,6 +163,7 @@ impl MemoryLayer {
     #[inline(always)]
     pub fn forward<S: Simd>(
         &self,
+        simd: S,
         state: &mut MemoryState,
         u: &[Row],
         steps: &Row,
@@ -176,9 +178,9 @@ impl MemoryLayer {
             let groups = &self.groups[done..done + 2];
             let (play, slip) = (&mut state.play[done..done + 2], &mut state.slip[done..done + 2]);
             if self.deteriorating {
-                advance::<S, 2, true>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+                advance::<S, 2, true>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
             } else {
-                advance::<S, 2, false>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+                advance::<S, 2, false>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
             }
             done += 2;
         }
@@ -186,9 +188,9 @@ impl MemoryLayer {
             let groups = &self.groups[done..];
             let (play, slip) = (&mut state.play[done..], &mut state.slip[done..]);
             if self.deteriorating {
-                advance::<S, 1, true>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+                advance::<S, 1, true>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
             } else {
-                advance::<S, 1, false>(groups, play, slip, u, rows, &mut stops[done * LANES..]);
+                advance::<S, 1, false>(simd, groups, play, slip, u, rows, &mut stops[done * LANES..]);
             }
         }
         self.run_linear::<S>(u, rows, linear);
@@ -202,6 +204,7 @@ impl MemoryLayer {
     #[allow(clippy::too_many_arguments)]
     pub fn forward_with_slopes<S: Simd>(
         &self,
+        simd: S,
         state: &mut MemoryState,
         sensitivity: &mut Sensitivity,
         u: &[Row],
@@ -226,7 +229,7 @@ impl MemoryLayer {
             };
             let weights = &mut slopes.weights[first * self.channels..];
             let ln_beta = slopes.ln_beta.get_mut(first..).unwrap_or(&mut []);
-            advance_with_slopes::<S>(group, memory, u, rows, &mut stops[first..], weights, ln_beta);
+            advance_with_slopes(simd, group, memory, u, rows, &mut stops[first..], weights, ln_beta);
         }
         self.run_linear::<S>(u, rows, linear);
         self.relax(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
@@ -327,40 +330,22 @@ impl MemoryLayer {
     }
 }
 
-/// Input of each stop of a group: `v = w·u`, one rounding order for every kernel.
+/// Input of each stop of a group at row `t`: `v = w·u`, one rounding order for every kernel.
 #[inline(always)]
-fn drive<S: Simd>(group: &Group, u: &[Row], t: usize, l: usize) -> f64 {
-    let mut v = group.weights[0][l] * u[0][t];
+fn drive<S: Simd>(group: &Group, u: &[Row], t: usize) -> Lanes {
+    let mut v: Lanes = std::array::from_fn(|l| group.weights[0][l] * u[0][t]);
     for (weights, u) in group.weights[1..].iter().zip(&u[1..]) {
-        v = multiply_add::<S>(weights[l], u[t], v);
+        for l in 0..LANES {
+            v[l] = multiply_add::<S>(weights[l], u[t], v[l]);
+        }
     }
     v
-}
-
-/// Fills the tiles of `G` groups with their inputs `v`.
-#[inline(always)]
-fn drive_tiles<S: Simd, const G: usize>(groups: &[Group], u: &[Row], tile: &mut [[Lanes; G]]) {
-    for g in 0..G {
-        let group = &groups[g];
-        let first = &group.weights[0];
-        for (tile, &u) in tile.iter_mut().zip(&u[0]) {
-            for l in 0..LANES {
-                tile[g][l] = first[l] * u;
-            }
-        }
-        for (weights, u) in group.weights[1..].iter().zip(&u[1..]) {
-            for (tile, &u) in tile.iter_mut().zip(u) {
-                for l in 0..LANES {
-                    tile[g][l] = multiply_add::<S>(weights[l], u, tile[g][l]);
-                }
-            }
-        }
-    }
 }
 
 /// Advances `G` groups of stops through a block.
 #[inline(always)]
 fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
+    simd: S,
     groups: &[Group],
     play: &mut [Lanes],
     slip: &mut [Lanes],
@@ -370,14 +355,14 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
 ) {
     let mut tile = [[[0.0; LANES]; G]; BLOCK];
     let tile = &mut tile[..whole_lanes(rows)];
-    drive_tiles::<S, G>(groups, u, tile);
     let inverse_beta: [Lanes; G] = std::array::from_fn(|g| groups[g].inverse_beta);
     let mut plays: [Lanes; G] = std::array::from_fn(|g| play[g]);
     let mut slips: [Lanes; G] = std::array::from_fn(|g| slip[g]);
-    for tile in &mut tile[..rows] {
+    for (t, tile) in tile[..rows].iter_mut().enumerate() {
         for g in 0..G {
+            let v = drive::<S>(&groups[g], u, t);
             for l in 0..LANES {
-                let v = tile[g][l];
+                let v = v[l];
                 let before = plays[g][l];
                 let after = play::follow(before, v, 1.0);
                 plays[g][l] = after;
@@ -394,7 +379,7 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
     slip.copy_from_slice(&slips);
     for g in 0..G {
         let live = z.len().saturating_sub(g * LANES).min(LANES);
-        turn(tile, g, &mut z[g * LANES..g * LANES + live]);
+        turn(simd, tile, g, &mut z[g * LANES..g * LANES + live]);
     }
 }
 
@@ -408,12 +393,10 @@ pub(crate) fn whole_lanes(rows: usize) -> usize {
 
 /// Turns a group's tile from time-major to neuron-major.
 #[inline(always)]
-fn turn<const G: usize>(tile: &[[Lanes; G]], g: usize, rows: &mut [Row]) {
+fn turn<S: Simd, const G: usize>(simd: S, tile: &[[Lanes; G]], g: usize, rows: &mut [Row]) {
     for (chunk, tile) in tile.as_chunks::<LANES>().0.iter().enumerate() {
-        for (l, row) in rows.iter_mut().enumerate() {
-            let row = &mut row.as_chunks_mut::<LANES>().0[chunk];
-            *row = std::array::from_fn(|t| tile[t][g][l]);
-        }
+        let group = std::array::from_fn(|t| tile[t][g]);
+        transpose(simd, &group, rows.iter_mut().map(|row| &mut row.as_chunks_mut::<LANES>().0[chunk]));
     }
 }
 
@@ -429,6 +412,7 @@ struct StopMemory<'a> {
 /// sample counts as sticking.
 #[inline(always)]
 fn advance_with_slopes<S: Simd>(
+    simd: S,
     group: &Group,
     memory: StopMemory,
     u: &[Row],
@@ -445,8 +429,9 @@ fn advance_with_slopes<S: Simd>(
     let mut wear: Tile = [[[0.0; LANES]]; BLOCK];
     let mut moved: Tile = [[[0.0; LANES]]; BLOCK];
     for t in 0..rows {
+        let v = drive::<S>(group, u, t);
         for l in 0..LANES {
-            let v = drive::<S>(group, u, t, l);
+            let v = v[l];
             let before = memory.play[l];
             let after = play::follow(before, v, 1.0);
             memory.play[l] = after;
@@ -462,9 +447,9 @@ fn advance_with_slopes<S: Simd>(
             moved[t][0][l] = after - before;
         }
     }
-    turn(&output[..reached], 0, &mut z[..live]);
+    turn(simd, &output[..reached], 0, &mut z[..live]);
     if !ln_beta.is_empty() {
-        turn(&by_ln_beta[..reached], 0, &mut ln_beta[..live]);
+        turn(simd, &by_ln_beta[..reached], 0, &mut ln_beta[..live]);
     }
     let mut slope: Tile = [[[0.0; LANES]]; BLOCK];
     for (c, u) in u.iter().enumerate() {
@@ -481,6 +466,6 @@ fn advance_with_slopes<S: Simd>(
         }
         memory.play_slope[c] = play_slope;
         memory.slip_slope[c] = slip_slope;
-        turn(&slope[..reached], 0, &mut weights[c * live..(c + 1) * live]);
+        turn(simd, &slope[..reached], 0, &mut weights[c * live..(c + 1) * live]);
     }
 }

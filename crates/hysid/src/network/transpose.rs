@@ -1,0 +1,98 @@
+//! Transposition of eight by eight numbers, between time-major and neuron-major order.
+
+use std::array::from_fn;
+
+use pulp::Simd;
+
+/// Writes the first columns of `rows` to `columns`, as many as there are, by shuffles between registers
+/// where the machine has them.
+///
+/// Left to itself, the compiler writes the generic form with gathers and scatters under AVX-512, and a
+/// simulation takes half as long again.
+#[inline(always)]
+pub(crate) fn transpose<'a, S: Simd>(
+    simd: S,
+    rows: &[[f64; 8]; 8],
+    columns: impl Iterator<Item = &'a mut [f64; 8]>,
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V4>() {
+        let turned = by_shuffles(*simd, rows);
+        for (column, turned) in columns.zip(turned) {
+            // Stored as a vector, which the compiler does not take apart again.
+            pulp::x86::V4::as_mut_simd_f64s(column).0[0] = pulp::cast(turned);
+        }
+        return;
+    }
+    let _ = simd;
+    for (index, column) in columns.enumerate() {
+        *column = from_fn(|row| rows[row][index]);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn by_shuffles(simd: pulp::x86::V4, rows: &[[f64; 8]; 8]) -> [std::arch::x86_64::__m512d; 8] {
+    use std::arch::x86_64::__m512d;
+    const EVEN: i32 = 0b10_00_10_00;
+    const ODD: i32 = 0b11_01_11_01;
+    let avx = simd.avx512f;
+    let r: [__m512d; 8] = from_fn(|k| pulp::cast(rows[k]));
+    // Pairs of rows: four columns of two rows in each, even columns apart from odd ones.
+    let mut turned = [r[0]; 8];
+    for parity in 0..2 {
+        let pair: [__m512d; 4] = from_fn(|k| {
+            let (upper, lower) = (r[2 * k], r[2 * k + 1]);
+            if parity == 0 {
+                avx._mm512_unpacklo_pd(upper, lower)
+            } else {
+                avx._mm512_unpackhi_pd(upper, lower)
+            }
+        });
+        let top_even = avx._mm512_shuffle_f64x2::<EVEN>(pair[0], pair[1]);
+        let top_odd = avx._mm512_shuffle_f64x2::<ODD>(pair[0], pair[1]);
+        let bottom_even = avx._mm512_shuffle_f64x2::<EVEN>(pair[2], pair[3]);
+        let bottom_odd = avx._mm512_shuffle_f64x2::<ODD>(pair[2], pair[3]);
+        turned[parity] = avx._mm512_shuffle_f64x2::<EVEN>(top_even, bottom_even);
+        turned[parity + 2] = avx._mm512_shuffle_f64x2::<EVEN>(top_odd, bottom_odd);
+        turned[parity + 4] = avx._mm512_shuffle_f64x2::<ODD>(top_even, bottom_even);
+        turned[parity + 6] = avx._mm512_shuffle_f64x2::<ODD>(top_odd, bottom_odd);
+    }
+    turned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd;
+
+    struct Transpose([[f64; 8]; 8], usize);
+
+    impl pulp::WithSimd for Transpose {
+        type Output = [[f64; 8]; 8];
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let mut columns = [[f64::NAN; 8]; 8];
+            transpose(simd, &self.0, columns.iter_mut().take(self.1));
+            columns
+        }
+    }
+
+    #[test]
+    fn rows_become_columns() {
+        let rows: [[f64; 8]; 8] = from_fn(|i| from_fn(|j| (10 * i + j) as f64));
+        for wanted in [8, 3] {
+            for turned in [
+                simd::run(Transpose(rows, wanted)),
+                pulp::WithSimd::with_simd(Transpose(rows, wanted), pulp::Scalar::new()),
+            ] {
+                for (j, column) in turned.iter().enumerate() {
+                    for (i, value) in column.iter().enumerate() {
+                        let written = j < wanted;
+                        assert!(if written { *value == rows[i][j] } else { value.is_nan() });
+                    }
+                }
+            }
+        }
+    }
+}
