@@ -46,3 +46,8 @@ pub mod turning_points;
 pub mod warning;
 
 pub use error::{Error, Result};
+
+/// The examples of the README, compiled and run by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

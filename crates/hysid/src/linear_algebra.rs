@@ -274,7 +274,8 @@ mod tests {
     #[test]
     fn cholesky_solves_and_refuses() {
         let n = 37;
-        let entry = |i: usize, j: usize| (0..60).map(|row| value(row, i) * value(row, j)).sum::<f64>();
+        let product = |i: usize, j: usize| (0..60).map(|row| value(row, i) * value(row, j)).sum::<f64>();
+        let entry = |i: usize, j: usize| product(i, j) + if i == j { 3.0 } else { 0.0 };
         let matrix = Symmetric::from_fn(n, entry);
         let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * exact[j]).sum()).collect();

@@ -30,6 +30,7 @@ pub struct Model {
 
 /// Smallest and largest values seen in training, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TrainedRanges {
     /// Of each input.
     pub inputs: Vec<(f64, f64)>,
@@ -41,6 +42,7 @@ pub struct TrainedRanges {
 
 /// How a model came about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// Name of the trainer.
     pub trainer: String,
@@ -270,7 +272,7 @@ impl Stepper<'_> {
             Some((before, _)) => time - before,
             None => 0.0,
         };
-        if self.model.needs_time() && self.last.is_some() && !(elapsed > 0.0) {
+        if self.model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
             return Err(Error::Option(format!("time {time} does not come after the last sample's")));
         }
         let mut u = self.u.iter_mut();

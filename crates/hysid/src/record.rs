@@ -152,6 +152,7 @@ impl Record {
 
 /// Names of the columns, as the user wrote them.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ColumnNames {
     /// The time column, if there is one.
     pub time: Option<String>,

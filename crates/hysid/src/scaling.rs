@@ -9,6 +9,7 @@ use crate::record::{Dataset, Record};
 
 /// Scale factors, found on the training data and stored in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Scaling {
     /// Largest magnitude of each input in training, in its unit: 1 in scaled units.
     pub inputs: Vec<f64>,

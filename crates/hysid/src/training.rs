@@ -29,6 +29,9 @@ pub use termination::Termination;
 /// Fewest rows with an output that a model is identified from.
 pub const FEWEST_ROWS: usize = 10;
 
+/// Most iterations of a start.
+const MOST_EPOCHS: usize = 1_000_000;
+
 /// What the user can choose; every field has the name of its command-line option.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitOptions {
@@ -187,6 +190,9 @@ pub fn fit(
         evaluations += descent.evaluations;
         runs.push(Judged::refit(best.start, descent));
     }
+    if watch.stopped() {
+        termination = Termination::Stopped;
+    }
     let provenance = Provenance {
         trainer: "levenberg-marquardt".into(),
         options: options.clone(),
@@ -209,6 +215,9 @@ fn architecture(data: &Dataset, options: &FitOptions) -> Result<Architecture> {
     }
     if options.starts == 0 || options.starts > 10_000 {
         return Err(Error::Option(format!("{} starts: choose 1 to 10000", options.starts)));
+    }
+    if options.epochs > MOST_EPOCHS {
+        return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", options.epochs)));
     }
     options.regularisation.check()?;
     let inputs = data.names().inputs.len();

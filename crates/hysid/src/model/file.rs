@@ -160,6 +160,14 @@ pub(super) fn read(text: &str) -> Result<Model> {
 }
 
 fn assemble(file: File) -> Result<Model> {
+    file.architecture.check()?;
+    let (channels, run) = (file.architecture.channels(), 1 + file.architecture.memory_neurons());
+    if file.memory.stops.iter().any(|stop| stop.weights.len() != channels) {
+        return Err(Error::Option(format!("not every stop has {channels} weights")));
+    }
+    if file.readout.hidden.iter().any(|neuron| neuron.len() != run) {
+        return Err(Error::Option(format!("not every hidden neuron has {run} weights")));
+    }
     let layout = Layout::new(file.architecture);
     let mut parameters = Vec::with_capacity(layout.len());
     parameters.extend(file.memory.stops.iter().flat_map(|stop| &stop.weights));

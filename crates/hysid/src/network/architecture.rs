@@ -83,6 +83,7 @@ impl Default for Sizes {
 
 /// The parts of a network of the family, theory.md (2.1) to (2.6).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Architecture {
     /// Input channels, without the rate.
     pub inputs: usize,
@@ -107,6 +108,9 @@ pub struct Architecture {
 /// Largest number of neurons of one kind.
 const MOST_NEURONS: usize = 1000;
 
+/// Largest number of input channels.
+const MOST_INPUTS: usize = 100;
+
 impl Architecture {
     /// The architecture of a family, for `inputs` channels, with or without a rate, with or without
     /// time (without time there is nothing to relax in).
@@ -122,12 +126,6 @@ impl Architecture {
                 family.name()
             )));
         }
-        if inputs > 100 {
-            return Err(Error::Option(format!("{inputs} inputs are too many: at most 100")));
-        }
-        if sizes.stops == 0 {
-            return Err(Error::Option("a network needs at least one stop".into()));
-        }
         if neural && sizes.hidden == 0 {
             return Err(Error::Option(format!(
                 "{} needs at least one hidden neuron (pnn and gpnn have none)",
@@ -135,16 +133,7 @@ impl Architecture {
             )));
         }
         let plus = family == Family::XpnnPlus;
-        for (count, kind) in [
-            (sizes.stops, "stops"),
-            (sizes.hidden, "hidden neurons"),
-            (sizes.relaxation, "relaxation neurons"),
-        ] {
-            if count > MOST_NEURONS {
-                return Err(Error::Option(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
-            }
-        }
-        Ok(Self {
+        let architecture = Self {
             inputs,
             rate: rate && family.uses_rate(),
             stops: sizes.stops,
@@ -154,7 +143,30 @@ impl Architecture {
             hidden: if neural { sizes.hidden } else { 0 },
             direct: plus,
             constant: true,
-        })
+        };
+        architecture.check()?;
+        Ok(architecture)
+    }
+
+    /// Refuses numbers of parts that make no network, or one beyond reason.
+    ///
+    /// # Errors
+    /// No stop, no input, more than 100 inputs, more than 1000 neurons of a kind.
+    pub(crate) fn check(&self) -> Result<()> {
+        if self.stops == 0 {
+            return Err(Error::Option("a network needs at least one stop".into()));
+        }
+        if self.inputs == 0 || self.inputs > MOST_INPUTS {
+            return Err(Error::Option(format!("{} inputs: a network takes 1 to {MOST_INPUTS}", self.inputs)));
+        }
+        for (count, kind) in
+            [(self.stops, "stops"), (self.hidden, "hidden neurons"), (self.relaxation, "relaxation neurons")]
+        {
+            if count > MOST_NEURONS {
+                return Err(Error::Option(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
+            }
+        }
+        Ok(())
     }
 
     /// Channels that the stops see: the first input, its rate, the further inputs.

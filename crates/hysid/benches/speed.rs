@@ -1,0 +1,153 @@
+//! How fast the parts are. The sizes stand in the names.
+
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use criterion::measurement::WallTime;
+use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use hysid::network::{Architecture, Family, Layout, Network, Sizes};
+use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Stop};
+use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::scaling::Scaling;
+use hysid::training::levenberg_marquardt::descend;
+use hysid::training::objective::Objective;
+use hysid::training::{FitOptions, fit};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+fn group<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, WallTime> {
+    let mut group = criterion.benchmark_group(name);
+    group.measurement_time(Duration::from_secs(3)).warm_up_time(Duration::from_secs(1)).sample_size(30);
+    group
+}
+
+/// An oscillation whose amplitude keeps changing, within -1 to 1.
+fn path(rows: usize) -> Vec<f64> {
+    (0..rows).map(|k| (0.07 * k as f64).sin() * (0.003 * k as f64).cos()).collect()
+}
+
+fn xpnn(stops: usize, hidden: usize, deterioration: bool) -> Architecture {
+    let sizes = Sizes { stops, hidden, relaxation: 0 };
+    let family = if deterioration { Family::Xpnn } else { Family::PreisachNn };
+    Architecture::new(family, sizes, 1, false, false).unwrap()
+}
+
+/// Thresholds spread over the path, wear over its whole length, the rest at random.
+fn parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
+    let layout = Layout::new(architecture);
+    let mut generator = Generator::seed_from_u64(seed);
+    (0..layout.len())
+        .map(|k| {
+            let random = generator.random::<f64>();
+            if layout.stop_weights.contains(&k) {
+                1.0 / (0.05 + 0.9 * random)
+            } else if layout.ln_beta.contains(&k) {
+                1e5f64.ln()
+            } else {
+                random - 0.5
+            }
+        })
+        .collect()
+}
+
+fn network(architecture: Architecture) -> Network {
+    let output = (0..architecture.output_weights()).map(|i| 0.5 - 0.1 * i as f64).collect();
+    Network::new(architecture, parameters(architecture, 1), output).unwrap()
+}
+
+fn operators(criterion: &mut Criterion) {
+    const ROWS: usize = 10_000;
+    let x = path(ROWS);
+    let time: Vec<f64> = (0..ROWS).map(|k| 0.1 * k as f64).collect();
+    let mut group = group(criterion, "operators");
+    group.throughput(Throughput::Elements(ROWS as u64));
+    let mut play = Play::new(0.3).unwrap();
+    group.bench_function("play_10000", |b| b.iter(|| play.run(black_box(&x))));
+    let mut stop = Stop::new(0.3).unwrap();
+    group.bench_function("stop_10000", |b| b.iter(|| stop.run(black_box(&x))));
+    let mut stop = DeterioratingStop::new(0.3, 1e4).unwrap();
+    group.bench_function("deteriorating_stop_10000", |b| b.iter(|| stop.run(black_box(&x))));
+    let mut element = Relaxation::new(2.0).unwrap();
+    group.bench_function("relaxation_10000", |b| b.iter(|| element.run(black_box(&time), &x).unwrap()));
+}
+
+fn simulation(criterion: &mut Criterion) {
+    const ROWS: usize = 100_000;
+    let x = path(ROWS);
+    let mut y = vec![0.0; ROWS];
+    let mut group = group(criterion, "simulation");
+    group.throughput(Throughput::Elements(ROWS as u64));
+    for (name, architecture) in [
+        ("run_100000x10x10_deteriorating", xpnn(10, 10, true)),
+        ("run_100000x10x10", xpnn(10, 10, false)),
+        ("run_100000x40x40_deteriorating", xpnn(40, 40, true)),
+    ] {
+        let mut simulator = network(architecture).simulator();
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                simulator.reset();
+                simulator.run(&[black_box(&x)], &[], &mut y);
+                y[ROWS - 1]
+            })
+        });
+    }
+    group.throughput(Throughput::Elements(1));
+    let mut simulator = network(xpnn(10, 10, true)).simulator();
+    let mut k = 0;
+    group.bench_function("step_10x10_deteriorating", |b| {
+        b.iter(|| {
+            k = (k + 1) % ROWS;
+            simulator.step(black_box(&x[k..k + 1]), 0.0)
+        })
+    });
+}
+
+/// 2000 rows of a network's output, which another one with 10 stops and 10 hidden neurons is to fit.
+fn data() -> Dataset {
+    let x = path(2000);
+    let mut y = vec![0.0; x.len()];
+    network(xpnn(6, 4, true)).simulator().run(&[&x], &[], &mut y);
+    Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
+}
+
+fn options() -> FitOptions {
+    let sizes = Sizes { stops: 10, hidden: 10, relaxation: 0 };
+    FitOptions { model: Family::Xpnn, sizes, ..FitOptions::default() }
+}
+
+fn jacobian(criterion: &mut Criterion) {
+    let (data, architecture) = (data(), xpnn(10, 10, true));
+    let scaling = Scaling::of(&data, None).unwrap();
+    let objective = Objective::new(&data, &scaling, architecture, &options()).unwrap();
+    let parameters = parameters(architecture, 2);
+    let value = objective.value(&parameters);
+    let mut group = group(criterion, "jacobian");
+    group.throughput(Throughput::Elements(2000));
+    group.bench_function("value_2000x10x10", |b| b.iter(|| objective.value(black_box(&parameters))));
+    // The gradient comes with the Gauss-Newton matrix.
+    group.bench_function("slope_2000x10x10", |b| {
+        b.iter(|| objective.gradient(black_box(&parameters), &value))
+    });
+    group.bench_function("levenberg_marquardt_iteration_2000x10x10", |b| {
+        b.iter_batched(
+            || parameters.clone(),
+            |parameters| descend(&objective, parameters, 1, |_, _| ControlFlow::Continue(())),
+            BatchSize::SmallInput,
+        )
+    });
+}
+
+fn training(criterion: &mut Criterion) {
+    let data = data();
+    let options = options();
+    let mut group = group(criterion, "training");
+    group.sample_size(10);
+    let name = format!("fit_2000x10x10_{}_starts_{}_epochs", options.starts, options.epochs);
+    group.bench_function(name, |b| {
+        b.iter(|| fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap())
+    });
+}
+
+criterion_group!(benches, operators, simulation, jacobian, training);
+criterion_main!(benches);

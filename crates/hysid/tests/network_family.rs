@@ -1,0 +1,452 @@
+//! The network family against theory.md section 2: a scalar reference that is written here from the
+//! equations, and laws that hold whatever the parameters.
+
+use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
+use hysid::operator::{DeterioratingStop, Operator, Relaxation};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+fn generator(seed: u64) -> Generator {
+    Generator::seed_from_u64(seed)
+}
+
+fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
+    low + (high - low) * generator.random::<f64>()
+}
+
+/// Every family; one and three inputs, rate and time on and off where the family has them.
+fn architectures(sizes: Sizes) -> Vec<Architecture> {
+    let mut all = Vec::new();
+    for family in Family::ALL {
+        let inputs: &[usize] = if family.takes_further_inputs() { &[1, 3] } else { &[1] };
+        for &inputs in inputs {
+            for (rate, time) in [(false, false), (false, true), (true, true)] {
+                let architecture = Architecture::new(family, sizes, inputs, rate, time).unwrap();
+                if !all.contains(&architecture) {
+                    all.push(architecture);
+                }
+            }
+        }
+    }
+    all
+}
+
+fn odd_architectures() -> Vec<Architecture> {
+    [(1, 1), (7, 2), (8, 5), (9, 1), (17, 5)]
+        .into_iter()
+        .flat_map(|(stops, hidden)| architectures(Sizes { stops, hidden, relaxation: 2 }))
+        .collect()
+}
+
+/// Parameters of ordinary size; some stops slip, some die.
+fn ordinary(a: Architecture, generator: &mut Generator) -> Network {
+    let layout = Layout::new(a);
+    let parameters = (0..layout.len())
+        .map(|k| {
+            if layout.ln_beta.contains(&k) {
+                between(generator, 2.0, 6.0)
+            } else if layout.ln_tau.contains(&k) {
+                between(generator, -2.0, 3.0)
+            } else if layout.stop_weights.contains(&k) {
+                between(generator, -6.0, 6.0)
+            } else {
+                between(generator, -1.0, 1.0)
+            }
+        })
+        .collect();
+    let output = (0..a.output_weights()).map(|_| between(generator, -1.0, 1.0)).collect();
+    Network::new(a, parameters, output).unwrap()
+}
+
+/// A path with many turning points that starts with a jump, and uneven time steps.
+fn drive(a: &Architecture, rows: usize, generator: &mut Generator) -> Drive {
+    let mut channel = || {
+        let mut x = between(generator, 0.3, 0.9);
+        let mut column = Vec::new();
+        while column.len() < rows {
+            let (to, steps) = (between(generator, -1.0, 1.0), 1 + (generator.random::<u64>() % 9) as usize);
+            let from = x;
+            for k in 1..=steps {
+                column.push(x);
+                x = from + (to - from) * k as f64 / steps as f64;
+            }
+        }
+        column.truncate(rows);
+        column
+    };
+    let channels = (0..a.channels()).map(|_| channel()).collect();
+    let steps = (0..rows).map(|k| if k == 0 { 0.0 } else { between(generator, 0.01, 0.5) });
+    Drive { channels, steps: if a.relaxation > 0 { steps.collect() } else { Vec::new() } }
+}
+
+fn run(network: &Network, drive: &Drive) -> Vec<f64> {
+    let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
+    let mut y = vec![0.0; drive.len()];
+    network.simulator().run(&u, &drive.steps, &mut y);
+    y
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Largest difference in units of the larger signal's largest value.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    let largest = a.iter().chain(b).fold(1e-300, |most: f64, y| most.max(y.abs()));
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+// ------------------------------------------------------------------------------ scalar reference
+
+/// A way to get the reference wrong.
+#[derive(Clone, Copy, PartialEq)]
+enum Slipup {
+    Nothing,
+    /// The jump from virgin to the first sample counts as slip.
+    JumpSlips,
+    /// Relaxation neurons all see the first input.
+    OneRelaxingInput,
+    /// The direct path is forgotten.
+    NoDirectPath,
+}
+
+/// theory.md (2.2) to (2.6), one sample and one neuron at a time.
+fn reference(network: &Network, drive: &Drive, slipup: Slipup) -> Vec<f64> {
+    let a = network.architecture();
+    let mut parameters = network.parameters().iter().copied();
+    let mut take = |count: usize| parameters.by_ref().take(count).collect::<Vec<f64>>();
+    let weights: Vec<Vec<f64>> = (0..a.stops).map(|_| take(a.channels())).collect();
+    let ln_beta = take(if a.deterioration { a.stops } else { 0 });
+    let linear = take(if a.linear { a.channels() } else { 0 });
+    let ln_tau = take(a.relaxation * a.inputs);
+    let memory = usize::from(a.linear) + a.stops + a.relaxation * a.inputs;
+    let hidden: Vec<Vec<f64>> = (0..a.hidden).map(|_| take(1 + memory)).collect();
+    assert!(take(1).is_empty());
+
+    let mut stops: Vec<DeterioratingStop> = (0..a.stops)
+        .map(|j| {
+            let beta = ln_beta.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp());
+            DeterioratingStop::new(1.0, beta).unwrap()
+        })
+        .collect();
+    if slipup == Slipup::JumpSlips {
+        for stop in &mut stops {
+            stop.step(0.0);
+        }
+    }
+    let mut relaxing: Vec<Relaxation> =
+        ln_tau.iter().map(|ln_tau| Relaxation::new(ln_tau.exp()).unwrap()).collect();
+
+    (0..drive.len())
+        .map(|k| {
+            let u: Vec<f64> = drive.channels.iter().map(|channel| channel[k]).collect();
+            let dot = |w: &[f64]| w.iter().zip(&u).map(|(w, u)| w * u).sum::<f64>();
+            let mut z = Vec::new();
+            if a.linear {
+                z.push(dot(&linear));
+            }
+            z.extend(stops.iter_mut().zip(&weights).map(|(stop, w)| stop.step(dot(w))));
+            for (m, element) in relaxing.iter_mut().enumerate() {
+                let input = if slipup == Slipup::OneRelaxingInput { 0 } else { m / a.relaxation };
+                let channel = if input > 0 && a.rate { input + 1 } else { input };
+                z.push(element.step(u[channel], drive.steps[k]));
+            }
+            let h: Vec<f64> = hidden
+                .iter()
+                .map(|neuron| {
+                    (neuron[0] + neuron[1..].iter().zip(&z).map(|(u, z)| u * z).sum::<f64>()).tanh()
+                })
+                .collect();
+            let mut summed = if a.constant { vec![1.0] } else { Vec::new() };
+            summed.extend(&h);
+            if a.direct || a.hidden == 0 {
+                summed.extend(&z);
+            }
+            if slipup == Slipup::NoDirectPath && a.direct {
+                summed.truncate(1 + a.hidden);
+            }
+            network.output().iter().zip(&summed).map(|(c, value)| c * value).sum()
+        })
+        .collect()
+}
+
+#[test]
+fn every_family_agrees_with_the_scalar_reference() {
+    let mut generator = generator(1);
+    let (mut shown, mut caught) = ([0; 3], [0; 3]);
+    for a in odd_architectures() {
+        let network = ordinary(a, &mut generator);
+        let drive = drive(&a, 300, &mut generator);
+        let y = run(&network, &drive);
+        let error = |slipup| difference(&y, &reference(&network, &drive, slipup));
+        assert!(error(Slipup::Nothing) < 1e-12, "{} for {a:?}", error(Slipup::Nothing));
+        let slipups = [
+            (Slipup::JumpSlips, a.deterioration),
+            (Slipup::OneRelaxingInput, a.relaxation > 0 && a.inputs > 1),
+            (Slipup::NoDirectPath, a.direct),
+        ];
+        for (k, (slipup, shows)) in slipups.into_iter().enumerate().filter(|(_, (_, shows))| *shows) {
+            shown[k] += usize::from(shows);
+            caught[k] += usize::from(error(slipup) > 1e-6);
+        }
+    }
+    // A jump that happens to slip no stop is no slip-up; the others show in every network.
+    assert!(shown.iter().all(|&count| count >= 10), "{shown:?}");
+    assert!(caught[0] > 3 * shown[0] / 4 && caught[1..] == shown[1..], "{caught:?} of {shown:?}");
+}
+
+// --------------------------------------------------------------------------- runs, steps and state
+
+#[test]
+fn steps_and_runs_however_split_agree_to_the_last_bit() {
+    let mut generator = generator(2);
+    let (mut tried, mut remembering) = (0, 0);
+    for a in odd_architectures() {
+        let network = ordinary(a, &mut generator);
+        let drive = drive(&a, 400, &mut generator);
+        let whole = run(&network, &drive);
+
+        let mut simulator = network.simulator();
+        let stepped: Vec<f64> = (0..drive.len())
+            .map(|k| {
+                let u: Vec<f64> = drive.channels.iter().map(|channel| channel[k]).collect();
+                simulator.step(&u, drive.steps.get(k).copied().unwrap_or(0.0))
+            })
+            .collect();
+        assert_eq!(bits(&whole), bits(&stepped), "{a:?}");
+
+        let random: Vec<usize> = (0..40).map(|_| (generator.random::<u64>() % 70) as usize).collect();
+        for pieces in [vec![1], vec![63], vec![64], vec![65], vec![7, 0, 130, 64], random] {
+            let mut pieced = Vec::new();
+            let mut simulator = network.simulator();
+            for &length in pieces.iter().cycle() {
+                let start = pieced.len();
+                let end = drive.len().min(start + length);
+                let u: Vec<&[f64]> = drive.channels.iter().map(|channel| &channel[start..end]).collect();
+                let steps = if a.relaxation > 0 { &drive.steps[start..end] } else { &[] };
+                let mut y = vec![0.0; end - start];
+                simulator.run(&u, steps, &mut y);
+                pieced.extend(y);
+                // A fresh simulator that takes the state over goes on as the old one would.
+                let state = simulator.state().clone();
+                simulator = network.simulator();
+                simulator.set_state(state);
+                if pieced.len() == drive.len() {
+                    break;
+                }
+            }
+            assert_eq!(bits(&whole), bits(&pieced), "{a:?} in pieces of {pieces:?}");
+        }
+
+        // The state matters: without it the second half is another one (unless all is wiped out).
+        let half = Drive {
+            channels: drive.channels.iter().map(|channel| channel[200..].to_vec()).collect(),
+            steps: drive.steps.iter().skip(200).copied().collect(),
+        };
+        tried += 1;
+        remembering += usize::from(difference(&run(&network, &half), &whole[200..]) > 1e-6);
+        simulator.reset();
+        assert_eq!(simulator.state(), network.simulator().state());
+    }
+    assert!(remembering > 3 * tried / 4, "{remembering} of {tried}");
+}
+
+// ------------------------------------------------------------------------------------- parameters
+
+#[test]
+fn a_network_gives_its_parameters_back_and_refuses_others() {
+    let mut generator = generator(3);
+    for a in odd_architectures() {
+        let network = ordinary(a, &mut generator);
+        let (parameters, output) = (network.parameters().to_vec(), network.output().to_vec());
+        assert_eq!(Network::new(a, parameters.clone(), output.clone()).unwrap(), network);
+        assert_eq!(parameters.len(), a.searched_parameters());
+
+        let refused = |parameters: &[f64], output: &[f64]| {
+            Network::new(a, parameters.to_vec(), output.to_vec()).is_err()
+        };
+        assert!(!refused(&parameters, &output));
+        assert!(refused(&parameters[1..], &output));
+        assert!(refused(&[&parameters[..], &[0.0]].concat(), &output));
+        assert!(refused(&parameters, &output[1..]));
+        assert!(refused(&parameters, &[&output[..], &[0.0]].concat()));
+        let layout = Layout::new(a);
+        for k in 0..layout.len() {
+            let (low, high) = layout.bounds(k);
+            let with = |value: f64| {
+                let mut changed = parameters.clone();
+                changed[k] = value;
+                changed
+            };
+            for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, low - 0.01 * low.abs(), high * 1.01] {
+                assert!(refused(&with(value), &output), "{} = {value}", layout.names()[k]);
+            }
+            assert!(!refused(&with(low), &output) && !refused(&with(high), &output));
+        }
+        for k in 0..output.len() {
+            for value in [f64::NAN, f64::INFINITY, -1.1e50, 1.1e50] {
+                let mut changed = output.clone();
+                changed[k] = value;
+                assert!(refused(&parameters, &changed));
+            }
+        }
+    }
+}
+
+/// Invariant 3. Most of these runs would overflow at the first stop if the input were not limited.
+#[test]
+fn a_free_run_is_finite_whatever_parameters_and_input() {
+    let wild = [1e300, -1e300, 0.0, 1.0, f64::MAX, -f64::MAX, 1e-300, -1e50, 1e50, 1e17, -3.0, 5e-324];
+    let mut generator = generator(4);
+    let (mut runs, mut overflows) = (0, 0);
+    for a in odd_architectures() {
+        let layout = Layout::new(a);
+        for round in 0..6 {
+            // In turn: at a bound, anywhere between, either.
+            let mut place = || match round % 3 {
+                0 => generator.random::<f64>().round(),
+                1 => generator.random::<f64>(),
+                _ => (3.0 * generator.random::<f64>() - 1.0).clamp(0.0, 1.0),
+            };
+            let parameters = (0..layout.len())
+                .map(|k| {
+                    let (low, high) = layout.bounds(k);
+                    (low + (high - low) * place()).clamp(low, high)
+                })
+                .collect();
+            let output = (0..a.output_weights()).map(|_| 1e50 * (2.0 * place() - 1.0)).collect();
+            let network = Network::new(a, parameters, output).unwrap();
+            let mut pick = || wild[(generator.random::<u64>() % wild.len() as u64) as usize];
+            let column = |pick: &mut dyn FnMut() -> f64| {
+                (0..200).map(|k| if k < 100 { pick() } else { wild[k % 2] }).collect::<Vec<f64>>()
+            };
+            let channels: Vec<Vec<f64>> = (0..a.channels()).map(|_| column(&mut pick)).collect();
+            let steps: Vec<f64> = (0..200).map(|k| if k == 0 { 0.0 } else { pick().abs() }).collect();
+            let drive = Drive { channels, steps: if a.relaxation > 0 { steps } else { Vec::new() } };
+            let y = run(&network, &drive);
+            assert!(y.iter().all(|y| y.is_finite()), "{a:?}, round {round}");
+            runs += 1;
+            let weights = &network.parameters()[..a.channels()];
+            let v = |k: usize| weights.iter().zip(&drive.channels).map(|(w, u)| w * u[k]).sum::<f64>();
+            overflows += usize::from((0..200).any(|k| !v(k).is_finite()));
+        }
+    }
+    assert!(overflows > runs / 2, "{overflows} of {runs} inputs were wild");
+}
+
+// ------------------------------------------------------------------------------------------- laws
+
+/// A path and a slower one through the same turning points: samples repeated, or points put between.
+fn slower(path: &[f64], between: bool) -> (Vec<f64>, Vec<usize>) {
+    let (mut slow, mut kept) = (vec![path[0]], vec![0]);
+    for pair in path.windows(2) {
+        let extra = slow.len() % 3;
+        for k in 1..=extra {
+            let share = if between { k as f64 / (extra + 1) as f64 } else { 0.0 };
+            slow.push(pair[0] + share * (pair[1] - pair[0]));
+        }
+        kept.push(slow.len());
+        slow.push(pair[1]);
+    }
+    (slow, kept)
+}
+
+#[test]
+fn without_rate_and_time_only_the_path_counts() {
+    let mut generator = generator(5);
+    let (mut independent, mut dependent) = (0, 0);
+    for a in odd_architectures().into_iter().filter(|a| a.inputs == 1) {
+        let network = ordinary(a, &mut generator);
+        let path = drive(&a, 200, &mut generator).channels[0].clone();
+        // Unit time steps; the rate is the backward difference.
+        let simulate = |x: &[f64]| {
+            let mut channels = vec![x.to_vec()];
+            if a.rate {
+                channels.push((0..x.len()).map(|k| if k == 0 { 0.0 } else { x[k] - x[k - 1] }).collect());
+            }
+            let steps = (0..x.len()).map(|k| if k == 0 { 0.0 } else { 1.0 }).collect();
+            run(&network, &Drive { channels, steps: if a.relaxation > 0 { steps } else { Vec::new() } })
+        };
+        let y = simulate(&path);
+        for between in [false, true] {
+            let (slow, kept) = slower(&path, between);
+            assert!(slow.len() > 280);
+            let all = simulate(&slow);
+            let slow: Vec<f64> = kept.iter().map(|&row| all[row]).collect();
+            if a.rate || a.relaxation > 0 {
+                assert!(difference(&y, &slow) > 1e-3, "{a:?} does not see the rate");
+                dependent += 1;
+            } else {
+                assert!(difference(&y, &slow) < 1e-12, "{a:?}");
+                assert!(between || bits(&y) == bits(&slow), "{a:?}");
+                independent += 1;
+            }
+        }
+    }
+    assert!(independent > 10 && dependent > 10);
+}
+
+/// Changes parameters and output weights of a network; what it changes is found by place.
+fn changed(network: &Network, change: impl Fn(&mut [f64], &mut [f64])) -> Network {
+    let (mut parameters, mut output) = (network.parameters().to_vec(), network.output().to_vec());
+    change(&mut parameters, &mut output);
+    Network::new(*network.architecture(), parameters, output).unwrap()
+}
+
+/// theory.md (2.12), each with a half of it that must not be enough.
+#[test]
+fn symmetries_leave_the_output_as_it_is() {
+    let mut generator = generator(6);
+    let tried = odd_architectures().into_iter().filter(|a| a.hidden > 0 && a.stops > 1);
+    for a in tried {
+        let network = ordinary(a, &mut generator);
+        let drive = drive(&a, 200, &mut generator);
+        let y = run(&network, &drive);
+        let layout = Layout::new(a);
+        let (channels, run_length) = (a.channels(), 1 + a.memory_neurons());
+        let stop = |j: usize, c: usize| layout.stop_weights.start + j * channels + c;
+        // Weights out of memory neuron m: to each tanh neuron, and past them.
+        let outgoing = |m: usize| (0..a.hidden).map(move |i| (i, m));
+        let hidden = |(i, m): (usize, usize)| layout.hidden.start + i * run_length + 1 + m;
+        let direct = |m: usize| 1 + a.hidden + m;
+        let (first, last) = (1, a.stops);
+
+        let swap_in = |p: &mut [f64]| {
+            (0..channels).for_each(|c| p.swap(stop(0, c), stop(a.stops - 1, c)));
+            if a.deterioration {
+                p.swap(layout.ln_beta.start, layout.ln_beta.end - 1);
+            }
+        };
+        let swap_out = |p: &mut [f64], c: &mut [f64]| {
+            outgoing(first).zip(outgoing(last)).for_each(|(f, l)| p.swap(hidden(f), hidden(l)));
+            if a.direct {
+                c.swap(direct(first), direct(last));
+            }
+        };
+        let flip_in = |p: &mut [f64]| (0..channels).for_each(|c| p[stop(0, c)] *= -1.0);
+        let scale_out = |m: usize, t: f64, p: &mut [f64], c: &mut [f64]| {
+            outgoing(m).for_each(|place| p[hidden(place)] *= t);
+            if a.direct {
+                c[direct(m)] *= t;
+            }
+        };
+        let flip_neuron = |p: &mut [f64]| {
+            p[layout.hidden.start..layout.hidden.start + run_length].iter_mut().for_each(|w| *w *= -1.0);
+        };
+        let stretch = |p: &mut [f64]| p[layout.linear.clone()].iter_mut().for_each(|w| *w *= -2.5);
+
+        type Change<'a> = &'a dyn Fn(&mut [f64], &mut [f64]);
+        let symmetries: [(&str, Change, Change); 4] = [
+            ("stops change places", &|p, _| swap_in(p), &swap_out),
+            ("a stop changes sign", &|p, _| flip_in(p), &|p, c| scale_out(first, -1.0, p, c)),
+            ("a tanh neuron changes sign", &|p, _| flip_neuron(p), &|_, c| c[1] *= -1.0),
+            ("the linear neuron's scale", &|p, _| stretch(p), &|p, c| scale_out(0, 1.0 / -2.5, p, c)),
+        ];
+        for (what, half, rest) in symmetries {
+            let half = changed(&network, half);
+            let whole = changed(&half, rest);
+            assert!(difference(&y, &run(&whole, &drive)) < 1e-12, "{what}: {a:?}");
+            assert!(difference(&y, &run(&half, &drive)) > 1e-6, "half of it is enough: {what}: {a:?}");
+        }
+    }
+}

@@ -1,0 +1,346 @@
+//! Fits of synthetic data that the library's own operators generate, and what every fit promises.
+
+use std::ops::ControlFlow;
+
+use hysid::error::{DataProblem, Error};
+use hysid::network::{Architecture, Family, Layout, Network, Sizes};
+use hysid::operator::{Operator, Stop};
+use hysid::rate::RateMethod;
+use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::training::objective::Regularisation;
+use hysid::training::{Fit, FitOptions, Phase, Progress, Termination, fit};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+/// A path between random turning points, in unequal steps.
+fn path(rows: usize, amplitude: f64, seed: u64) -> Vec<f64> {
+    let mut generator = Generator::seed_from_u64(seed);
+    let (mut x, mut path) = (0.0, Vec::new());
+    while path.len() < rows {
+        let to = amplitude * (2.0 * generator.random::<f64>() - 1.0);
+        let steps = 8 + (generator.random::<u64>() % 8) as usize;
+        path.extend((0..steps).map(|k| x + (to - x) * k as f64 / steps as f64));
+        x = to;
+    }
+    path.truncate(rows);
+    path
+}
+
+fn dataset(records: Vec<Record>) -> Dataset {
+    Dataset::new(ColumnNames::plain(records[0].inputs().len()), records).unwrap()
+}
+
+/// Three stops and a linear spring.
+fn bank(x: &[f64]) -> Vec<f64> {
+    let mut y: Vec<f64> = x.iter().map(|x| 40.0 + 0.7 * x).collect();
+    for (threshold, weight) in [(0.5, 3.0), (2.0, 1.0), (4.0, -0.5)] {
+        let stop = Stop::new(threshold).unwrap().run(x);
+        y.iter_mut().zip(stop).for_each(|(y, z)| *y += weight * z);
+    }
+    y
+}
+
+fn bank_data(rows: usize) -> Dataset {
+    let x = path(rows, 6.0, 11);
+    dataset(vec![Record::new("bank", vec![x.clone()], bank(&x)).unwrap()])
+}
+
+fn small(model: Family, stops: usize, hidden: usize) -> FitOptions {
+    let sizes = Sizes { stops, hidden, relaxation: 1 };
+    FitOptions { model, sizes, starts: 3, epochs: 15, ..FitOptions::default() }
+}
+
+fn quietly(data: &Dataset, options: &FitOptions) -> Fit {
+    fit(data, options, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+fn nrmse(fit: &Fit, data: &Dataset) -> f64 {
+    fit.model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
+}
+
+/// Parameters and output weights, to the last bit.
+fn bits(fit: &Fit) -> Vec<u64> {
+    let network = fit.model.network();
+    network.parameters().iter().chain(network.output()).map(|value| value.to_bits()).collect()
+}
+
+// ------------------------------------------------------------------------------------ what it finds
+
+#[test]
+fn a_bank_of_stops_is_found() {
+    let data = bank_data(600);
+    let error = nrmse(&quietly(&data, &FitOptions { epochs: 30, ..small(Family::Pnn, 6, 0) }), &data);
+    assert!(error < 1.0, "{error} %");
+    // One stop cannot be three: the figure above is no matter of course.
+    let one = nrmse(&quietly(&data, &FitOptions { epochs: 30, ..small(Family::Pnn, 1, 0) }), &data);
+    assert!(one > 2.0, "{one} %");
+}
+
+#[test]
+fn a_network_of_the_family_is_found_and_carries_on() {
+    let sizes = Sizes { stops: 3, hidden: 2, relaxation: 0 };
+    let architecture = Architecture::new(Family::Xpnn, sizes, 1, false, false).unwrap();
+    let ln_beta = [60f64, 100.0, 1000.0].map(f64::ln);
+    let mut parameters = vec![4.0, 2.0, 1.2];
+    parameters.extend(ln_beta);
+    parameters.extend([0.8]);
+    parameters.extend([0.2, 0.9, 0.5, -0.3, 0.6, -0.4, -0.5, 0.4, 0.8, 0.3]);
+    let source = Network::new(architecture, parameters, vec![1.0, 2.0, -1.5]).unwrap();
+    let x = path(1200, 1.0, 5);
+    let mut y = vec![0.0; x.len()];
+    source.simulator().run(&[&x], &[], &mut y);
+
+    let part =
+        |rows: usize, y: Vec<f64>| dataset(vec![Record::new("r", vec![x[..rows].to_vec()], y).unwrap()]);
+    let train = part(800, y[..800].to_vec());
+    let held_out =
+        part(1200, y.iter().enumerate().map(|(k, &y)| if k < 800 { f64::NAN } else { y }).collect());
+    let options = FitOptions { starts: 6, epochs: 80, ..small(Family::Xpnn, 8, 5) };
+    let fitted = quietly(&train, &options);
+    let (trained, continued) = (nrmse(&fitted, &train), nrmse(&fitted, &held_out));
+    assert!(trained < 1.0 && continued < 3.0, "{trained} %, {continued} %");
+    // Stops that never wear out cannot follow.
+    let eternal = quietly(&train, &FitOptions { no_deterioration: true, ..options });
+    assert!(!eternal.model.network().architecture().deterioration);
+    assert!(nrmse(&eternal, &held_out) > 3.0, "{} %", nrmse(&eternal, &held_out));
+}
+
+/// Two records of one specimen that stiffens with speed, at two speeds.
+fn two_speeds() -> Dataset {
+    let record = |step: f64| {
+        let x: Vec<f64> =
+            (0..220).map(|k| (0.2 * k as f64).sin() * (0.5 + 0.5 * (0.03 * k as f64).cos())).collect();
+        let mut stop = Stop::new(0.3).unwrap();
+        let y = (0..220)
+            .map(|k| {
+                let speed = if k == 0 { 0.0 } else { (x[k] - x[k - 1]) / step };
+                stop.step(x[k]) + 0.4 * speed.tanh()
+            })
+            .collect();
+        let time = (0..220).map(|k| step * k as f64).collect();
+        Record::new(format!("step {step}"), vec![x], y).unwrap().with_time(time).unwrap()
+    };
+    dataset(vec![record(0.1), record(1.0)])
+}
+
+#[test]
+fn the_rate_tells_two_speeds_apart_on_any_number_of_threads() {
+    let data = two_speeds();
+    let with = FitOptions { rate: Some(RateMethod::Backward), ..small(Family::Xpnn, 4, 3) };
+    let on = |threads: usize, options: &FitOptions| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| quietly(&data, options))
+    };
+    let (one, two) = (on(1, &with), on(2, &with));
+    assert_eq!(bits(&one), bits(&two));
+    assert_eq!(one.model, two.model);
+    assert_eq!(one.evaluations, two.evaluations);
+    let without = quietly(&data, &FitOptions { rate: None, ..with.clone() });
+    assert!(nrmse(&one, &data) < 5.0, "{} %", nrmse(&one, &data));
+    assert!(nrmse(&without, &data) > 20.0, "{} %", nrmse(&without, &data));
+
+    let other = on(2, &FitOptions { seed: 2, ..with });
+    assert_ne!(bits(&one), bits(&other));
+}
+
+// ---------------------------------------------------------------------------------------- observer
+
+#[test]
+fn the_observer_sees_the_share_of_the_work_grow() {
+    let data = bank_data(150);
+    let options = small(Family::PreisachNn, 3, 2);
+    let mut seen: Vec<Progress> = Vec::new();
+    let fitted = fit(&data, &options, &mut |progress: &Progress| {
+        seen.push(progress.clone());
+        ControlFlow::Continue(())
+    });
+    assert!(seen.len() > 20);
+    assert!(seen.windows(2).all(|pair| pair[0].done <= pair[1].done));
+    assert!(seen.iter().all(|progress| (0.0..=1.0).contains(&progress.done)));
+    assert!(seen.last().unwrap().done > 0.7 && seen[0].done < 0.1);
+    let starts = seen.iter().filter(|progress| progress.phase == Phase::Starts);
+    assert_eq!(starts.map(|progress| progress.start).max(), Some(options.starts - 1));
+    // What was told is what the history keeps; of the descents of the refit it keeps one.
+    for run in &fitted.unwrap().model.provenance().runs {
+        let mut told = seen
+            .iter()
+            .filter(|progress| (progress.phase, progress.start) == (run.phase, run.start))
+            .map(|progress| (progress.epoch, progress.train_nrmse_percent));
+        if run.phase == Phase::Starts {
+            assert_eq!(told.clone().count(), run.history.len() - 1);
+        }
+        for point in &run.history[1..] {
+            assert!(told.any(|told| told == (point.epoch, point.train_nrmse_percent)), "{point:?}");
+        }
+    }
+}
+
+/// Stops after so many calls, with one thread, so that the calls come start by start.
+fn stopped_after(calls: usize, data: &Dataset, options: &FitOptions) -> (Fit, usize) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let mut seen = 0;
+    let fitted = pool.install(|| {
+        fit(data, options, &mut |_| {
+            seen += 1;
+            if seen == calls { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+    });
+    (fitted.unwrap(), seen)
+}
+
+#[test]
+fn a_fit_that_is_stopped_in_its_first_start_or_its_last_phase_is_usable() {
+    let data = bank_data(150);
+    let options = FitOptions { starts: 2, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
+    for calls in [1, 3, 9, 12] {
+        let (fitted, seen) = stopped_after(calls, &data, &options);
+        assert_eq!(seen, calls, "the observer was called again after it said stop");
+        assert_eq!(fitted.model.provenance().termination, Termination::Stopped);
+        assert!(nrmse(&fitted, &data) < 120.0);
+        let file = fitted.model.to_json();
+        assert_eq!(hysid::model::Model::from_json(&file).unwrap(), fitted.model);
+    }
+}
+
+#[test]
+fn a_fit_that_is_stopped_in_a_later_start_says_so() {
+    let data = bank_data(150);
+    let options = FitOptions { starts: 3, epochs: 4, ..small(Family::PreisachNn, 3, 2) };
+    for calls in [5, 6, 8, 9, 17, 18] {
+        let (fitted, _) = stopped_after(calls, &data, &options);
+        assert_eq!(fitted.model.provenance().termination, Termination::Stopped, "after {calls} calls");
+    }
+}
+
+// ------------------------------------------------------------------------------------- the history
+
+#[test]
+fn training_never_worsens_and_begins_no_worse_than_the_mean() {
+    let data = bank_data(300);
+    // Without penalties the error is the objective.
+    let regularisation = Regularisation { ridge: 0.0, decay: 0.0 };
+    for family in Family::ALL {
+        let options = FitOptions { regularisation, ..small(family, 3, 2) };
+        let fitted = quietly(&data, &options);
+        for run in &fitted.model.provenance().runs {
+            let errors: Vec<f64> = run.history.iter().map(|point| point.train_nrmse_percent).collect();
+            assert!(errors.len() > 2, "{family:?}: no iteration");
+            assert!(errors.windows(2).all(|pair| pair[1] <= pair[0]), "{family:?}: {errors:?}");
+            // Percent of the whole data's deviation, of which a start sees three quarters.
+            let most = if run.phase == Phase::Refit { 100.0 } else { 100.0 / 0.75f64.sqrt() };
+            assert!(errors[0] <= most, "{family:?}: {errors:?}");
+        }
+        let refit = fitted.model.provenance().runs.last().unwrap();
+        let last = refit.history.last().unwrap().train_nrmse_percent;
+        let run = nrmse(&fitted, &data);
+        assert!((last - run).abs() < 1e-4 * run, "{family:?}: history {last} %, free run {run} %");
+    }
+}
+
+#[test]
+fn many_rows_are_thinned_with_little_loss() {
+    let data = bank_data(3000);
+    let options = FitOptions { starts: 2, ..small(Family::Pnn, 5, 0) };
+    let whole = quietly(&data, &options);
+    let thinned = quietly(&data, &FitOptions { thin: 250, ..options.clone() });
+    assert_ne!(bits(&whole), bits(&thinned));
+    let (whole, thinned) = (nrmse(&whole, &data), nrmse(&thinned, &data));
+    assert!(thinned < 1.5 * whole + 0.5, "{thinned} %, not {whole} %");
+    // As many rows as the limit are not thinned at all.
+    let limit = quietly(&data, &FitOptions { thin: 3000, ..options.clone() });
+    assert_eq!(bits(&limit), bits(&quietly(&data, &options)));
+}
+
+// -------------------------------------------------------------------------- validation and refusals
+
+#[test]
+fn data_are_held_out_unless_they_are_too_few() {
+    let options = FitOptions { starts: 2, epochs: 3, ..small(Family::Pnn, 2, 0) };
+    let held = quietly(&bank_data(100), &options);
+    let provenance = held.model.provenance();
+    assert_eq!(provenance.validation.as_ref().unwrap().samples, 25);
+    assert!(provenance.runs[..2].iter().all(|run| run.validation_nrmse_percent.is_some()));
+    assert_eq!(provenance.runs[2].phase, Phase::Refit);
+    // The best start on what was held out is the one that became the model.
+    let judged = |run: &hysid::training::Run| run.validation_nrmse_percent.unwrap();
+    let chosen = &provenance.runs[provenance.chosen_start];
+    assert!(provenance.runs[..2].iter().all(|run| judged(chosen) <= judged(run)));
+
+    let few = quietly(&bank_data(12), &options);
+    assert_eq!(few.model.provenance().validation, None);
+    assert!(few.model.provenance().runs.iter().all(|run| run.validation_nrmse_percent.is_none()));
+}
+
+#[test]
+fn options_outside_their_meaning_are_refused() {
+    let data = bank_data(60);
+    let good = FitOptions { starts: 1, epochs: 1, ..small(Family::Xpnn, 2, 2) };
+    let refused = |options: &FitOptions| {
+        let error = fit(&data, options, &mut |_| ControlFlow::Continue(())).err()?;
+        Some(error.to_string())
+    };
+    assert_eq!(refused(&good), None);
+    let sizes = good.sizes;
+    let penalties = good.regularisation;
+    let bad = [
+        ("stop", FitOptions { sizes: Sizes { stops: 0, ..sizes }, ..good.clone() }),
+        ("hidden", FitOptions { sizes: Sizes { hidden: 0, ..sizes }, ..good.clone() }),
+        ("stops", FitOptions { sizes: Sizes { stops: 1001, ..sizes }, ..good.clone() }),
+        ("starts", FitOptions { starts: 0, ..good.clone() }),
+        ("starts", FitOptions { starts: 10_001, ..good.clone() }),
+        ("validation", FitOptions { validation: 0.0, ..good.clone() }),
+        ("validation", FitOptions { validation: 1.0, ..good.clone() }),
+        ("validation", FitOptions { validation: f64::NAN, ..good.clone() }),
+        ("ridge", FitOptions { regularisation: Regularisation { ridge: -1.0, ..penalties }, ..good.clone() }),
+        (
+            "decay",
+            FitOptions { regularisation: Regularisation { decay: f64::NAN, ..penalties }, ..good.clone() },
+        ),
+        ("time", FitOptions { rate: Some(RateMethod::Central), ..good.clone() }),
+        ("given rate", FitOptions { rate: Some(RateMethod::Given), ..good.clone() }),
+    ];
+    for (word, options) in bad {
+        let text = refused(&options).unwrap_or_else(|| panic!("accepted: {options:?}"));
+        assert!(text.contains(word), "{text:?} does not speak of {word}");
+    }
+}
+
+#[test]
+fn any_number_of_epochs_is_a_number_or_an_error() {
+    let options = FitOptions { starts: 2, epochs: usize::MAX, ..small(Family::Pnn, 1, 0) };
+    let mut calls = 0;
+    let _ = fit(&bank_data(40), &options, &mut |progress: &Progress| {
+        assert!((0.0..=1.0).contains(&progress.done));
+        calls += 1;
+        if calls == 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+}
+
+#[test]
+fn data_that_tell_nothing_are_refused() {
+    let problem = |x: Vec<f64>, y: Vec<f64>| {
+        let data = dataset(vec![Record::new("r", vec![x], y).unwrap()]);
+        let options = FitOptions { starts: 1, epochs: 1, ..small(Family::Pnn, 2, 0) };
+        match fit(&data, &options, &mut |_| ControlFlow::Continue(())) {
+            Err(Error::Data(defect)) => Some(defect.problem),
+            Err(other) => panic!("{other}"),
+            Ok(_) => None,
+        }
+    };
+    let x = path(50, 1.0, 1);
+    let constant = vec![2.0; 50];
+    assert_eq!(problem(x.clone(), x.clone()), None);
+    assert_eq!(problem(constant.clone(), x.clone()), Some(DataProblem::ConstantInput(2.0)));
+    assert_eq!(problem(x.clone(), constant), Some(DataProblem::ConstantOutput(2.0)));
+    assert_eq!(problem(x.clone(), vec![f64::NAN; 50]), Some(DataProblem::NothingToScore));
+    let few: Vec<f64> = (0..50).map(|k| if k < 9 { x[k] } else { f64::NAN }).collect();
+    assert_eq!(problem(x, few), Some(DataProblem::TooFewRows { found: 9, needed: 10 }));
+}
+
+#[test]
+fn every_start_begins_within_the_bounds_of_the_search() {
+    let fitted = quietly(&bank_data(100), &FitOptions { epochs: 0, ..small(Family::XpnnPlus, 4, 2) });
+    let network = fitted.model.network();
+    Layout::new(*network.architecture()).check(network.parameters()).unwrap();
+    assert!(fitted.model.provenance().runs.iter().all(|run| run.history.len() == 1));
+}
