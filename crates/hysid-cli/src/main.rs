@@ -1,2 +1,84 @@
-//! The program.
-fn main() {}
+//! The program `hysid`: identify, simulate and judge hysteresis from the command line.
+//!
+//! Results go to stdout, everything else to stderr. Exit status: 0, 1 (data, model, input or output),
+//! 2 (usage), 130 (Ctrl-C, after the best model so far is saved).
+
+mod arguments;
+mod cell;
+mod columns;
+mod commands;
+mod data;
+mod errors_table;
+mod files;
+mod identification;
+mod interrupt;
+mod messages;
+mod plot;
+mod progress;
+mod report;
+mod table;
+mod understanding;
+mod unit;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use clap::error::ErrorKind;
+
+use arguments::{Arguments, Command};
+use messages::{StdoutClosed, Usage, note};
+
+/// How a command ended when nothing went wrong.
+enum Outcome {
+    /// It did all it was asked to.
+    Done,
+    /// Ctrl-C ended it early; what was found is saved.
+    Interrupted,
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return refuse(&error),
+    };
+    let outcome = match arguments.command {
+        Command::Demo(arguments) => commands::demo::run(&arguments),
+        Command::Fit(arguments) => commands::fit::run(&arguments),
+        Command::Simulate(arguments) => commands::simulate::run(&arguments),
+        Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(interrupt::EXIT_STATUS),
+        // Whoever read the results has seen enough.
+        Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
+        Err(error) => {
+            note(format_args!("error: {error:#}"));
+            ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
+        }
+    }
+}
+
+/// Shows help or version where these were asked for, otherwise what is wrong with the command line,
+/// in one line.
+fn refuse(error: &clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp
+        | ErrorKind::DisplayVersion
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            // A closed pipe is no reason to complain.
+            let _ = error.print();
+            ExitCode::from(error.exit_code() as u8)
+        }
+        _ => {
+            let text = error.render().to_string();
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+            let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
+            let said = said.join(" ");
+            let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
+            note(format_args!("{said} (see `hysid --help`)"));
+            ExitCode::from(2)
+        }
+    }
+}

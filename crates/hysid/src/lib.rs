@@ -30,6 +30,7 @@
 //! of networks, [`training`] identifies one, [`model`] is the result.
 
 pub mod error;
+mod free_run;
 mod linear_algebra;
 pub mod metrics;
 pub mod model;

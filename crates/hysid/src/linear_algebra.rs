@@ -174,7 +174,7 @@ impl Symmetric {
                 row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
             }
             let pivot = row[i] - dot(&row[..i], &row[..i]);
-            if !(pivot > row[i].abs() * 1e-15) {
+            if pivot.is_nan() || pivot <= row[i].abs() * 1e-15 {
                 return None;
             }
             row[i] = pivot.sqrt();

@@ -5,13 +5,16 @@ mod file;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{DataProblem, Error, Result};
-use crate::metrics::{ErrorSums, Errors};
+use crate::error::{Channel, DataProblem, Error, Result};
+use crate::free_run::FreeRun;
+use crate::metrics::Errors;
 use crate::network::{Family, Network, Simulator};
 use crate::rate::RateMethod;
 use crate::record::{ColumnNames, Dataset, Record};
 use crate::scaling::Scaling;
-use crate::training::{FitOptions, Run, Termination};
+use crate::training::history::Run;
+use crate::training::options::FitOptions;
+use crate::training::termination::Termination;
 use crate::warning::Warning;
 
 pub use file::FORMAT_VERSION;
@@ -161,24 +164,8 @@ impl Model {
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
-        self.simulate_with(&mut self.network.simulator(), record)
-    }
-
-    fn simulate_with(&self, simulator: &mut Simulator, record: &Record) -> Result<Vec<f64>> {
-        let (expected, found) = (self.scaling.inputs.len(), record.inputs().len());
-        if expected != found {
-            return Err(record.defect(None, None, DataProblem::Inputs { expected, found }));
-        }
-        if self.needs_time() && record.time().is_none() {
-            return Err(record.defect(None, Some(crate::error::Channel::Time), DataProblem::NoTimeForModel));
-        }
-        let drive = self.scaling.drive(record, self.network.architecture(), self.rate)?;
-        let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
-        let mut y = vec![0.0; record.len()];
-        simulator.reset();
-        simulator.run(&u, &drive.steps, &mut y);
-        y.iter_mut().for_each(|y| *y = self.scaling.output(*y));
-        Ok(y)
+        self.check_time(record)?;
+        FreeRun::new(&self.network, &self.scaling, self.rate).record(record)
     }
 
     /// Errors of free runs over all records.
@@ -186,15 +173,15 @@ impl Model {
     /// # Errors
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
-        let mut sums = ErrorSums::default();
-        let mut simulator = self.network.simulator();
-        for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(record.output(), &self.simulate_with(&mut simulator, record)?);
+        data.records().iter().try_for_each(|record| self.check_time(record))?;
+        FreeRun::new(&self.network, &self.scaling, self.rate).errors(data)
+    }
+
+    fn check_time(&self, record: &Record) -> Result<()> {
+        if self.needs_time() && record.time().is_none() {
+            return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTimeForModel));
         }
-        sums.errors(&data.names().output).ok_or_else(|| {
-            let output = Some(crate::error::Channel::Output);
-            data.records()[0].defect(None, output, DataProblem::NothingToScore)
-        })
+        Ok(())
     }
 
     /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.

@@ -55,7 +55,7 @@ impl Network {
                 architecture.output_weights()
             )));
         }
-        match output.iter().find(|weight| !(weight.abs() <= LARGEST_OUTPUT_WEIGHT)) {
+        match output.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_OUTPUT_WEIGHT) {
             Some(weight) => Err(Error::Option(format!("output weight {weight} is not a usable number"))),
             None => Ok(Self { architecture, parameters, output }),
         }

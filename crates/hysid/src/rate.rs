@@ -41,7 +41,7 @@ impl RateMethod {
             (RateMethod::Backward, Some(time)) => backward(time, &record.inputs()[0]),
             (RateMethod::SavitzkyGolay, Some(time)) => savitzky_golay(time, &record.inputs()[0]),
         };
-        match rate.iter().position(|rate| !(rate.abs() <= LARGEST_VALUE)) {
+        match rate.iter().position(|rate| rate.is_nan() || rate.abs() > LARGEST_VALUE) {
             Some(row) => {
                 let problem = DataProblem::RateTooLarge(rate[row]);
                 Err(record.defect(Some(row), Some(Channel::Time), problem))

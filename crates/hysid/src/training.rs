@@ -3,9 +3,11 @@
 //! [`fit`] is the whole of it: scale, start from several random networks, let each descend, judge
 //! them on data that were held out, and train the best on everything.
 
+pub mod history;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod objective;
+pub mod options;
 pub mod start;
 pub mod termination;
 
@@ -13,17 +15,18 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::metrics::{ErrorSums, Errors};
+use crate::free_run::FreeRun;
+use crate::metrics::Errors;
 use crate::model::{Model, Provenance};
-use crate::network::{Architecture, Family, Network, Sizes};
-use crate::rate::RateMethod;
+use crate::network::Architecture;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+pub use history::{HistoryPoint, Phase, Run};
 use levenberg_marquardt::Descent;
-use objective::{Objective, Regularisation};
+use objective::Objective;
+pub use options::{FitOptions, Regularisation};
 pub use termination::Termination;
 
 /// Fewest rows with an output that a model is identified from.
@@ -31,51 +34,6 @@ pub const FEWEST_ROWS: usize = 10;
 
 /// Most iterations of a start.
 const MOST_EPOCHS: usize = 1_000_000;
-
-/// What the user can choose; every field has the name of its command-line option.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FitOptions {
-    /// The network family.
-    pub model: Family,
-    /// Numbers of neurons.
-    #[serde(flatten)]
-    pub sizes: Sizes,
-    /// Stops do not deteriorate, whatever the family.
-    pub no_deterioration: bool,
-    /// How the rate is found; `None` for no rate.
-    pub rate: Option<RateMethod>,
-    /// Random networks to start from.
-    pub starts: usize,
-    /// Levenberg-Marquardt iterations of each start; the winner gets as many again on all data.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-    /// Share of the data held out to choose among the starts.
-    pub validation: f64,
-    /// Penalties on the weights.
-    #[serde(flatten)]
-    pub regularisation: Regularisation,
-    /// Scored rows that early iterations use at most; the memory runs through every row, and the last
-    /// iterations see all.
-    pub thin: usize,
-}
-
-impl Default for FitOptions {
-    fn default() -> Self {
-        Self {
-            model: Family::XpnnPlus,
-            sizes: Sizes::default(),
-            no_deterioration: false,
-            rate: None,
-            starts: 8,
-            epochs: 40,
-            seed: 1,
-            validation: 0.25,
-            regularisation: Regularisation::default(),
-            thin: 20_000,
-        }
-    }
-}
 
 /// Where a fit is, told to the observer after every iteration.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,39 +50,8 @@ pub struct Progress {
     pub done: f64,
 }
 
-/// A part of the fit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Phase {
-    /// The random starts, on the training part.
-    Starts,
-    /// The chosen start, on all data.
-    Refit,
-}
-
-/// One point of a training history.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct HistoryPoint {
-    /// Iteration.
-    pub epoch: usize,
-    /// Error on the training rows, in percent of the output's standard deviation.
-    pub train_nrmse_percent: f64,
-}
-
-/// What became of one start, or of the refit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Run {
-    /// Which part of the fit it is.
-    pub phase: Phase,
-    /// Start, counted from 0.
-    pub start: usize,
-    /// Error after each iteration.
-    pub history: Vec<HistoryPoint>,
-    /// Why it ended.
-    pub termination: Termination,
-    /// Error on the data held out, in percent of their standard deviation.
-    pub validation_nrmse_percent: Option<f64>,
-}
+/// Who is told of the progress, and may break off.
+pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
 /// A fitted model and how it came about.
 #[derive(Debug, Clone)]
@@ -143,11 +70,7 @@ pub struct Fit {
 ///
 /// # Errors
 /// Data that nothing can be identified from, or options outside their meaning.
-pub fn fit(
-    data: &Dataset,
-    options: &FitOptions,
-    observer: &mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send),
-) -> Result<Fit> {
+pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     data.check_identifiable(FEWEST_ROWS)?;
     let architecture = architecture(data, options)?;
     let scaling = Scaling::of(data, options.rate)?;
@@ -166,10 +89,8 @@ pub fn fit(
             let parameters = start::random(&objective, options.seed, start);
             let descent = watch.descend(&objective.thinned(options.thin), Phase::Starts, start, parameters);
             let network = descent.network(&architecture)?;
-            let validation = match held_out {
-                Some(held_out) => errors_of(&network, held_out, &scaling, options.rate)?,
-                None => errors_of(&network, kept, &scaling, options.rate)?,
-            };
+            let judge = held_out.unwrap_or(kept);
+            let validation = FreeRun::new(&network, &scaling, options.rate).errors(judge)?;
             Ok(Judged { start, descent, validation })
         })
         .collect::<Result<_>>()?;
@@ -201,7 +122,7 @@ pub fn fit(
         chosen_start: best.start,
         termination,
         runs,
-        train: errors_of(&network, data, &scaling, options.rate)?,
+        train: FreeRun::new(&network, &scaling, options.rate).errors(data)?,
         validation: held_out.is_some().then(|| best.validation.clone()),
     };
     let model = Model::new(options.model, network, scaling, options.rate, data, provenance)?;
@@ -225,28 +146,6 @@ fn architecture(data: &Dataset, options: &FitOptions) -> Result<Architecture> {
     let mut architecture = Architecture::new(options.model, options.sizes, inputs, rate, data.has_time())?;
     architecture.deterioration &= !options.no_deterioration;
     Ok(architecture)
-}
-
-/// Errors of a free run over a data set, in the user's unit.
-fn errors_of(
-    network: &Network,
-    data: &Dataset,
-    scaling: &Scaling,
-    rate: Option<RateMethod>,
-) -> Result<Errors> {
-    let mut sums = ErrorSums::default();
-    let mut simulator = network.simulator();
-    for record in data.records().iter().filter(|record| record.scored() > 0) {
-        let drive = scaling.drive(record, network.architecture(), rate)?;
-        let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
-        let mut y = vec![0.0; drive.len()];
-        simulator.reset();
-        simulator.run(&u, &drive.steps, &mut y);
-        y.iter_mut().for_each(|y| *y = scaling.output(*y));
-        sums.add(record.output(), &y);
-    }
-    sums.errors(&data.names().output)
-        .ok_or_else(|| data.records()[0].defect(None, None, crate::error::DataProblem::NothingToScore))
 }
 
 /// A descent and how well it does on the data held out.
@@ -281,7 +180,7 @@ impl Judged {
 
 /// The one observer, shared by all starts.
 struct Watch<'a> {
-    observer: Mutex<&'a mut (dyn FnMut(&Progress) -> ControlFlow<()> + Send)>,
+    observer: Mutex<&'a mut Observer<'a>>,
     options: &'a FitOptions,
     /// Iterations that all runs together have done or will not need; `usize::MAX` once stopped.
     finished: Mutex<usize>,

@@ -5,7 +5,8 @@ use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
 use hysid::record::{ColumnNames, Dataset, Record};
 use hysid::scaling::Scaling;
 use hysid::training::FitOptions;
-use hysid::training::objective::{Objective, Regularisation};
+use hysid::training::objective::Objective;
+use hysid::training::options::Regularisation;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 

@@ -7,7 +7,7 @@ use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::objective::Regularisation;
+use hysid::training::options::Regularisation;
 use hysid::training::{Fit, FitOptions, Phase, Progress, Termination, fit};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;

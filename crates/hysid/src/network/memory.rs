@@ -172,7 +172,7 @@ impl MemoryLayer {
     ) {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
         let (stops, stress) = rest.split_at_mut(self.stops);
-        self.begin(state, u);
+        self.begin::<S>(state, u);
         let mut done = 0;
         while done + 2 <= self.groups.len() {
             let groups = &self.groups[done..done + 2];
@@ -216,9 +216,9 @@ impl MemoryLayer {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
         let (stops, stress) = rest.split_at_mut(self.stops);
         if !state.started {
-            self.begin_slopes(sensitivity, u);
+            self.begin_slopes::<S>(sensitivity, u);
         }
-        self.begin(state, u);
+        self.begin::<S>(state, u);
         for (g, group) in self.groups.iter().enumerate() {
             let first = g * LANES;
             let memory = StopMemory {
@@ -227,9 +227,12 @@ impl MemoryLayer {
                 play_slope: &mut sensitivity.play[g],
                 slip_slope: &mut sensitivity.slip[g],
             };
-            let weights = &mut slopes.weights[first * self.channels..];
-            let ln_beta = slopes.ln_beta.get_mut(first..).unwrap_or(&mut []);
-            advance_with_slopes(simd, group, memory, u, rows, &mut stops[first..], weights, ln_beta);
+            let outputs = StopSlopes {
+                z: &mut stops[first..],
+                weights: &mut slopes.weights[first * self.channels..],
+                ln_beta: slopes.ln_beta.get_mut(first..).unwrap_or(&mut []),
+            };
+            advance_with_slopes(simd, group, memory, u, rows, outputs);
         }
         self.run_linear::<S>(u, rows, linear);
         self.relax(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
@@ -239,28 +242,26 @@ impl MemoryLayer {
     /// At the first row of a record the plays jump from virgin to where they are held; that jump is
     /// no slip: theory.md (1.5).
     #[inline(always)]
-    fn begin(&self, state: &mut MemoryState, u: &[Row]) {
+    fn begin<S: Simd>(&self, state: &mut MemoryState, u: &[Row]) {
         if state.started {
             return;
         }
         state.started = true;
-        for (group, play) in self.groups.iter().zip(&mut state.play) {
-            for l in 0..LANES {
-                let v: f64 = (0..self.channels).map(|c| group.weights[c][l] * u[c][0]).sum();
-                play[l] = play::follow(play[l], v, 1.0);
+        for (group, plays) in self.groups.iter().zip(&mut state.play) {
+            for (play, v) in plays.iter_mut().zip(drive::<S>(group, u, 0)) {
+                *play = play::follow(*play, v, 1.0);
             }
         }
     }
 
+    /// A play that has jumped at the first row follows that row's input.
     #[inline(always)]
-    fn begin_slopes(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
+    fn begin_slopes<S: Simd>(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
         for (group, slopes) in self.groups.iter().zip(&mut sensitivity.play) {
-            for l in 0..LANES {
-                let v: f64 = (0..self.channels).map(|c| group.weights[c][l] * u[c][0]).sum();
-                if v.abs() > 1.0 {
-                    for c in 0..self.channels {
-                        slopes[c][l] = u[c][0];
-                    }
+            let v = drive::<S>(group, u, 0);
+            for (slopes, u) in slopes.iter_mut().zip(u) {
+                for (slope, v) in slopes.iter_mut().zip(v) {
+                    *slope = if v.abs() > 1.0 { u[0] } else { 0.0 };
                 }
             }
         }
@@ -408,6 +409,13 @@ struct StopMemory<'a> {
     slip_slope: &'a mut [Lanes],
 }
 
+/// Where a group's outputs and their derivatives go, one row for each.
+struct StopSlopes<'a> {
+    z: &'a mut [Row],
+    weights: &'a mut [Row],
+    ln_beta: &'a mut [Row],
+}
+
 /// Advances one group through a block with the sub-gradient of theory.md (2.9). At a kink the
 /// sample counts as sticking.
 #[inline(always)]
@@ -417,10 +425,9 @@ fn advance_with_slopes<S: Simd>(
     memory: StopMemory,
     u: &[Row],
     rows: usize,
-    z: &mut [Row],
-    weights: &mut [Row],
-    ln_beta: &mut [Row],
+    outputs: StopSlopes,
 ) {
+    let StopSlopes { z, weights, ln_beta } = outputs;
     let live = z.len().min(LANES);
     let reached = whole_lanes(rows);
     let mut output: Tile = [[[0.0; LANES]]; BLOCK];

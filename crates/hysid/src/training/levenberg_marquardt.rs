@@ -7,8 +7,9 @@ use std::ops::ControlFlow;
 
 use crate::error::Result;
 use crate::network::{Architecture, Network};
+use crate::training::history::HistoryPoint;
 use crate::training::objective::{Objective, Slope, Value};
-use crate::training::{HistoryPoint, Termination};
+use crate::training::termination::Termination;
 
 /// First damping μ, relative to the curvature.
 const FIRST_DAMPING: f64 = 1e-2;

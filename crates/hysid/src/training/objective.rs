@@ -3,41 +3,13 @@
 
 use std::borrow::Cow;
 
-use serde::{Deserialize, Serialize};
-
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linear_algebra::Symmetric;
 use crate::network::{Architecture, Columns, Drive, Layout, Sweep};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
-use crate::training::FitOptions;
 use crate::training::least_squares::{OutputProblem, OutputSolution};
-
-/// Penalties on the weights, in scaled units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Regularisation {
-    /// λ of theory.md (3.1), on the output weights.
-    pub ridge: f64,
-    /// κ of theory.md (3.1), on the weights of stops and tanh neurons.
-    pub decay: f64,
-}
-
-impl Default for Regularisation {
-    fn default() -> Self {
-        Self { ridge: 1e-6, decay: 1e-7 }
-    }
-}
-
-impl Regularisation {
-    pub(crate) fn check(&self) -> Result<()> {
-        for (name, value) in [("ridge", self.ridge), ("decay", self.decay)] {
-            if !(0.0..=1e6).contains(&value) {
-                return Err(Error::Option(format!("{name} {value} is not between 0 and 1e6")));
-            }
-        }
-        Ok(())
-    }
-}
+use crate::training::options::{FitOptions, Regularisation};
 
 /// The objective on given data.
 #[derive(Debug, Clone)]
@@ -113,8 +85,7 @@ impl<'a> Objective<'a> {
         let mut rows = self.rows;
         if run > 1 {
             rows = 0;
-            let mut seen = 0usize;
-            for y in targets.iter_mut().flatten().filter(|y| !y.is_nan()) {
+            for (seen, y) in targets.iter_mut().flatten().filter(|y| !y.is_nan()).enumerate() {
                 let (index, place) = (seen / run, seen % run);
                 // A fixed hash (splitmix) picks the place within each run.
                 let mut hash = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -124,7 +95,6 @@ impl<'a> Objective<'a> {
                 } else {
                     *y = f64::NAN;
                 }
-                seen += 1;
             }
         }
         Objective {

@@ -1,0 +1,185 @@
+//! Which column is what: found from the names, from options, or from a model.
+
+use anyhow::{Result, anyhow, bail, ensure};
+use hysid::model::Model;
+use hysid::rate::RateMethod;
+use hysid::record::ColumnNames;
+
+use crate::arguments::{ColumnOptions, RateOption};
+use crate::messages::Usage;
+use crate::table::Table;
+use crate::unit;
+
+/// The columns of each role, by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Roles {
+    /// Tells the records apart.
+    pub record: Option<String>,
+    /// Time stamps.
+    pub time: Option<String>,
+    /// Inputs.
+    pub inputs: Vec<String>,
+    /// Given rate of the first input.
+    pub rate: Option<String>,
+    /// The output.
+    pub output: String,
+}
+
+impl Roles {
+    /// Finds the roles in a table from options and names.
+    pub fn detect(table: &Table, options: &ColumnOptions) -> Result<Self> {
+        let rate = match &options.rate {
+            RateOption::Column(name) => Some(name.clone()),
+            _ => None,
+        };
+        let mut taken: Vec<(&str, &str)> = Vec::new();
+        let named = [
+            ("--record", &options.record),
+            ("--time", &options.time),
+            ("--rate", &rate),
+            ("--output", &options.output),
+        ];
+        let named = named.into_iter().filter_map(|(option, name)| name.as_ref().map(|name| (option, name)));
+        for (option, name) in named.chain(options.input.iter().map(|name| ("--input", name))) {
+            require(table, name, option)?;
+            if let Some((other, _)) = taken.iter().find(|(_, taken)| taken == name) {
+                return Err(
+                    Usage(format!("column \"{name}\" is named twice, by {other} and {option}")).into()
+                );
+            }
+            taken.push((option, name));
+        }
+        let mut free: Vec<&String> =
+            table.header.iter().filter(|name| !taken.iter().any(|(_, taken)| taken == name)).collect();
+        let mut claim = |given: &Option<String>, suits: &dyn Fn(&str) -> bool| {
+            given.clone().or_else(|| {
+                let place = free.iter().position(|name| suits(name))?;
+                Some(free.remove(place).clone())
+            })
+        };
+        let record = claim(&options.record, &is_record);
+        let time = claim(&options.time, &unit::is_time);
+        let output = options.output.clone().or_else(|| free.pop().cloned());
+        let inputs: Vec<String> = if options.input.is_empty() {
+            free.into_iter().cloned().collect()
+        } else {
+            options.input.clone()
+        };
+        match output {
+            Some(output) if !inputs.is_empty() => Ok(Self { record, time, inputs, rate, output }),
+            output => bail!(
+                "{}: no column is left for the input beside output \"{}\" (columns: {})",
+                table.file,
+                output.unwrap_or_default(),
+                table.header.join(", ")
+            ),
+        }
+    }
+
+    /// Finds the columns that a model needs, by the names it was trained on or those of options.
+    /// `scored` tells if the output is needed too.
+    pub fn of_model(model: &Model, table: &Table, options: &ColumnOptions, scored: bool) -> Result<Self> {
+        let names = model.names();
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
+            Some(name) => require(table, name, option).map(|()| name.clone()),
+            None if table.column(trained).is_some() => Ok(trained.to_string()),
+            None => Err(anyhow!(
+                "{}: there is no column \"{trained}\", the model's {what} (columns: {}; name another with {option})",
+                table.file,
+                table.header.join(", ")
+            )),
+        };
+        let given_rate = rate_of_model(model, options)?;
+        let inputs: Vec<String> = if options.input.is_empty() {
+            let find = |name: &String| find(&None, name, "input", "--input");
+            names.inputs.iter().map(find).collect::<Result<_>>()?
+        } else {
+            let (expected, found) = (names.inputs.len(), options.input.len());
+            if expected != found {
+                let inputs = names.inputs.join(", ");
+                return Err(Usage(format!(
+                    "--input names {found} columns, but the model's inputs are {expected}: {inputs}"
+                ))
+                .into());
+            }
+            options
+                .input
+                .iter()
+                .map(|name| require(table, name, "--input").map(|()| name.clone()))
+                .collect::<Result<_>>()?
+        };
+        let time = match model.needs_time() {
+            true => Some(find(&options.time, names.time.as_deref().unwrap_or("t"), "time", "--time")?),
+            false => None,
+        };
+        let rate = match &names.rate {
+            Some(trained) if model.rate() == Some(RateMethod::Given) => {
+                Some(find(&given_rate, trained, "rate", "--rate")?)
+            }
+            _ => None,
+        };
+        let output = match scored {
+            true => find(&options.output, &names.output, "output", "--output")?,
+            false => options.output.clone().unwrap_or_else(|| names.output.clone()),
+        };
+        let used =
+            |name: &str| inputs.iter().chain(&time).chain(&rate).any(|used| used == name) || output == name;
+        let record = match &options.record {
+            Some(name) => require(table, name, "--record").map(|()| Some(name.clone()))?,
+            None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
+        };
+        Ok(Self { record, time, inputs, rate, output })
+    }
+
+    /// The names as the library keeps them.
+    pub fn names(&self) -> ColumnNames {
+        ColumnNames {
+            time: self.time.clone(),
+            inputs: self.inputs.clone(),
+            rate: self.rate.clone(),
+            output: self.output.clone(),
+        }
+    }
+
+    /// Refuses a further table that lacks a column of the first.
+    pub fn check_against(&self, table: &Table, first: &Table) -> Result<()> {
+        let all = self.record.iter().chain(&self.time).chain(&self.inputs).chain(&self.rate);
+        for name in all.chain([&self.output]) {
+            ensure!(
+                table.column(name).is_some(),
+                "{}: there is no column \"{name}\", as in {} (columns: {})",
+                table.file,
+                first.file,
+                table.header.join(", ")
+            );
+        }
+        Ok(())
+    }
+}
+
+fn is_record(name: &str) -> bool {
+    ["record", "segment"].contains(&name.to_lowercase().as_str())
+}
+
+fn require(table: &Table, name: &str, option: &str) -> Result<()> {
+    ensure!(
+        table.column(name).is_some(),
+        "{}: there is no column \"{name}\" for {option} (columns: {})",
+        table.file,
+        table.header.join(", ")
+    );
+    Ok(())
+}
+
+/// The column that `--rate` names for a model with a given rate; a model's method cannot be changed.
+fn rate_of_model(model: &Model, options: &ColumnOptions) -> Result<Option<String>> {
+    match (&options.rate, model.rate()) {
+        (RateOption::Auto, _) | (RateOption::None, None) => Ok(None),
+        (RateOption::Column(name), Some(RateMethod::Given)) => Ok(Some(name.clone())),
+        (RateOption::Method(asked), Some(trained)) if *asked == trained => Ok(None),
+        _ => {
+            Err(Usage("the rate is part of the model and cannot be changed here: leave out --rate".into())
+                .into())
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! One file for each command.
+
+pub mod bench;
+pub mod demo;
+pub mod evaluate;
+pub mod fit;
+pub mod simulate;
+
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
+use hysid::model::Model;
+
+use crate::files;
+
+/// Reads a model file.
+fn read_model(path: &Path) -> Result<Model> {
+    let bytes = files::read(path)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| anyhow!("{}: this is not a Hysid model file: it is not text", path.display()))?;
+    Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))
+}

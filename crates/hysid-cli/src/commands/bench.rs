@@ -1,0 +1,151 @@
+//! `hysid bench`: speed on this machine.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use hysid::network::{Family, Sizes};
+use hysid::operator::{Operator, Stop};
+use hysid::rate::RateMethod;
+use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::training::{Fit, FitOptions, fit};
+
+use crate::Outcome;
+use crate::arguments::Bench;
+use crate::messages::{note, results};
+
+/// Samples of the simulation.
+const SAMPLES: usize = 1_000_000;
+
+/// Samples of the training record.
+const TRAINING_SAMPLES: usize = 2000;
+
+/// A speed is the median of this many runs.
+const RUNS: usize = 5;
+
+/// One measured speed.
+#[derive(serde::Serialize)]
+struct Speed {
+    value: f64,
+    unit: &'static str,
+    setting: String,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Bench) -> Result<Outcome> {
+    let instructions = hysid::simd::instruction_set();
+    if !arguments.json {
+        note(format_args!("measuring, a few seconds (instruction set: {instructions})\n"));
+    }
+    let speeds = speeds(instructions)?;
+    results(&match arguments.json {
+        true => serde_json::to_string_pretty(&speeds)? + "\n",
+        false => {
+            let line = |(name, speed): (&&str, &Speed)| {
+                format!("{name:<32} {:>10.4} {}\n    {}\n", speed.value, speed.unit, speed.setting)
+            };
+            speeds.iter().map(line).collect::<String>()
+        }
+    })?;
+    Ok(Outcome::Done)
+}
+
+fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
+    let data = Dataset::new(ColumnNames::plain(1), vec![record(TRAINING_SAMPLES)?])?;
+    let options = FitOptions {
+        model: Family::Xpnn,
+        sizes: Sizes { stops: 10, hidden: 10, relaxation: 0 },
+        rate: Some(RateMethod::Central),
+        ..FitOptions::default()
+    };
+    let network = format!("xpnn, 10 stops, 10 hidden, rate, deterioration, {instructions}");
+
+    let began = Instant::now();
+    fit(&data, &options, &mut |_| ControlFlow::Continue(()))?;
+    let fit_s = began.elapsed().as_secs_f64();
+    let one_thread =
+        rayon::ThreadPoolBuilder::new().num_threads(1).build().context("cannot start a thread")?;
+    let (fitted, iteration_ms) = one_thread.install(|| one_start(&data, &options))?;
+
+    let speed = |value, unit, setting| Speed { value, unit, setting };
+    let threads = rayon::current_num_threads();
+    let (starts, epochs) = (options.starts, options.epochs);
+    Ok(BTreeMap::from([
+        (
+            "simulate_ns_per_sample",
+            speed(simulate_ns(&fitted)?, "ns", format!("{network}, {SAMPLES} samples, 1 thread")),
+        ),
+        ("step_ns", speed(step_ns(&fitted)?, "ns", format!("{network}, sample by sample"))),
+        (
+            "levenberg_marquardt_iteration_ms",
+            speed(iteration_ms, "ms", format!("{network}, {TRAINING_SAMPLES} samples, 1 thread")),
+        ),
+        (
+            "fit_s",
+            speed(
+                fit_s,
+                "s",
+                format!(
+                    "{network}, {TRAINING_SAMPLES} samples, {starts} starts, {epochs} epochs, {threads} threads"
+                ),
+            ),
+        ),
+    ]))
+}
+
+/// A specimen with memory under a swept, modulated input.
+fn record(samples: usize) -> Result<Record> {
+    let time: Vec<f64> = (0..samples).map(|k| 0.01 * k as f64).collect();
+    let x: Vec<f64> = time.iter().map(|t| (3.0 * t).sin() * (0.6 + 0.4 * (0.37 * t).sin())).collect();
+    let sliders = [0.1, 0.3, 0.7].map(|r| Stop::new(r).map(|mut stop| stop.run(&x)));
+    let [a, b, c] = sliders;
+    let (a, b, c) = (a?, b?, c?);
+    let y = (0..samples).map(|k| a[k] + b[k] + c[k] + 0.1 * x[k].powi(3)).collect();
+    Ok(Record::new("bench", vec![x], y)?.with_time(time)?)
+}
+
+/// A fit from one start, and the milliseconds of an iteration.
+fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fit, f64)> {
+    let options = FitOptions { starts: 1, ..options.clone() };
+    let mut iterations = 0usize;
+    let began = Instant::now();
+    let fitted = fit(data, &options, &mut |_| {
+        iterations += 1;
+        ControlFlow::Continue(())
+    })?;
+    Ok((fitted, 1e3 * began.elapsed().as_secs_f64() / iterations.max(1) as f64))
+}
+
+fn simulate_ns(fitted: &Fit) -> Result<f64> {
+    let record = record(SAMPLES)?;
+    median(|| {
+        black_box(fitted.model.simulate(black_box(&record))?);
+        Ok(SAMPLES)
+    })
+}
+
+fn step_ns(fitted: &Fit) -> Result<f64> {
+    let record = record(SAMPLES / 10)?;
+    let time = record.time().context("the record has time stamps")?;
+    median(|| {
+        let mut stepper = fitted.model.stepper();
+        for (x, t) in record.inputs()[0].iter().zip(time) {
+            black_box(stepper.step(&[*x], *t, None)?);
+        }
+        Ok(time.len())
+    })
+}
+
+/// Median over several runs of the nanoseconds for one sample; a run tells its samples.
+fn median(mut run: impl FnMut() -> Result<usize>) -> Result<f64> {
+    let mut times = Vec::with_capacity(RUNS);
+    for _ in 0..RUNS {
+        let began = Instant::now();
+        let samples = run()?;
+        times.push(1e9 * began.elapsed().as_secs_f64() / samples as f64);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[RUNS / 2])
+}

@@ -1,0 +1,123 @@
+//! `hysid fit`: from measured data to a model file.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use hysid::metrics::Errors;
+use hysid::network::{Architecture, Family};
+use hysid::rate::RateMethod;
+use hysid::training::Termination;
+
+use crate::Outcome;
+use crate::arguments::{Fit, RateOption};
+use crate::columns::Roles;
+use crate::commands::read_model;
+use crate::data::{Data, read_tables};
+use crate::identification::{self, Identified, check_outputs, identify, report_path};
+use crate::messages::{Usage, results};
+use crate::{files, interrupt};
+
+/// Runs the command.
+pub fn run(arguments: &Fit) -> Result<Outcome> {
+    let out = out(arguments)?;
+    let report = (!arguments.no_report).then(|| report_path(&out));
+    let outputs: Vec<&Path> = std::iter::once(&out).chain(&report).map(PathBuf::as_path).collect();
+    let tables = read_tables(&arguments.train)?;
+    let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
+    check_outputs(&outputs, &inputs)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
+        .with_context(|| tables[0].file.clone())?;
+    let data = Data::new(tables, roles, true)?;
+    let options = arguments.training.fit_options(rate);
+    let identified = identify(&data, &options, arguments.threads, arguments.time_limit)?;
+
+    let sets = report.is_some().then(|| vec![("training", &data.set)]);
+    let written = identified.save(&out, sets)?;
+    if arguments.json {
+        results(&json(&identified, &out)?)?;
+    } else {
+        results(&(identified.results(None, &written) + &next(&out)))?;
+    }
+    if interrupt::requested() {
+        identification::note_interrupted(&out);
+        return Ok(Outcome::Interrupted);
+    }
+    Ok(Outcome::Done)
+}
+
+/// The model file: as asked, or the first table's name in the present folder.
+fn out(arguments: &Fit) -> Result<PathBuf> {
+    let Some(out) = &arguments.out else {
+        let mut name = arguments.train[0].file_stem().unwrap_or("model".as_ref()).to_os_string();
+        name.push(".json");
+        let out = PathBuf::from(name);
+        if out.exists() && read_model(&out).is_err() {
+            let advice = "is there already and is no model: name the model file with --out";
+            return Err(Usage(format!("{} {advice}", out.display())).into());
+        }
+        return Ok(out);
+    };
+    if out.extension().is_some_and(|extension| extension == "html") {
+        let advice = "name the model file with .json: its report gets the name with .html";
+        return Err(Usage(format!("{}: {advice}", out.display())).into());
+    }
+    if out.as_os_str() == "-" {
+        return Err(Usage("--out needs the name of a file for the model".into()).into());
+    }
+    Ok(out.clone())
+}
+
+/// The rate that `--rate` means for these columns and this family.
+fn rate_method(option: &RateOption, roles: &Roles, family: Family) -> Result<Option<RateMethod>> {
+    Ok(match option {
+        RateOption::Auto => (roles.time.is_some() && family.uses_rate()).then_some(RateMethod::Central),
+        RateOption::None => None,
+        RateOption::Column(_) => Some(RateMethod::Given),
+        RateOption::Method(_) if roles.time.is_none() => {
+            bail!("there is no time column to take the rate from (name it with --time, or use --rate none)")
+        }
+        RateOption::Method(method) => Some(*method),
+    })
+}
+
+fn next(model: &Path) -> String {
+    let model = files::shown(model);
+    format!("\nnext:\n  hysid evaluate {model} DATA.csv\n  hysid simulate {model} DATA.csv -o OUT.csv\n")
+}
+
+/// The object that `--json` prints.
+#[derive(serde::Serialize)]
+struct Printed<'a> {
+    model: String,
+    architecture: PrintedArchitecture,
+    parameters: usize,
+    train: &'a Errors,
+    validation: Option<&'a Errors>,
+    seconds: f64,
+    evaluations: usize,
+    termination: Termination,
+}
+
+#[derive(serde::Serialize)]
+struct PrintedArchitecture {
+    family: Family,
+    #[serde(flatten)]
+    parts: Architecture,
+}
+
+fn json(identified: &Identified, out: &Path) -> Result<String> {
+    let (model, provenance) = (&identified.model, identified.model.provenance());
+    let architecture = *model.network().architecture();
+    let printed = Printed {
+        model: out.display().to_string(),
+        architecture: PrintedArchitecture { family: model.family(), parts: architecture },
+        parameters: architecture.parameters(),
+        train: &provenance.train,
+        validation: provenance.validation.as_ref(),
+        seconds: identified.seconds,
+        evaluations: identified.evaluations,
+        termination: provenance.termination,
+    };
+    Ok(serde_json::to_string_pretty(&printed)? + "\n")
+}

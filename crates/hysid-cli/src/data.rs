@@ -1,0 +1,248 @@
+//! From tables to the library's data set, and from the library's errors back to file, line and
+//! column.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow, bail};
+use hysid::error::{Channel, DataError, DataProblem};
+use hysid::record::{Dataset, Record};
+
+use crate::cell::CellReader;
+use crate::columns::Roles;
+use crate::messages::Usage;
+use crate::table::Table;
+
+/// Measured data and the tables they come from.
+pub struct Data {
+    /// The data as the library takes them.
+    pub set: Dataset,
+    /// What the columns are.
+    pub roles: Roles,
+    /// Where each record stands.
+    pub source: Source,
+}
+
+/// The tables, and which record is where.
+pub struct Source {
+    /// The tables, in the order of the command line.
+    pub tables: Vec<Table>,
+    /// True for each table whose numbers have decimal commas.
+    pub decimal_commas: Vec<bool>,
+    places: Vec<Place>,
+}
+
+/// Where a record stands.
+struct Place {
+    record: String,
+    table: usize,
+    rows: Range<usize>,
+}
+
+impl Data {
+    /// Takes records from tables. Without `scored` the output is not looked at, and blank.
+    pub fn new(tables: Vec<Table>, roles: Roles, scored: bool) -> Result<Self> {
+        for table in &tables[1..] {
+            roles.check_against(table, &tables[0])?;
+        }
+        let stems = stems(&tables);
+        let mut source = Source { decimal_commas: Vec::new(), places: Vec::new(), tables };
+        let mut records = Vec::new();
+        for (index, stem) in stems.iter().enumerate() {
+            let several = stems.len() > 1;
+            let places = places(&source.tables[index], index, &roles, stem, several)?;
+            let first = source.places.len();
+            source.places.extend(places);
+            let columns = Columns::read(&source.tables[index], &roles, scored)?;
+            source.decimal_commas.push(columns.decimal_commas);
+            for place in &source.places[first..] {
+                records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
+            }
+        }
+        let set = Dataset::new(roles.names(), records).map_err(|error| source.explain(error, &roles))?;
+        Ok(Self { set, roles, source })
+    }
+
+    /// Puts an error of the library in the user's words: file, line, column.
+    pub fn explain(&self, error: hysid::Error) -> anyhow::Error {
+        self.source.explain(error, &self.roles)
+    }
+}
+
+impl Source {
+    fn explain(&self, error: hysid::Error, roles: &Roles) -> anyhow::Error {
+        let error = match error {
+            hysid::Error::Data(error) => error,
+            hysid::Error::Option(text) => return Usage(text).into(),
+            other => return other.into(),
+        };
+        let Some(place) = self.places.iter().find(|place| place.record == error.record) else {
+            return error.into();
+        };
+        let table = &self.tables[place.table];
+        let column = error.channel.and_then(|channel| column(channel, roles));
+        if let (Some(row), Some(column)) = (error.row, column) {
+            let line = table.lines[place.rows.start + row];
+            return anyhow!("{}, line {line}, column \"{column}\": {}", table.file, error.problem);
+        }
+        let files = match self.tables.len() {
+            1 => table.file.clone(),
+            n if concerns_all(&error) => format!("{} and {} more", self.tables[0].file, n - 1),
+            _ => table.file.clone(),
+        };
+        match (&error.problem, column) {
+            (DataProblem::TooFewRows { found: 1, needed }, _) => {
+                anyhow!("{files}: only 1 row has an output: at least {needed} are needed to identify a model")
+            }
+            (DataProblem::TooFewRows { found, needed }, _) => {
+                anyhow!(
+                    "{files}: only {found} rows have an output: at least {needed} are needed to identify a model"
+                )
+            }
+            (
+                DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
+                Some(column),
+            ) => {
+                anyhow!("{files}: column \"{column}\" {}", error.problem)
+            }
+            _ => anyhow!("{files}: {}", error.problem),
+        }
+    }
+}
+
+/// True for problems of the data set as a whole, which the library reports with its first record.
+fn concerns_all(error: &DataError) -> bool {
+    matches!(
+        error.problem,
+        DataProblem::ConstantInput(_)
+            | DataProblem::ConstantOutput(_)
+            | DataProblem::NothingToScore
+            | DataProblem::TooFewRows { .. }
+    )
+}
+
+fn column(channel: Channel, roles: &Roles) -> Option<&str> {
+    match channel {
+        Channel::Time => roles.time.as_deref(),
+        Channel::Input(index) => roles.inputs.get(index).map(String::as_str),
+        Channel::Rate => roles.rate.as_deref(),
+        Channel::Output => Some(&roles.output),
+    }
+}
+
+/// A name for each table: its file's stem, or the whole path where two stems are the same.
+fn stems(tables: &[Table]) -> Vec<String> {
+    let stem = |table: &Table| {
+        let path = Path::new(&table.file);
+        path.file_stem().map_or_else(|| table.file.clone(), |stem| stem.to_string_lossy().into_owned())
+    };
+    let all: Vec<String> = tables.iter().map(stem).collect();
+    let unique = |stem: &String| all.iter().filter(|other| *other == stem).count() == 1;
+    all.iter()
+        .zip(tables)
+        .map(|(stem, table)| if unique(stem) { stem.clone() } else { table.file.clone() })
+        .collect()
+}
+
+/// The records of a table: runs of rows with the same name in the record column.
+fn places(table: &Table, index: usize, roles: &Roles, stem: &str, several: bool) -> Result<Vec<Place>> {
+    let Some(column) = &roles.record else {
+        return Ok(vec![Place { record: stem.into(), table: index, rows: 0..table.len() }]);
+    };
+    let cell = place_of(table, column)?;
+    let mut places: Vec<Place> = Vec::new();
+    let mut begun: std::collections::HashSet<&str> = std::collections::HashSet::new();
+    let mut last = None;
+    for row in 0..table.len() {
+        let name = table.cell(row, cell).trim();
+        let at = || format!("{}, line {}, column \"{column}\"", table.file, table.lines[row]);
+        if name.is_empty() {
+            bail!("{}: the cell is empty (every row needs the name of its record)", at());
+        }
+        if last == Some(name) {
+            places.last_mut().expect("a record has begun").rows.end = row + 1;
+            continue;
+        }
+        if !begun.insert(name) {
+            bail!("{}: record \"{name}\" goes on after another began (keep its rows together)", at());
+        }
+        last = Some(name);
+        let record = if several { format!("{stem}/{name}") } else { name.to_string() };
+        places.push(Place { record, table: index, rows: row..row + 1 });
+    }
+    Ok(places)
+}
+
+fn place_of(table: &Table, name: &str) -> Result<usize> {
+    table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{name}\"", table.file))
+}
+
+/// The numbers of a table, column by column.
+struct Columns {
+    time: Option<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+    rate: Option<Vec<f64>>,
+    output: Vec<f64>,
+    decimal_commas: bool,
+}
+
+impl Columns {
+    fn read(table: &Table, roles: &Roles, scored: bool) -> Result<Self> {
+        let mut cells = CellReader::new(table.delimiter);
+        let mut read = |name: &String, is_output: bool| column_of(table, name, is_output, &mut cells);
+        let time = roles.time.as_ref().map(|name| read(name, false)).transpose()?;
+        let inputs = roles.inputs.iter().map(|name| read(name, false)).collect::<Result<_>>()?;
+        let rate = roles.rate.as_ref().map(|name| read(name, false)).transpose()?;
+        let output = match scored {
+            true => read(&roles.output, true)?,
+            false => vec![f64::NAN; table.len()],
+        };
+        Ok(Self { time, inputs, rate, output, decimal_commas: cells.has_decimal_commas() })
+    }
+
+    fn record(&self, place: &Place) -> hysid::Result<Record> {
+        let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
+        let inputs = self.inputs.iter().map(cut).collect();
+        let mut record = Record::new(place.record.clone(), inputs, cut(&self.output))?;
+        if let Some(time) = &self.time {
+            record = record.with_time(cut(time))?;
+        }
+        if let Some(rate) = &self.rate {
+            record = record.with_given_rate(cut(rate))?;
+        }
+        Ok(record)
+    }
+}
+
+/// The numbers of a column; a blank output is NaN.
+fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
+    let place = place_of(table, name)?;
+    let mut numbers = Vec::with_capacity(table.len());
+    for (row, &line) in table.lines.iter().enumerate() {
+        let cell = table.cell(row, place);
+        if cell.trim().is_empty() {
+            if !is_output {
+                bail!(
+                    "{}, line {line}, column \"{name}\": the cell is empty (only the output may be blank)",
+                    table.file
+                );
+            }
+            numbers.push(f64::NAN);
+            continue;
+        }
+        numbers.push(cells.number(cell, line).map_err(|problem| {
+            let hint = match (is_output, problem.ends_with("number")) {
+                (true, true) => " (leave the cell empty to drive the model without scoring)",
+                (false, true) if numbers.is_empty() => " (not an input? name the inputs with --input)",
+                _ => "",
+            };
+            anyhow!("{}, line {line}, column \"{name}\": {problem}{hint}", table.file)
+        })?);
+    }
+    Ok(numbers)
+}
+
+/// Reads tables.
+pub fn read_tables(paths: &[PathBuf]) -> Result<Vec<Table>> {
+    paths.iter().map(|path| Table::read(path)).collect()
+}

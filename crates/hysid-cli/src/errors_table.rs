@@ -1,0 +1,48 @@
+//! Errors as a small table, in the user's units.
+
+use std::fmt::Write;
+
+use hysid::metrics::Errors;
+use hysid::warning::Significant;
+
+use crate::unit;
+
+/// What stands in a row of the table.
+type Measure = fn(&Errors) -> String;
+
+/// One column for each named set of errors, one row for each measure.
+pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
+    let output = sets.first().map_or("", |(_, errors)| errors.output.as_str());
+    let unit = unit::of_column(output).map_or_else(String::new, |unit| format!(", {unit}"));
+    let rows: [(String, Measure); 6] = [
+        (format!("RMSE of {output}{unit}"), |errors| number(errors.rmse)),
+        ("NRMSE, % of std".into(), |errors| percent(errors.nrmse_std_percent)),
+        ("NRMSE, % of range".into(), |errors| percent(errors.nrmse_range_percent)),
+        ("fit, %".into(), |errors| percent(errors.fit_percent)),
+        (format!("largest error{unit}"), |errors| number(errors.max_abs_error)),
+        ("rows scored".into(), |errors| errors.samples.to_string()),
+    ];
+    let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
+    let mut text = " ".repeat(width);
+    for (name, _) in sets {
+        let _ = write!(text, "  {name:>12}");
+    }
+    text.push('\n');
+    for (label, measure) in &rows {
+        let _ = write!(text, "{label:<width$}");
+        for (_, errors) in sets {
+            let _ = write!(text, "  {:>12}", measure(errors));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn number(value: f64) -> String {
+    format!("{:.4}", Significant(value))
+}
+
+/// `None` is for an output that does not vary.
+fn percent(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".into(), |value| format!("{value:.3}"))
+}

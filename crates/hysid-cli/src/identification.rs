@@ -1,0 +1,165 @@
+//! The work of `fit` and `demo`: say what was understood, train, and write model and report.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow};
+use hysid::metrics::Errors;
+use hysid::model::Model;
+use hysid::network::Architecture;
+use hysid::record::Dataset;
+use hysid::summary::Summary;
+use hysid::training::{FitOptions, fit};
+
+use crate::data::Data;
+use crate::messages::{Usage, note, warning};
+use crate::progress::Follower;
+use crate::report::{self, Report, ReportSet};
+use crate::{errors_table, files, interrupt, plot, understanding};
+
+/// A model and what was said and spent on the way to it.
+pub struct Identified {
+    /// The model.
+    pub model: Model,
+    /// Evaluations of the objective.
+    pub evaluations: usize,
+    /// Seconds of training.
+    pub seconds: f64,
+    understood: Vec<(String, String)>,
+    warnings: Vec<String>,
+}
+
+/// Identifies a model, following the training on stderr.
+pub fn identify(
+    data: &Data,
+    options: &FitOptions,
+    threads: Option<u16>,
+    time_limit: Option<f64>,
+) -> Result<Identified> {
+    let architecture = architecture(&data.set, options)?;
+    let summary = Summary::of(&data.set);
+    interrupt::listen()?;
+    let understood = understanding::understanding(data, &summary, options, &architecture);
+    understanding::print(&understood);
+    let mut warnings: Vec<String> =
+        summary.warnings(&data.set).iter().map(|warning| warning.to_string()).collect();
+    if options.rate.is_some() && !architecture.rate {
+        warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", options.model.name()));
+    }
+    warnings.iter().for_each(warning);
+
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
+    let pool = pool.context("cannot start the threads")?;
+    let mut follower = Follower::new(options.starts, time_limit);
+    let fitted = pool.install(|| fit(&data.set, options, &mut |progress| follower.observe(progress)));
+    let seconds = follower.finish();
+    let fitted = fitted.map_err(|error| data.explain(error))?;
+    Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, understood, warnings })
+}
+
+/// The network that the options ask for on these data.
+fn architecture(set: &Dataset, options: &FitOptions) -> Result<Architecture> {
+    let (inputs, rate) = (set.names().inputs.len(), options.rate.is_some());
+    let mut architecture = Architecture::new(options.model, options.sizes, inputs, rate, set.has_time())
+        .map_err(|error| Usage(error.to_string()))?;
+    architecture.deterioration &= !options.no_deterioration;
+    Ok(architecture)
+}
+
+impl Identified {
+    /// Writes the model and, if asked, the report beside it; gives the files written.
+    pub fn save(&self, path: &Path, sets: Option<Vec<(&str, &Dataset)>>) -> Result<Vec<(&str, PathBuf)>> {
+        files::write(path, self.model.to_json().as_bytes())?;
+        let mut written = vec![("model", path.to_path_buf())];
+        if let Some(sets) = sets {
+            let page = report_path(path);
+            let text = self.report(path, &sets)?;
+            files::write(&page, text.as_bytes()).context("the model is written, its report is not")?;
+            written.push(("report", page));
+        }
+        Ok(written)
+    }
+
+    fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<String> {
+        let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        Ok(report::page(&Report {
+            title,
+            model: &self.model,
+            sets: sets.iter().map(|(name, data)| self.set(name, data)).collect::<Result<_>>()?,
+            warnings: &self.warnings,
+            understood: &self.understood,
+            model_file: path.display().to_string(),
+            seconds: self.seconds,
+        }))
+    }
+
+    /// Measured and simulated loops on a set of data, as an SVG file.
+    pub fn loops(&self, name: &str, data: &Dataset) -> Result<String> {
+        Ok(plot::standalone(&report::loops_svg(&self.set(name, data)?)))
+    }
+
+    fn set<'a>(&self, name: &str, data: &'a Dataset) -> Result<ReportSet<'a>> {
+        let simulated = data.records().iter().map(|record| self.model.simulate(record));
+        Ok(ReportSet {
+            name: name.into(),
+            data,
+            simulated: simulated.collect::<hysid::Result<_>>()?,
+            errors: self.model.evaluate(data)?,
+        })
+    }
+
+    /// Errors, size, time and files, for stdout.
+    pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, PathBuf)]) -> String {
+        let provenance = self.model.provenance();
+        let mut sets = vec![("train", &provenance.train)];
+        sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
+        sets.extend(unseen.map(|errors| ("unseen test", errors)));
+        let mut text = errors_table::errors_table(&sets);
+        if provenance.validation.is_some() {
+            text += "(validation: data held out from the chosen start, before it was trained on all)\n";
+        }
+        let architecture = self.model.network().architecture();
+        text += &format!(
+            "\n{} with {} parameters; start {} of {} chosen, {}; {:.1} s\n",
+            self.model.family().name(),
+            architecture.parameters(),
+            provenance.chosen_start + 1,
+            provenance.options.starts,
+            provenance.termination,
+            self.seconds
+        );
+        for (what, path) in written {
+            text += &format!("{what:<7} {}\n", files::shown(path));
+        }
+        text
+    }
+}
+
+/// The report lies beside the model: `.html` in the place of `.json`, or behind any other ending.
+pub fn report_path(model: &Path) -> PathBuf {
+    if model.extension().is_none_or(|extension| extension == "json") {
+        return model.with_extension("html");
+    }
+    let mut name = model.as_os_str().to_os_string();
+    name.push(".html");
+    name.into()
+}
+
+/// Refuses, before the work begins, files that cannot be written or that would overwrite the data.
+pub fn check_outputs(outputs: &[&Path], inputs: &[&Path]) -> Result<()> {
+    for (place, output) in outputs.iter().enumerate() {
+        let over = inputs.iter().chain(&outputs[..place]).find(|other| files::same(output, other));
+        if let Some(other) = over {
+            return Err(anyhow!(Usage(format!(
+                "{} would be overwritten: name another file with --out",
+                other.display()
+            ))));
+        }
+        files::check_writable(output)?;
+    }
+    Ok(())
+}
+
+/// Says that Ctrl-C was obeyed.
+pub fn note_interrupted(path: &Path) {
+    note(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
+}

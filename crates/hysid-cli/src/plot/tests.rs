@@ -1,0 +1,69 @@
+use super::*;
+
+fn chart(points: Vec<Point>) -> Chart {
+    Chart {
+        description: "a \"test\" & more".into(),
+        title: "<script>alert(1)</script>".into(),
+        size: (520.0, 360.0),
+        x: Axis::linear("x <mm>", points.iter().map(|p| p.0)),
+        y: Axis::linear("y", points.iter().map(|p| p.1)),
+        curves: vec![Curve { points, colour: Colour::Simulated, width: 1.5 }],
+        legend: vec![(Colour::Simulated, "model".into())],
+    }
+}
+
+/// Every element that opens closes, in the right order, and no text holds a bare `<`.
+pub fn assert_balanced(markup: &str) {
+    let void = ["meta", "br", "hr", "!DOCTYPE"];
+    let mut open: Vec<&str> = Vec::new();
+    for piece in markup.split('<').skip(1) {
+        let tag = piece.split('>').next().expect("split gives a first piece");
+        let name = tag.trim_end_matches('/').split_whitespace().next().unwrap_or("");
+        if let Some(name) = name.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name), "in <{tag}>");
+        } else if !tag.ends_with('/') && !void.contains(&name) {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}
+
+#[test]
+fn user_text_is_escaped_and_elements_balanced() {
+    let svg = chart((0..50).map(|k| (k as f64, (k as f64).sin())).collect()).svg();
+    assert!(!svg.contains("<script") && svg.contains("&lt;script"), "{svg}");
+    assert!(svg.contains("aria-label=\"a &quot;test&quot; &amp; more\""));
+    assert_balanced(&svg);
+    let file = standalone(&svg);
+    assert!(
+        file.contains("<style>") && file.contains("width=\"520\" height=\"360\"") && file.starts_with("<svg")
+    );
+    assert_balanced(&file);
+}
+
+#[test]
+fn blanks_leave_gaps_and_lone_points_are_dots() {
+    let gap = (1.5, f64::NAN);
+    let svg = chart(vec![(0.0, 0.0), (1.0, 1.0), gap, (2.0, 0.0), (3.0, 1.0), gap, (4.0, 0.0)]).svg();
+    let curve = "stroke=\"#0060D0\"";
+    // Two pieces and the legend's line.
+    assert_eq!(svg.split("<polyline").filter(|piece| piece.contains(curve)).count(), 3);
+    assert_eq!(svg.matches("<circle").count(), 1);
+}
+
+#[test]
+fn odd_series_can_be_drawn() {
+    let cases = [vec![], vec![(1.0, 2.0)], vec![(0.0, 5.0); 9], vec![(f64::NAN, 1.0)], vec![(1e150, -1e150)]];
+    for points in cases {
+        assert_balanced(&chart(points).svg());
+    }
+}
+
+#[test]
+fn every_marker_is_recoloured() {
+    let colours = [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint];
+    let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
+    for RGBColor(r, g, b) in markers {
+        assert!(STYLE.contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
+    }
+}

@@ -1,0 +1,83 @@
+//! The report of a fit: one page of HTML that needs nothing but itself.
+
+mod errors;
+mod figures;
+mod histories;
+mod markup;
+mod neurons;
+mod provenance;
+mod unit;
+mod usage;
+
+use hysid::metrics::Errors;
+use hysid::model::Model;
+use hysid::record::Dataset;
+
+use crate::plot::{self, escape};
+
+/// What is reported.
+pub struct Report<'a> {
+    /// Headline.
+    pub title: String,
+    /// The fitted model.
+    pub model: &'a Model,
+    /// Data that it was run on, the training data first.
+    pub sets: Vec<ReportSet<'a>>,
+    /// What to be aware of.
+    pub warnings: &'a [String],
+    /// What was understood of the data: a question and its answer.
+    pub understood: &'a [(String, String)],
+    /// Name of the model file.
+    pub model_file: String,
+    /// How long the fit took.
+    pub seconds: f64,
+}
+
+/// Data, and what the model makes of them.
+pub struct ReportSet<'a> {
+    /// What the data are: "training", "unseen".
+    pub name: String,
+    /// The data.
+    pub data: &'a Dataset,
+    /// Free run over each record.
+    pub simulated: Vec<Vec<f64>>,
+    /// Errors of these.
+    pub errors: Errors,
+}
+
+const STYLE: &str = include_str!("report/style.css");
+
+/// The whole page.
+pub fn page(report: &Report) -> String {
+    let title = escape(&report.title);
+    let sections = [
+        errors::section(report),
+        report.sets.iter().map(figures::loops_section).collect(),
+        report.sets.iter().map(histories::section).collect(),
+        figures::convergence_section(report.model),
+        neurons::section(report),
+        provenance::understood(report),
+        provenance::warnings(report),
+        provenance::section(report),
+        usage::section(report),
+    ]
+    .concat();
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
+         <h1>{title}</h1>\n{}{sections}</main>\n</body>\n</html>\n",
+        plot::STYLE,
+        errors::verdict(report),
+    )
+}
+
+/// Measured and simulated loops of a set in one chart, an `svg` element.
+/// [`plot::standalone`] makes a file of it.
+pub fn loops_svg(set: &ReportSet) -> String {
+    figures::loops(set)
+}
+
+#[cfg(test)]
+mod tests;

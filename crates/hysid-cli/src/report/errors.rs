@@ -1,0 +1,110 @@
+//! The verdict and the table of errors.
+
+use hysid::metrics::Errors;
+
+use super::markup::{note, number, section as section_of, table};
+use super::{Report, unit};
+use crate::plot::escape;
+
+/// Error in percent of the standard deviation below which a model may be called so.
+const GRADES: [(f64, &str); 4] = [
+    (1.0, "hardly told from the measurement"),
+    (5.0, "a close match"),
+    (15.0, "a match with visible differences"),
+    (40.0, "the rough shape only"),
+];
+
+/// In words how good an error is.
+fn grade(percent: f64) -> &'static str {
+    let found = GRADES.iter().find(|(limit, _)| percent < *limit);
+    found.map_or("no match", |(_, words)| words)
+}
+
+/// One sentence: how good is it?
+pub fn verdict(report: &Report) -> String {
+    let provenance = report.model.provenance();
+    let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
+    parts.push(match &provenance.validation {
+        Some(errors) => {
+            format!("{} on data held out from it, before it was trained on everything", judged(errors))
+        }
+        None => "unknown on new data, since there were too few to hold any out".into(),
+    });
+    let unseen = report.sets.iter().filter(|set| set.name != "training");
+    parts.extend(unseen.map(|set| format!("{} on the {} data", judged(&set.errors), set.name)));
+    let text = format!(
+        "Driven by the input alone, the model’s error in percent of the output’s standard deviation is {}.",
+        joined(&parts)
+    );
+    format!("<p class=\"verdict\">{}</p>\n", escape(&text))
+}
+
+/// An error and what to think of it.
+fn judged(errors: &Errors) -> String {
+    match errors.nrmse_std_percent {
+        Some(percent) => format!("{} % ({})", number(percent, 3), grade(percent)),
+        None => "not defined (the output is constant)".into(),
+    }
+}
+
+fn joined(parts: &[String]) -> String {
+    match parts {
+        [all @ .., last] if !all.is_empty() => format!("{}, and {last}", all.join(", ")),
+        _ => parts.concat(),
+    }
+}
+
+/// The table of errors, with what its words mean.
+pub fn section(report: &Report) -> String {
+    let provenance = report.model.provenance();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    if report.sets.iter().all(|set| set.name != "training") {
+        rows.push(row("training", &provenance.train));
+    }
+    rows.extend(report.sets.iter().map(|set| row(&set.name, &set.errors)));
+    if let Some(validation) = &provenance.validation {
+        rows.insert(1, row("validation", validation));
+    }
+    let unit = unit::of(&report.model.names().output);
+    let headings = [
+        "data".into(),
+        "records".into(),
+        "samples".into(),
+        format!("RMSE ({unit})"),
+        "NRMSE (% of std)".into(),
+        "NRMSE (% of range)".into(),
+        "fit (%)".into(),
+        format!("largest error ({unit})"),
+    ];
+    section_of("Errors", &(table(&headings, &rows) + &explanation(report)))
+}
+
+fn explanation(report: &Report) -> String {
+    let mut text = String::from(
+        "All errors are those of a free run: the model sees the input only, from the virgin state at the \
+         start of each record. RMSE is the root of the mean square error; NRMSE is the same in percent of \
+         the measured output's standard deviation or range; fit is 100 % less the former. ",
+    );
+    text += match report.model.provenance().validation {
+        Some(_) => {
+            "“Validation” is the chosen start on the data held out from it, before it was trained on \
+             everything; having won the choice among the starts there, it is a little flattered."
+        }
+        None => "The data were too few to hold any out, so there is no validation.",
+    };
+    note(&text)
+}
+
+fn row(name: &str, errors: &Errors) -> Vec<String> {
+    let or_dash = |value: Option<f64>| value.map_or("–".into(), |value| number(value, 4));
+    vec![
+        name.to_string(),
+        errors.records.to_string(),
+        errors.samples.to_string(),
+        number(errors.rmse, 4),
+        or_dash(errors.nrmse_std_percent),
+        or_dash(errors.nrmse_range_percent),
+        or_dash(errors.fit_percent),
+        number(errors.max_abs_error, 4),
+    ]
+}

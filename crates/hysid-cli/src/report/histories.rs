@@ -1,0 +1,125 @@
+//! Output, error and input over time.
+
+use super::markup::{figure, note, number, section as section_of};
+use super::{ReportSet, unit};
+use crate::plot::thin::{Point, thin};
+use crate::plot::{Axis, Chart, Colour, Curve, escape};
+
+/// Most records drawn; of more, those with the largest errors.
+const MOST_RECORDS: usize = 6;
+
+/// Points of each kind of curve in all records together.
+const POINTS: usize = 4000;
+
+/// Most inputs drawn.
+const MOST_INPUTS: usize = 4;
+
+/// The histories of a set.
+pub fn section(set: &ReportSet) -> String {
+    let shown = shown_records(set);
+    let mut content = String::new();
+    if shown.len() < set.data.records().len() {
+        content += &note(&format!(
+            "Of {} records the {} with the largest errors are drawn.",
+            set.data.records().len(),
+            shown.len()
+        ));
+    }
+    let points = POINTS / shown.len().max(1);
+    content.extend(shown.iter().map(|&index| record(set, index, points)));
+    section_of(&format!("Histories: {} data", set.name), &content)
+}
+
+fn shown_records(set: &ReportSet) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..set.data.records().len()).collect();
+    order.sort_by(|&a, &b| rmse(set, b).total_cmp(&rmse(set, a)));
+    order.truncate(MOST_RECORDS);
+    order.sort_unstable();
+    order
+}
+
+/// Root of the mean square error of a record; -1 if nothing is scored.
+fn rmse(set: &ReportSet, index: usize) -> f64 {
+    let (sum, rows) = errors(set, index)
+        .into_iter()
+        .filter(|error| !error.is_nan())
+        .fold((0.0, 0usize), |(sum, rows), error| (sum + error * error, rows + 1));
+    if rows == 0 { -1.0 } else { (sum / rows as f64).sqrt() }
+}
+
+/// Simulated less measured output.
+fn errors(set: &ReportSet, index: usize) -> Vec<f64> {
+    let measured = set.data.records()[index].output();
+    set.simulated[index].iter().zip(measured).map(|(model, measured)| model - measured).collect()
+}
+
+/// The charts of a record, one below the other.
+fn record(set: &ReportSet, index: usize, points: usize) -> String {
+    let record = &set.data.records()[index];
+    let names = set.data.names();
+    let time: Vec<f64> = match record.time() {
+        Some(time) => time.to_vec(),
+        None => (1..=record.len()).map(|row| row as f64).collect(),
+    };
+    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set), points };
+    let output = unit::label(&names.output);
+    let error = match unit::split(&names.output).1 {
+        Some(unit) => format!("error ({unit})"),
+        None => "error".into(),
+    };
+    let mut charts = panel.figure(
+        &output,
+        220.0,
+        &[
+            (Colour::Measured, "measured", 2.4, record.output()),
+            (Colour::Simulated, "model", 1.1, &set.simulated[index]),
+        ],
+    );
+    charts += &panel.figure(&error, 165.0, &[(Colour::Error, "model − measured", 1.1, &errors(set, index))]);
+    for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
+        charts += &panel.figure(&unit::label(name), 165.0, &[(Colour::Input, "input", 1.2, input)]);
+    }
+    let rmse = rmse(set, index);
+    let rmse = match rmse < 0.0 {
+        true => "no measured output".to_string(),
+        false => format!("RMSE {}", unit::with(&number(rmse, 3), &names.output)),
+    };
+    format!("<h3>{} <small>{}</small></h3>\n{charts}", escape(record.name()), escape(&rmse))
+}
+
+fn time_label(set: &ReportSet) -> String {
+    match (&set.data.names().time, set.data.has_time()) {
+        (Some(name), true) => unit::label(name),
+        (None, true) => "time".into(),
+        (_, false) => "row".into(),
+    }
+}
+
+/// What the charts of a record have in common.
+struct Panel<'a> {
+    time: &'a [f64],
+    time_label: String,
+    record: &'a str,
+    points: usize,
+}
+
+impl Panel<'_> {
+    fn figure(&self, label: &str, height: f64, lines: &[(Colour, &str, f64, &[f64])]) -> String {
+        let curve = |&(colour, _, width, values): &(Colour, &str, f64, &[f64])| {
+            let points: Vec<Point> = self.time.iter().copied().zip(values.iter().copied()).collect();
+            Curve { points: thin(&points, self.points), colour, width }
+        };
+        let curves: Vec<Curve> = lines.iter().map(curve).collect();
+        let ordinates = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let chart = Chart {
+            description: format!("{label} over {}, record {}", self.time_label, self.record),
+            title: String::new(),
+            size: (860.0, height),
+            x: Axis::linear(self.time_label.clone(), self.time.iter().copied()),
+            y: Axis::linear(label, ordinates),
+            legend: lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect(),
+            curves,
+        };
+        figure(&chart.svg(), true)
+    }
+}

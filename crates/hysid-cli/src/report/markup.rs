@@ -1,0 +1,75 @@
+//! Pieces of HTML. Cells and headings come in as text and are escaped here.
+
+use hysid::warning::Significant;
+
+use crate::plot::escape;
+
+/// A section with its heading; none without content. `content` is HTML.
+pub fn section(heading: &str, content: &str) -> String {
+    match content.is_empty() {
+        true => String::new(),
+        false => format!("<section>\n<h2>{}</h2>\n{content}</section>\n", escape(heading)),
+    }
+}
+
+/// A paragraph of text.
+pub fn paragraph(text: &str) -> String {
+    format!("<p>{}</p>\n", escape(text))
+}
+
+/// A remark in smaller type.
+pub fn note(text: &str) -> String {
+    format!("<p class=\"note\">{}</p>\n", escape(text))
+}
+
+/// A table; the first cell of each row is its heading.
+pub fn table(headings: &[String], rows: &[Vec<String>]) -> String {
+    let head: String =
+        headings.iter().map(|cell| format!("<th scope=\"col\">{}</th>", escape(cell))).collect();
+    let body: String = rows.iter().map(|row| table_row(row)).collect();
+    format!(
+        "<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+    )
+}
+
+fn table_row(cells: &[String]) -> String {
+    let mut row = String::from("<tr>");
+    for (index, cell) in cells.iter().enumerate() {
+        let cell = escape(cell);
+        row += &match index {
+            0 => format!("<th scope=\"row\">{cell}</th>"),
+            _ => format!("<td>{cell}</td>"),
+        };
+    }
+    row + "</tr>\n"
+}
+
+/// Names and what they are.
+pub fn definitions(pairs: &[(String, String)]) -> String {
+    let pairs: String = pairs
+        .iter()
+        .map(|(name, value)| format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value)))
+        .collect();
+    format!("<dl>\n{pairs}</dl>\n")
+}
+
+/// A drawing; `wide` for one that needs the width of the page.
+pub fn figure(svg: &str, wide: bool) -> String {
+    let attributes = if wide { "class=\"wide scroll\" tabindex=\"0\"" } else { "class=\"chart\"" };
+    format!("<figure {attributes}>{svg}</figure>\n")
+}
+
+/// A number with so many significant digits, with a true minus sign.
+pub fn number(value: f64, digits: usize) -> String {
+    format!("{:.*}", digits, Significant(value)).replace('-', "−")
+}
+
+/// A range in words.
+pub fn span((low, high): (f64, f64)) -> String {
+    format!("{} to {}", number(low, 4), number(high, 4))
+}
+
+/// `3 records`, `1 record`.
+pub fn count(n: usize, singular: &str) -> String {
+    if n == 1 { format!("1 {singular}") } else { format!("{n} {singular}s") }
+}

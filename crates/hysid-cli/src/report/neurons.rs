@@ -1,0 +1,241 @@
+//! The neurons: thresholds, capacities, relaxation times, output weights.
+
+use hysid::network::Layout;
+use hysid::operator::{DeterioratingStop, Operator};
+use hysid::record::Record;
+
+use super::markup::{count, figure, note, number, section as section_of, table};
+use super::{Report, unit};
+use crate::plot::{Axis, Chart, Colour, Curve};
+
+/// From this capacity on a stop counts as one that never deteriorates.
+const LASTING: f64 = 9e6;
+
+/// Most rows of a table.
+const MOST_ROWS: usize = 40;
+
+/// Most output weights in the table.
+const MOST_WEIGHTS: usize = 10;
+
+/// Most channels in the table of stops.
+const MOST_CHANNELS: usize = 5;
+
+/// A stop in the user's unit.
+struct Stop {
+    /// Number, counted from 1.
+    number: usize,
+    /// Threshold in the unit of the first input.
+    threshold: f64,
+    /// Weights of the scaled channels.
+    weights: Vec<f64>,
+    /// Capacity; infinite without deterioration.
+    beta: f64,
+}
+
+impl Stop {
+    /// True if no input within the trained ranges makes it slip.
+    fn never_slips(&self) -> bool {
+        self.weights.iter().map(|w| w.abs()).sum::<f64>() <= 1.0
+    }
+}
+
+/// The section on the neurons.
+pub fn section(report: &Report) -> String {
+    let stops = stops(report);
+    let a = report.model.network().architecture();
+    let kinds = [(a.stops, "stop"), (a.relaxation_neurons(), "relaxation neuron"), (a.hidden, "tanh neuron")];
+    let kinds: Vec<String> =
+        kinds.into_iter().filter(|&(n, _)| n > 0).map(|(n, kind)| count(n, kind)).collect();
+    let words = format!("{}; {} in all.", kinds.join(", "), count(a.parameters(), "parameter"));
+    let content = [
+        super::markup::paragraph(&words),
+        "<h3>Stops</h3>\n".into(),
+        figure(&threshold_chart(report, &stops), true),
+        stop_table(report, &stops),
+        relaxation_table(report),
+        output_table(report),
+    ];
+    section_of("The neurons", &content.concat())
+}
+
+/// All stops, the smallest threshold first.
+fn stops(report: &Report) -> Vec<Stop> {
+    let network = report.model.network();
+    let (a, parameters) = (network.architecture(), network.parameters());
+    let layout = Layout::new(*a);
+    let betas = &parameters[layout.ln_beta.clone()];
+    let weights = parameters[layout.stop_weights.clone()].chunks(a.channels().max(1));
+    let mut stops: Vec<Stop> = weights
+        .enumerate()
+        .map(|(j, weights)| Stop {
+            number: j + 1,
+            threshold: report.model.scaling().inputs[0] / weights[0].abs(),
+            weights: weights.to_vec(),
+            beta: betas.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp()),
+        })
+        .collect();
+    stops.sort_by(|a, b| a.threshold.total_cmp(&b.threshold));
+    stops
+}
+
+fn stop_table(report: &Report, stops: &[Stop]) -> String {
+    let names = report.model.names();
+    let a = report.model.network().architecture();
+    let channels = a.channels().min(MOST_CHANNELS);
+    let mut headings = vec!["stop".to_string(), format!("threshold of {}", unit::label(&names.inputs[0]))];
+    headings.extend((0..channels).map(|channel| format!("weight of {}", channel_name(report, channel))));
+    if a.deterioration {
+        headings.push("capacity β".into());
+        headings.push("strength left".into());
+    }
+    let springs = stops.iter().any(Stop::never_slips);
+    headings.extend(springs.then(|| "note".to_string()));
+    let left = if a.deterioration { strength_left(report, stops) } else { None };
+    let row = |(index, stop): (usize, &Stop)| {
+        let mut row = vec![stop.number.to_string(), number(stop.threshold, 4)];
+        row.extend(stop.weights[..channels].iter().map(|&weight| number(weight, 3)));
+        if a.deterioration {
+            row.push(if stop.beta >= LASTING { "∞".into() } else { number(stop.beta, 3) });
+            row.push(
+                left.as_ref().map_or("–".into(), |left| format!("{} %", number(100.0 * left[index], 3))),
+            );
+        }
+        if springs {
+            row.push(if stop.never_slips() { "never slips: a spring".into() } else { String::new() });
+        }
+        row
+    };
+    let rows: Vec<Vec<String>> = stops.iter().enumerate().take(MOST_ROWS).map(row).collect();
+    table(&headings, &rows) + &stop_note(report, stops)
+}
+
+fn stop_note(report: &Report, stops: &[Stop]) -> String {
+    let mut text = String::from(
+        "A stop is a spring behind a friction slider: it slides once the input has travelled by its threshold \
+         (twice that after a reversal). Weights are of inputs scaled to 1 at their largest. A stop that never \
+         slips within the trained range has no memory of its own.",
+    );
+    if report.model.network().architecture().rate {
+        text += " The rate pushes it too, by its weight; the threshold is that of a slow input.";
+    }
+    if report.model.network().architecture().deterioration {
+        text += " Having slid β times its threshold, a stop has lost its strength; ∞ stands for never. Strength \
+                 left is that at the end of the longest record of the first set.";
+    }
+    if stops.len() > MOST_ROWS {
+        text += &format!(" {} more are not listed.", stops.len() - MOST_ROWS);
+    }
+    note(&text)
+}
+
+fn channel_name(report: &Report, channel: usize) -> String {
+    let names = report.model.names();
+    match (channel, report.model.network().architecture().rate) {
+        (1, true) => "the rate".into(),
+        (channel, rate) => unit::split(&names.inputs[channel - usize::from(rate && channel > 0)]).0,
+    }
+}
+
+/// Share of each stop's strength that is left at the end of the longest record.
+fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
+    let longest: &Record = report.sets.first()?.data.records().iter().max_by_key(|record| record.len())?;
+    let model = report.model;
+    let drive = model.scaling().drive(longest, model.network().architecture(), model.rate()).ok()?;
+    let left = |stop: &Stop| {
+        let mut element = DeterioratingStop::new(1.0, stop.beta).ok()?;
+        for row in 0..longest.len() {
+            let input: f64 = stop.weights.iter().zip(&drive.channels).map(|(w, u)| w * u[row]).sum();
+            element.step(input);
+        }
+        Some((1.0 - element.slip() / stop.beta).max(0.0))
+    };
+    stops.iter().take(MOST_ROWS).map(left).collect()
+}
+
+/// Thresholds on a logarithmic axis, beside the range of the input.
+fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
+    let input = &report.model.names().inputs[0];
+    let largest = report.model.scaling().inputs[0];
+    let shown = |stop: &Stop| stop.threshold.clamp(1e-4 * largest, 1e4 * largest);
+    let top = stops.len() as f64 + 0.5;
+    let mut curves =
+        vec![Curve { points: vec![(largest, 0.5), (largest, top)], colour: Colour::Input, width: 1.5 }];
+    curves.extend(stops.iter().enumerate().map(|(index, stop)| Curve {
+        points: vec![(shown(stop), index as f64 + 1.0)],
+        colour: if stop.never_slips() { Colour::Faint } else { Colour::Simulated },
+        width: 4.0,
+    }));
+    let thresholds = stops.iter().map(shown).chain([largest]);
+    let chart = Chart {
+        description: format!("Thresholds of the {} stops", stops.len()),
+        title: String::new(),
+        size: (860.0, 240.0),
+        x: Axis::logarithmic(format!("threshold of {}", unit::label(input)), thresholds),
+        y: Axis::linear("stops by threshold", [0.5, top].into_iter()),
+        curves,
+        legend: vec![
+            (Colour::Simulated, "stop".into()),
+            (Colour::Faint, "never slips".into()),
+            (Colour::Input, "largest input in training".into()),
+        ],
+    };
+    chart.svg()
+}
+
+fn relaxation_table(report: &Report) -> String {
+    let network = report.model.network();
+    let a = network.architecture();
+    if a.relaxation == 0 {
+        return String::new();
+    }
+    let names = report.model.names();
+    let time = names.time.as_deref().map_or("unit of time".to_string(), unit::of);
+    let ln_taus = &network.parameters()[Layout::new(*a).ln_tau];
+    let mut neurons: Vec<(usize, f64)> = ln_taus.iter().map(|ln_tau| ln_tau.exp()).enumerate().collect();
+    neurons.sort_by(|p, q| (p.0 / a.relaxation).cmp(&(q.0 / a.relaxation)).then(p.1.total_cmp(&q.1)));
+    let row = |&(m, tau): &(usize, f64)| {
+        vec![(m + 1).to_string(), unit::split(&names.inputs[m / a.relaxation]).0, number(tau, 3)]
+    };
+    let rows: Vec<Vec<String>> = neurons.iter().take(MOST_ROWS).map(row).collect();
+    let headings = ["neuron".into(), "of input".into(), format!("relaxation time ({time})")];
+    "<h3>Relaxation neurons</h3>\n".to_string()
+        + &table(&headings, &rows)
+        + &note(
+            "A relaxation neuron is a spring behind a dashpot: what it feels of the input fades within its relaxation time.",
+        )
+}
+
+/// The output weights that count most.
+fn output_table(report: &Report) -> String {
+    let network = report.model.network();
+    let deviation = report.model.scaling().output_deviation;
+    let names = output_names(report);
+    let mut weights: Vec<(String, f64)> =
+        names.into_iter().zip(network.output().iter().map(|weight| weight * deviation)).collect();
+    let all = weights.len();
+    weights.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let rows: Vec<Vec<String>> =
+        weights.into_iter().take(MOST_WEIGHTS).map(|(name, weight)| vec![name, number(weight, 4)]).collect();
+    let headings = ["from".into(), format!("weight ({})", unit::of(&report.model.names().output))];
+    let mut words = String::from(
+        "The output is a weighted sum. Tanh neurons and stops give between −1 and 1; the linear and the \
+         relaxation neurons give as much as the scaled input makes them.",
+    );
+    if rows.len() < all {
+        words += &format!(" The {} largest of {all} weights are listed.", rows.len());
+    }
+    "<h3>Output weights</h3>\n".to_string() + &table(&headings, &rows) + &note(&words)
+}
+
+/// What each output weight multiplies, in order.
+fn output_names(report: &Report) -> Vec<String> {
+    let a = report.model.network().architecture();
+    let mut names: Vec<String> = a.constant.then(|| "constant".to_string()).into_iter().collect();
+    names.extend((1..=a.hidden).map(|i| format!("tanh neuron {i}")));
+    if a.output_weights() > names.len() {
+        names.extend(a.linear.then(|| "linear neuron".to_string()));
+        names.extend((1..=a.stops).map(|j| format!("stop {j}")));
+        names.extend((1..=a.relaxation_neurons()).map(|m| format!("relaxation neuron {m}")));
+    }
+    names
+}

@@ -1,0 +1,141 @@
+//! What the program understood of the data, said before the work begins.
+
+use hysid::network::Architecture;
+use hysid::rate::RateMethod;
+use hysid::summary::Summary;
+use hysid::training::FitOptions;
+use hysid::warning::Significant;
+
+use crate::data::Data;
+use crate::messages::note;
+use crate::unit;
+
+/// Lines are kept within this width.
+const WIDTH: usize = 80;
+
+/// Label and text, line by line.
+pub fn understanding(
+    data: &Data,
+    summary: &Summary,
+    options: &FitOptions,
+    architecture: &Architecture,
+) -> Vec<(String, String)> {
+    let mut lines: Vec<(String, String)> = Vec::new();
+    let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
+    let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
+    say(if files.len() == 1 { "file" } else { "files" }, listed(&files));
+    say("samples", samples(summary));
+    if let Some(time) = &data.roles.time {
+        say(
+            "time",
+            format!("{time}: {}", time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()))),
+        );
+    }
+    for (name, &range) in data.roles.inputs.iter().zip(&summary.inputs) {
+        say("input", ranged(name, range));
+    }
+    say("output", ranged(&data.roles.output, summary.output));
+    let first = &data.roles.inputs[0];
+    let turning = summary.turning_points();
+    say("turning", format!("{turning} turning point{} of {first}", if turning == 1 { "" } else { "s" }));
+    say("rate", rate(first, data.roles.rate.as_deref(), options.rate.filter(|_| architecture.rate)));
+    say("model", format!("{}: {}", options.model.name(), parts(architecture)));
+    lines
+}
+
+/// Prints the lines, within 80 columns where words allow.
+pub fn print(lines: &[(String, String)]) {
+    for (label, text) in lines {
+        let mut label = label.as_str();
+        for line in wrapped(text) {
+            note(format_args!("{label:<8} {line}"));
+            label = "";
+        }
+    }
+    note(format_args!(""));
+}
+
+/// The text in lines that leave room for the label.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines.last_mut().expect("there is a line");
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH - 9 {
+            lines.push(word.into());
+        } else {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines
+}
+
+/// Some names, and how many more there are.
+fn listed(names: &[&str]) -> String {
+    const SHOWN: usize = 6;
+    match names.len().saturating_sub(SHOWN) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..SHOWN].join(", ")),
+    }
+}
+
+/// The parts of a network in words.
+pub fn parts(architecture: &Architecture) -> String {
+    let deteriorating = if architecture.deterioration { "deteriorating " } else { "" };
+    let mut parts = vec![format!("{} {deteriorating}stops", architecture.stops)];
+    if architecture.hidden > 0 {
+        parts.push(format!("{} hidden", architecture.hidden));
+    }
+    if architecture.relaxation > 0 {
+        parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
+    }
+    format!("{} parameters; {}", architecture.parameters(), parts.join(", "))
+}
+
+fn samples(summary: &Summary) -> String {
+    let scored = match summary.scored == summary.rows {
+        true => "all scored".to_string(),
+        false => format!("{} scored", summary.scored),
+    };
+    let records = match summary.records.as_slice() {
+        [_] => "1 record".to_string(),
+        records => {
+            let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
+            format!("{} records: {}", records.len(), listed(&names))
+        }
+    };
+    format!("{}, {scored}, in {records}", summary.rows)
+}
+
+fn time_steps(summary: &Summary, unit: &str) -> String {
+    let steps = || summary.records.iter().filter_map(|record| record.time_steps);
+    let shortest = steps().map(|step| step.0).fold(f64::INFINITY, f64::min);
+    let longest = steps().map(|step| step.2).fold(0.0, f64::max);
+    if longest == 0.0 {
+        "one sample a record".into()
+    } else if longest - shortest <= 1e-3 * longest {
+        format!("steps of {:.4}{unit}", Significant(longest))
+    } else {
+        format!("steps of {:.4} to {:.4}{unit}", Significant(shortest), Significant(longest))
+    }
+}
+
+fn ranged(name: &str, (low, high): (f64, f64)) -> String {
+    let unit = unit::suffix(unit::of_column(name).as_deref());
+    if low > high {
+        return format!("{name}: blank");
+    }
+    format!("{name}: {:.4} to {:.4}{unit}", Significant(low), Significant(high))
+}
+
+fn rate(input: &str, column: Option<&str>, method: Option<RateMethod>) -> String {
+    match method {
+        None => "none".into(),
+        Some(RateMethod::Given) => format!("of {input} from column {}", column.unwrap_or_default()),
+        Some(RateMethod::Central) => format!("of {input} by central differences"),
+        Some(RateMethod::Backward) => format!("of {input} by backward differences"),
+        Some(RateMethod::SavitzkyGolay) => format!("of {input} by the Savitzky-Golay method"),
+    }
+}

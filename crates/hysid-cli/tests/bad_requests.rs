@@ -1,0 +1,286 @@
+//! Damaged model files, columns that are not there, wrong command lines, outputs that cannot be
+//! written: one line that says where and what helps, and the right exit status.
+
+mod workbench;
+
+use workbench::{Workbench, csv, rows, table, with_column};
+
+/// Runs the program and compares exit status and last line of stderr.
+fn check_runs(bench: &Workbench, cases: &[(&str, i32, &str)]) {
+    for (arguments, status, expected) in cases {
+        let ran = bench.run(arguments);
+        assert_eq!(ran.last_line(), format!("error: {expected}"), "hysid {arguments}");
+        assert_eq!(ran.status, Some(*status), "hysid {arguments}");
+        assert_eq!(ran.stdout, "", "hysid {arguments}");
+    }
+}
+
+#[test]
+fn model_files() {
+    let bench = Workbench::with_model();
+    let model = bench.text("model.json");
+    let digit = model.find("\"output_mean\": ").unwrap() + "\"output_mean\": ".len() + 4;
+    let flipped = if &model[digit..=digit] == "7" { "8" } else { "7" };
+    bench.put("flipped.json", format!("{}{flipped}{}", &model[..digit], &model[digit + 1..]));
+    bench.put("cut.json", &model[..model.len() / 2]);
+    bench.put("empty.json", "");
+    bench.put("later.json", model.replacen("\"version\": 1", "\"version\": 99", 1));
+    bench.put("edited.json", model.replace("\"x\"", "\"u\""));
+    bench.put("other.json", "{\"format\": \"other\"}");
+    bench.put("binary.json", b"{\xff}");
+    let lines = model[..model.len() / 2].lines().count();
+    let cut = format!(
+        "cut.json: the model file is cut off at line {lines} (fit the model anew, or restore the file from a copy)"
+    );
+    check_runs(
+        &bench,
+        &[
+            (
+                "evaluate flipped.json good.csv",
+                1,
+                "flipped.json: the model file was changed after it was written: its checksum does not match (fit the model anew, or restore the file from a copy)",
+            ),
+            (
+                "evaluate edited.json good.csv",
+                1,
+                "edited.json: the model file was changed after it was written: its checksum does not match (fit the model anew, or restore the file from a copy)",
+            ),
+            ("simulate cut.json good.csv", 1, &cut),
+            (
+                "simulate empty.json good.csv",
+                1,
+                "empty.json: the model file is empty (fit the model anew, or restore the file from a copy)",
+            ),
+            (
+                "evaluate later.json good.csv",
+                1,
+                "later.json: the model file has format version 99, this program reads up to 1: use a newer hysid",
+            ),
+            (
+                "evaluate other.json good.csv",
+                1,
+                "other.json: this is not a Hysid model file (expected the JSON that `hysid fit` writes)",
+            ),
+            (
+                "evaluate binary.json good.csv",
+                1,
+                "binary.json: this is not a Hysid model file: it is not text",
+            ),
+            (
+                "evaluate good.csv model.json",
+                1,
+                "good.csv: this is not a Hysid model file (expected the JSON that `hysid fit` writes)",
+            ),
+            ("simulate missing.json good.csv", 1, "missing.json: cannot be read: no such file or directory"),
+        ],
+    );
+}
+
+#[test]
+fn columns() {
+    let bench = Workbench::with_model();
+    bench.put("other.csv", csv("t,a,b", ",", "\n", &rows()));
+    bench.put("no-time.csv", csv("k,x,y", ",", "\n", &rows()));
+    bench.put("inputs.csv", csv("x1,x2,y", ",", "\n", &rows()));
+    bench.put("blank.csv", with_column(2, |_| String::new()));
+    bench.put("simulated.csv", csv("t,x,y_model", ",", "\n", &rows()));
+    check_runs(
+        &bench,
+        &[
+            (
+                "evaluate model.json other.csv",
+                1,
+                "other.csv: there is no column \"x\", the model's input (columns: t, a, b; name another with --input)",
+            ),
+            (
+                "evaluate model.json other.csv --input a",
+                1,
+                "other.csv: there is no column \"y\", the model's output (columns: t, a, b; name another with --output)",
+            ),
+            (
+                "simulate model.json no-time.csv",
+                1,
+                "no-time.csv: there is no column \"t\", the model's time (columns: k, x, y; name another with --time)",
+            ),
+            (
+                "simulate model.json inputs.csv --input x1 --input x2",
+                2,
+                "--input names 2 columns, but the model's inputs are 1: x",
+            ),
+            (
+                "simulate model.json simulated.csv",
+                1,
+                "simulated.csv: there is already a column \"y_model\" (rename or remove it)",
+            ),
+            (
+                "evaluate model.json blank.csv",
+                1,
+                "blank.csv: column \"y\" is blank in every row: there is nothing to compare with",
+            ),
+            (
+                "evaluate model.json good.csv --rate none",
+                2,
+                "the rate is part of the model and cannot be changed here: leave out --rate",
+            ),
+            (
+                "fit good.csv --input nope",
+                1,
+                "good.csv: there is no column \"nope\" for --input (columns: t, x, y)",
+            ),
+            ("fit good.csv --input x --output x", 2, "column \"x\" is named twice, by --output and --input"),
+            (
+                "fit inputs.csv --model pnn",
+                2,
+                "pnn takes one input, not 2: use xpnn+, or name one with --input",
+            ),
+            (
+                "fit inputs.csv --rate central",
+                1,
+                "inputs.csv: there is no time column to take the rate from (name it with --time, or use --rate none)",
+            ),
+            (
+                "fit good.csv other.csv",
+                1,
+                "other.csv: there is no column \"x\", as in good.csv (columns: t, a, b)",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn command_lines() {
+    let bench = Workbench::new();
+    check_runs(
+        &bench,
+        &[
+            (
+                "fit",
+                2,
+                "the following required arguments were not provided: <TRAIN.csv>... (see `hysid --help`)",
+            ),
+            (
+                "fot data.csv",
+                2,
+                "unrecognized subcommand 'fot'; a similar subcommand exists: 'fit' (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --start 2",
+                2,
+                "unexpected argument '--start' found; a similar argument exists: '--starts' (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --model nn",
+                2,
+                "invalid value 'nn' for '--model <MODEL>': model `nn` is unknown: choose one of pnn, gpnn, preisach-nn, xpnn, xpnn+ (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --stops 0",
+                2,
+                "invalid value '0' for '--stops <N>': choose 1 to 1000 (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --starts 0",
+                2,
+                "invalid value '0' for '--starts <N>': choose 1 to 10000 (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --validation 2",
+                2,
+                "invalid value '2' for '--validation <FRACTION>': a number between 0 and 1 is needed (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --time-limit 0",
+                2,
+                "invalid value '0' for '--time-limit <SECONDS>': a number of seconds above 0 is needed (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv --training guess",
+                2,
+                "invalid value 'guess' for '--training <TRAINER>' [possible values: levenberg-marquardt] (see `hysid --help`)",
+            ),
+            (
+                "fit data.csv -o data.html",
+                2,
+                "data.html: name the model file with .json: its report gets the name with .html",
+            ),
+            ("fit data.csv", 1, "data.csv: cannot be read: no such file or directory"),
+            ("fit .", 1, ".: is a directory, not a file"),
+        ],
+    );
+}
+
+#[test]
+fn unwritable_outputs() {
+    let bench = Workbench::with_model();
+    std::fs::create_dir(bench.path("folder")).unwrap();
+    bench.put("good.json", "{\"precious\": true}");
+    check_runs(
+        &bench,
+        &[
+            ("fit good.csv", 2, "good.json is there already and is no model: name the model file with --out"),
+            (
+                "fit good.csv -o nowhere/model.json",
+                1,
+                "nowhere/model.json: cannot be written: no such file or directory",
+            ),
+            ("fit good.csv -o folder --no-report", 1, "folder: cannot be written: is a directory"),
+            (
+                "fit good.csv -o good.csv --no-report",
+                2,
+                "good.csv would be overwritten: name another file with --out",
+            ),
+            (
+                "simulate model.json good.csv -o ./good.csv",
+                2,
+                "good.csv would be overwritten: name another file with --out",
+            ),
+            (
+                "simulate model.json good.csv -o model.json",
+                2,
+                "model.json would be overwritten: name another file with --out",
+            ),
+            ("demo -o good.csv", 1, "good.csv: cannot be made: file exists"),
+        ],
+    );
+    #[cfg(target_os = "linux")]
+    {
+        let full = bench.run("simulate model.json good.csv -o /dev/full");
+        assert_eq!(
+            (full.status, full.last_line()),
+            (Some(1), "error: /dev/full: cannot be written: the disk is full")
+        );
+        let full = bench.shell("hysid evaluate model.json good.csv >/dev/full");
+        assert_eq!(
+            (full.status, full.last_line()),
+            (Some(1), "error: cannot write to stdout: the disk is full")
+        );
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn files_without_permission() {
+    use std::fs::{Permissions, set_permissions};
+    use std::os::unix::fs::PermissionsExt;
+
+    let bench = Workbench::with_model();
+    std::fs::create_dir(bench.path("locked")).unwrap();
+    bench.put("locked/secret.csv", table());
+    set_permissions(bench.path("locked/secret.csv"), Permissions::from_mode(0o000)).unwrap();
+    set_permissions(bench.path("locked"), Permissions::from_mode(0o555)).unwrap();
+    if std::fs::read(bench.path("locked/secret.csv")).is_ok() {
+        eprintln!("skipped: this user (root?) may read and write everything");
+        return;
+    }
+    check_runs(
+        &bench,
+        &[
+            ("fit locked/secret.csv", 1, "locked/secret.csv: cannot be read: permission denied"),
+            (
+                "fit good.csv -o locked/model.json",
+                1,
+                "locked/model.json: cannot be written: permission denied",
+            ),
+        ],
+    );
+}
