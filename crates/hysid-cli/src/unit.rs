@@ -27,7 +27,7 @@ pub fn suffix(unit: Option<&str>) -> String {
 }
 
 /// A name as quantity and unit.
-fn split(name: &str) -> (&str, Option<String>) {
+pub fn split(name: &str) -> (&str, Option<String>) {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(inner) = name.strip_suffix(close)

@@ -8,6 +8,9 @@ use crate::rate::RateMethod;
 use crate::record::{Dataset, Record};
 use crate::scaling::Scaling;
 
+/// Rows scaled at a time: they stay in the first-level cache.
+const CHUNK: usize = 1024;
+
 /// A network with what it takes to run it over a record.
 pub(crate) struct FreeRun<'a> {
     network: &'a Network,
@@ -27,13 +30,21 @@ impl<'a> FreeRun<'a> {
         if expected != found {
             return Err(record.defect(None, None, DataProblem::Inputs { expected, found }));
         }
-        let architecture = self.network.architecture();
-        let drive = self.scaling.drive(record, architecture, self.rate)?;
-        let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
         let mut y = vec![0.0; record.len()];
+        let mut channels = vec![[0.0; CHUNK]; self.network.architecture().channels()];
+        let mut steps = [0.0; CHUNK];
         self.simulator.reset();
-        self.simulator.run(&u, &drive.steps, &mut y);
-        y.iter_mut().for_each(|y| *y = self.scaling.output(*y));
+        for (index, y) in y.chunks_mut(CHUNK).enumerate() {
+            let first = index * CHUNK;
+            let rows = y.len();
+            self.scaling.fill_channels(record, self.rate, first, rows, &mut channels)?;
+            let u: Vec<&[f64]> = channels.iter().map(|channel| &channel[..rows]).collect();
+            if self.network.architecture().relaxation > 0 {
+                Scaling::fill_steps(record, first, &mut steps[..rows]);
+            }
+            self.simulator.run(&u, &steps[..rows], y);
+            y.iter_mut().for_each(|y| *y = self.scaling.output(*y));
+        }
         Ok(y)
     }
 

@@ -264,7 +264,7 @@ impl Stepper<'_> {
         }
         let mut u = self.u.iter_mut();
         for (input, (&x, &scale)) in inputs.iter().zip(&scaling.inputs).enumerate() {
-            *u.next().expect("a channel for each input") = x / scale;
+            *u.next().expect("a channel for each input") = x * (1.0 / scale);
             if input == 0
                 && let Some(scale) = scaling.rate
             {
@@ -272,7 +272,7 @@ impl Stepper<'_> {
                     Some((_, before)) => (x - before) / elapsed,
                     None => 0.0,
                 };
-                *u.next().expect("a channel for the rate") = rate.unwrap_or(backward) / scale;
+                *u.next().expect("a channel for the rate") = rate.unwrap_or(backward) * (1.0 / scale);
             }
         }
         if let Some(bad) = self.u.iter().find(|u| !u.is_finite()) {

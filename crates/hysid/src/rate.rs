@@ -29,25 +29,44 @@ impl RateMethod {
     /// # Errors
     /// No time stamps (or no given rate), or a rate beyond [`LARGEST_VALUE`].
     pub fn rate(self, record: &Record) -> Result<Vec<f64>> {
-        let rate = match (self, record.time()) {
-            (RateMethod::Given, _) => record
-                .given_rate()
-                .ok_or_else(|| record.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate))?
-                .to_vec(),
-            (_, None) => {
-                return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTime));
+        let mut rate = vec![0.0; record.len()];
+        self.fill(record, 0, &mut rate)?;
+        Ok(rate)
+    }
+
+    /// Rates of the rows from `first` on, as many as `rate` has room for.
+    ///
+    /// # Errors
+    /// As [`RateMethod::rate`].
+    pub(crate) fn fill(self, record: &Record, first: usize, rate: &mut [f64]) -> Result<()> {
+        let rows = first..first + rate.len();
+        match (self, record.time()) {
+            (RateMethod::Given, _) => {
+                let missing = || record.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate);
+                rate.copy_from_slice(&record.given_rate().ok_or_else(missing)?[rows]);
             }
-            (RateMethod::Central, Some(time)) => central(time, &record.inputs()[0]),
-            (RateMethod::Backward, Some(time)) => backward(time, &record.inputs()[0]),
-            (RateMethod::SavitzkyGolay, Some(time)) => savitzky_golay(time, &record.inputs()[0]),
-        };
+            (_, None) => return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTime)),
+            (RateMethod::Central, Some(time)) => central(time, &record.inputs()[0], rows, rate),
+            (RateMethod::Backward, Some(time)) => {
+                each(rows, rate, |row| backward_at(time, &record.inputs()[0], row));
+            }
+            (RateMethod::SavitzkyGolay, Some(time)) => {
+                each(rows, rate, |row| savitzky_golay_at(time, &record.inputs()[0], row));
+            }
+        }
         match rate.iter().position(|rate| rate.is_nan() || rate.abs() > LARGEST_VALUE) {
             Some(row) => {
                 let problem = DataProblem::RateTooLarge(rate[row]);
-                Err(record.defect(Some(row), Some(Channel::Time), problem))
+                Err(record.defect(Some(first + row), Some(Channel::Time), problem))
             }
-            None => Ok(rate),
+            None => Ok(()),
         }
+    }
+}
+
+fn each(rows: std::ops::Range<usize>, rate: &mut [f64], value: impl Fn(usize) -> f64) {
+    for (rate, row) in rate.iter_mut().zip(rows) {
+        *rate = value(row);
     }
 }
 
@@ -72,38 +91,32 @@ fn backward_at(time: &[f64], x: &[f64], row: usize) -> f64 {
     if row == 0 { 0.0 } else { (x[row] - x[row - 1]) / (time[row] - time[row - 1]) }
 }
 
-fn backward(time: &[f64], x: &[f64]) -> Vec<f64> {
-    (0..x.len()).map(|row| backward_at(time, x, row)).collect()
-}
-
-fn central(time: &[f64], x: &[f64]) -> Vec<f64> {
+/// Central differences inside, one-sided at the ends.
+fn central(time: &[f64], x: &[f64], rows: std::ops::Range<usize>, rate: &mut [f64]) {
     let last = x.len() - 1;
-    (0..x.len())
-        .map(|k| {
-            if k == 0 {
-                if last == 0 { 0.0 } else { backward_at(time, x, 1) }
-            } else if k == last {
-                backward_at(time, x, k)
-            } else {
-                // theory.md (4.1) as a mean of both one-sided slopes, each weighted with the other
-                // side's step: no squares of tiny steps.
-                let (before, after) = (time[k] - time[k - 1], time[k + 1] - time[k]);
-                let share = before / (before + after);
-                let (left, right) = (backward_at(time, x, k), backward_at(time, x, k + 1));
-                share * right + (1.0 - share) * left
-            }
-        })
-        .collect()
+    let inner = rows.start.max(1)..rows.end.min(last);
+    if inner.start < inner.end {
+        let around = inner.start - 1..inner.end + 1;
+        let points = time[around.clone()].windows(3).zip(x[around].windows(3));
+        for (rate, (t, x)) in rate[inner.start - rows.start..].iter_mut().zip(points) {
+            // theory.md (4.1) as a mean of both one-sided slopes, each weighted with the other
+            // side's step: no squares of tiny steps.
+            let (before, after) = (t[1] - t[0], t[2] - t[1]);
+            let share = before / (before + after);
+            *rate = share * ((x[2] - x[1]) / after) + (1.0 - share) * ((x[1] - x[0]) / before);
+        }
+    }
+    for row in [0, last] {
+        if rows.contains(&row) {
+            rate[row - rows.start] = backward_at(time, x, if row == 0 { last.min(1) } else { row });
+        }
+    }
 }
 
-fn savitzky_golay(time: &[f64], x: &[f64]) -> Vec<f64> {
-    (0..x.len())
-        .map(|k| {
-            let first = k.saturating_sub(HALF_WINDOW);
-            let last = (k + HALF_WINDOW).min(x.len() - 1);
-            slope_of_parabola(&time[first..=last], &x[first..=last], k - first)
-        })
-        .collect()
+fn savitzky_golay_at(time: &[f64], x: &[f64], row: usize) -> f64 {
+    let first = row.saturating_sub(HALF_WINDOW);
+    let last = (row + HALF_WINDOW).min(x.len() - 1);
+    slope_of_parabola(&time[first..=last], &x[first..=last], row - first)
 }
 
 /// Slope at `centre` of the parabola that fits the points best; of a straight line or 0 if there
@@ -138,18 +151,31 @@ mod tests {
     }
 
     /// Central differences and Savitzky-Golay are exact for a parabola, whatever the steps.
+    fn rate(method: RateMethod, time: &[f64], x: &[f64]) -> Vec<f64> {
+        let record = Record::new("r", vec![x.to_vec()], vec![0.0; x.len()]).unwrap();
+        let record = record.with_time(time.to_vec()).unwrap();
+        let whole = method.rate(&record).unwrap();
+        // Row by row gives the same.
+        for (row, &expected) in whole.iter().enumerate() {
+            let mut one = [f64::NAN];
+            method.fill(&record, row, &mut one).unwrap();
+            assert_eq!(one[0], expected, "row {row}");
+        }
+        whole
+    }
+
     #[test]
     fn a_parabola_has_its_exact_rate() {
         let time = uneven(40);
         let x: Vec<f64> = time.iter().map(|t| 1.0 - 2.0 * t + 0.25 * t * t).collect();
         for k in 1..39 {
             let exact = -2.0 + 0.5 * time[k];
-            approx::assert_relative_eq!(central(&time, &x)[k], exact, epsilon = 1e-10);
-            approx::assert_relative_eq!(savitzky_golay(&time, &x)[k], exact, epsilon = 1e-9);
+            approx::assert_relative_eq!(rate(RateMethod::Central, &time, &x)[k], exact, epsilon = 1e-10);
+            approx::assert_relative_eq!(rate(RateMethod::SavitzkyGolay, &time, &x)[k], exact, epsilon = 1e-9);
         }
-        assert_eq!(central(&time, &x)[0], (x[1] - x[0]) / (time[1] - time[0]));
-        assert_eq!(backward(&time, &x)[0], 0.0);
-        assert_eq!(backward(&time, &x)[7], (x[7] - x[6]) / (time[7] - time[6]));
+        assert_eq!(rate(RateMethod::Central, &time, &x)[0], (x[1] - x[0]) / (time[1] - time[0]));
+        assert_eq!(rate(RateMethod::Backward, &time, &x)[0], 0.0);
+        assert_eq!(rate(RateMethod::Backward, &time, &x)[7], (x[7] - x[6]) / (time[7] - time[6]));
     }
 
     #[test]
@@ -158,13 +184,20 @@ mod tests {
         let noise = |k: usize| ((k * 7919 % 101) as f64 / 101.0 - 0.5) * 0.1;
         let x: Vec<f64> = time.iter().enumerate().map(|(k, t)| 3.0 * t + noise(k)).collect();
         let error = |rate: Vec<f64>| rate[10..390].iter().map(|r| (r - 3.0f64).powi(2)).sum::<f64>();
-        assert!(error(savitzky_golay(&time, &x)) < 0.1 * error(central(&time, &x)));
+        assert!(
+            error(rate(RateMethod::SavitzkyGolay, &time, &x))
+                < 0.1 * error(rate(RateMethod::Central, &time, &x))
+        );
     }
 
     #[test]
     fn short_records_have_a_rate() {
-        assert_eq!(central(&[0.0], &[1.0]), [0.0]);
-        assert_eq!(savitzky_golay(&[0.0], &[1.0]), [0.0]);
-        approx::assert_relative_eq!(savitzky_golay(&[0.0, 2.0], &[1.0, 5.0])[1], 2.0, epsilon = 1e-12);
+        assert_eq!(rate(RateMethod::Central, &[0.0], &[1.0]), [0.0]);
+        assert_eq!(rate(RateMethod::SavitzkyGolay, &[0.0], &[1.0]), [0.0]);
+        approx::assert_relative_eq!(
+            rate(RateMethod::SavitzkyGolay, &[0.0, 2.0], &[1.0, 5.0])[1],
+            2.0,
+            epsilon = 1e-12
+        );
     }
 }

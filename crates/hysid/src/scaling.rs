@@ -60,20 +60,51 @@ impl Scaling {
         architecture: &Architecture,
         rate: Option<RateMethod>,
     ) -> Result<Drive> {
-        let scaled = |values: &[f64], scale: f64| values.iter().map(|v| v / scale).collect();
-        let mut channels: Vec<Vec<f64>> =
-            record.inputs().iter().zip(&self.inputs).map(|(x, &scale)| scaled(x, scale)).collect();
-        if let (true, Some(method), Some(scale)) = (architecture.rate, rate, self.rate) {
-            channels.insert(1, scaled(&method.rate(record)?, scale));
-        }
-        let steps = match record.time() {
-            Some(time) if architecture.relaxation > 0 => {
-                let steps = time.windows(2).map(|pair| pair[1] - pair[0]);
-                std::iter::once(0.0).chain(steps).collect()
-            }
-            _ => Vec::new(),
-        };
+        let rate = rate.filter(|_| architecture.rate);
+        let mut channels = vec![vec![0.0; record.len()]; architecture.channels()];
+        self.fill_channels(record, rate, 0, record.len(), &mut channels)?;
+        let mut steps = vec![0.0; if architecture.relaxation > 0 { record.len() } else { 0 }];
+        Self::fill_steps(record, 0, &mut steps);
         Ok(Drive { channels, steps })
+    }
+
+    /// Fills the channels (first input, its rate if there is a method for it, further inputs) of
+    /// `rows` rows from `first` on.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn fill_channels(
+        &self,
+        record: &Record,
+        rate: Option<RateMethod>,
+        first: usize,
+        rows: usize,
+        channels: &mut [impl AsMut<[f64]>],
+    ) -> Result<()> {
+        let mut channels = channels.iter_mut().map(|channel| &mut channel.as_mut()[..rows]);
+        for (input, (x, &scale)) in record.inputs().iter().zip(&self.inputs).enumerate() {
+            let Some(channel) = channels.next() else { break };
+            let factor = 1.0 / scale;
+            for (u, &x) in channel.iter_mut().zip(&x[first..]) {
+                *u = x * factor;
+            }
+            if let (0, Some(method), Some(scale)) = (input, rate, self.rate)
+                && let Some(channel) = channels.next()
+            {
+                method.fill(record, first, channel)?;
+                let factor = 1.0 / scale;
+                channel.iter_mut().for_each(|rate| *rate *= factor);
+            }
+        }
+        Ok(())
+    }
+
+    /// Fills the time steps before each row from `first` on, 0 at the first row of the record.
+    pub(crate) fn fill_steps(record: &Record, first: usize, steps: &mut [f64]) {
+        let Some(time) = record.time() else { return };
+        for (row, step) in (first..).zip(steps) {
+            *step = if row == 0 { 0.0 } else { time[row] - time[row - 1] };
+        }
     }
 
     /// Measured outputs in scaled units; blanks stay NaN.

@@ -83,11 +83,14 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
         None => (data, None),
     };
     let objective = Objective::new(kept, &scaling, architecture, options)?;
+    let thinned = objective.thinned(options.thin);
     let judged: Vec<Judged> = (0..options.starts)
         .into_par_iter()
+        // Once stopped, starts not yet begun are left out; one is needed.
+        .filter(|&start| start == 0 || !watch.stopped())
         .map(|start| {
-            let parameters = start::random(&objective, options.seed, start);
-            let descent = watch.descend(&objective.thinned(options.thin), Phase::Starts, start, parameters);
+            let descent =
+                watch.descend(&thinned, Phase::Starts, start, start::random(&thinned, options.seed, start));
             let network = descent.network(&architecture)?;
             let judge = held_out.unwrap_or(kept);
             let validation = FreeRun::new(&network, &scaling, options.rate).errors(judge)?;

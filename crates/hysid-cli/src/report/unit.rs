@@ -1,46 +1,25 @@
 //! Units, as column names tell them: `force_kN`, `t [s]`, `H_A_per_m`.
 
-/// What may follow the last underscore and be a unit.
-const KNOWN: &[&str] = &[
-    "s", "ms", "us", "ns", "min", "h", "d", "Hz", "kHz", "m", "cm", "mm", "um", "nm", "in", "ft", "m2",
-    "mm2", "N", "kN", "MN", "Nm", "kNm", "Pa", "kPa", "MPa", "GPa", "bar", "psi", "kips", "lbf", "T", "mT",
-    "Oe", "G", "A", "mA", "kA", "V", "mV", "kV", "C", "uC", "K", "degC", "deg", "rad", "mrad", "g", "kg",
-    "J", "W", "Ohm", "percent", "pct", "strain", "ppm",
-];
-
-/// The quantity and its unit, if the column name ends with one.
+/// The quantity and its unit, if the column name ends with one, as a page shows it.
 pub fn split(column: &str) -> (String, Option<String>) {
-    let column = column.trim();
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((name, unit)) = column.strip_suffix(close).and_then(|rest| rest.rsplit_once(open))
-            && !unit.trim().is_empty()
-        {
-            return (name.trim().to_string(), Some(unit.trim().to_string()));
-        }
-    }
-    if let Some((before, per)) = column.rsplit_once("_per_")
-        && let Some((name, of)) = before.rsplit_once('_')
-        && (KNOWN.contains(&of) || KNOWN.contains(&per))
-    {
-        return (name.to_string(), Some(format!("{of}/{per}")));
-    }
-    match column.rsplit_once('_') {
-        Some((name, unit)) if KNOWN.contains(&unit) && !name.is_empty() => {
-            (name.to_string(), Some(written(unit)))
-        }
-        _ => (column.to_string(), None),
-    }
+    let (quantity, unit) = crate::unit::split(column);
+    (quantity.to_string(), unit.map(|unit| written(&unit)))
 }
 
+/// A unit with the signs that a column name cannot have: `uC/cm2` is µC/cm².
 fn written(unit: &str) -> String {
-    match unit {
+    let symbol = |symbol: &str| match symbol {
         "percent" | "pct" => "%".into(),
         "degC" => "°C".into(),
         "deg" => "°".into(),
-        "m2" | "mm2" => unit.replace('2', "²"),
-        "Ohm" => "Ω".into(),
-        _ => unit.strip_prefix('u').map_or(unit.to_string(), |rest| format!("µ{rest}")),
-    }
+        "ohm" => "Ω".into(),
+        _ => {
+            let micro = symbol.strip_prefix('u').map_or(symbol.to_string(), |rest| format!("µ{rest}"));
+            micro.replace('2', "²").replace('3', "³")
+        }
+    };
+    let product = |text: &str| text.split(' ').map(symbol).collect::<Vec<String>>().join(" ");
+    unit.split('/').map(product).collect::<Vec<String>>().join("/")
 }
 
 /// The column as a label: `force (kN)`.
