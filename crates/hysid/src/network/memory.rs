@@ -356,12 +356,25 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
 ) {
     let mut tile = [[[0.0; LANES]; G]; BLOCK];
     let tile = &mut tile[..whole_lanes(rows)];
+    // Nearly all networks have one or two channels: their weights stay in registers.
+    let no_weights = [0.0; LANES];
+    let no_input = [0.0; BLOCK];
+    let (x, second) = (&u[0], u.get(1).unwrap_or(&no_input));
+    let of_x: [Lanes; G] = std::array::from_fn(|g| groups[g].weights[0]);
+    let of_second: [Lanes; G] = std::array::from_fn(|g| *groups[g].weights.get(1).unwrap_or(&no_weights));
+    let further = u.get(2..).unwrap_or(&[]);
     let inverse_beta: [Lanes; G] = std::array::from_fn(|g| groups[g].inverse_beta);
     let mut plays: [Lanes; G] = std::array::from_fn(|g| play[g]);
     let mut slips: [Lanes; G] = std::array::from_fn(|g| slip[g]);
-    for (t, tile) in tile[..rows].iter_mut().enumerate() {
+    for (t, ((tile, &x), &second)) in tile[..rows].iter_mut().zip(x).zip(second).enumerate() {
         for g in 0..G {
-            let v = drive::<S>(&groups[g], u, t);
+            let mut v: Lanes =
+                std::array::from_fn(|l| multiply_add::<S>(of_second[g][l], second, of_x[g][l] * x));
+            for (u, c) in further.iter().zip(2..) {
+                for l in 0..LANES {
+                    v[l] = multiply_add::<S>(groups[g].weights[c][l], u[t], v[l]);
+                }
+            }
             for l in 0..LANES {
                 let v = v[l];
                 let before = plays[g][l];
