@@ -1,7 +1,7 @@
 //! Identification: from a data set to a fitted network.
 //!
 //! [`fit`] is the whole of it: scale, start from several random networks, let each descend, judge
-//! them on data that were held out, and train the best on everything.
+//! them on data that were held out, and train the best few on everything.
 
 pub mod history;
 pub mod least_squares;
@@ -97,10 +97,10 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
             Ok(Judged { start, descent, validation })
         })
         .collect::<Result<_>>()?;
-    let best = judged
-        .iter()
-        .min_by(|a, b| a.validation.mse.total_cmp(&b.validation.mse))
-        .ok_or_else(|| Error::Option("a fit needs at least one start".into()))?;
+    let mut finalists: Vec<&Judged> = judged.iter().collect();
+    finalists.sort_by(|a, b| a.validation.mse.total_cmp(&b.validation.mse));
+    finalists.truncate(FINALISTS);
+    let mut best = finalists[0];
 
     let mut runs: Vec<Run> = judged.iter().map(|judged| judged.run(held_out.is_some())).collect();
     let mut evaluations: usize = judged.iter().map(|judged| judged.descent.evaluations).sum();
@@ -108,7 +108,8 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
     let mut termination = best.descent.termination;
     if !watch.stopped() {
         let objective = Objective::new(data, &scaling, architecture, options)?;
-        let descent = watch.refit(&objective, options.seed, best);
+        let (winner, descent) = watch.refit(&objective, options.seed, &finalists);
+        best = finalists[winner];
         network = descent.network(&architecture)?;
         termination = descent.termination;
         evaluations += descent.evaluations;
@@ -189,8 +190,8 @@ struct Watch<'a> {
     finished: Mutex<usize>,
 }
 
-/// Descents of the refit.
-const REFITS: usize = 2;
+/// Starts that do best on the data held out, and are then trained on everything.
+const FINALISTS: usize = 3;
 
 /// Iterations of the refit that see every row.
 const LAST_EPOCHS_ON_ALL_ROWS: usize = 4;
@@ -214,21 +215,34 @@ impl Watch<'_> {
         descent
     }
 
-    /// The winner on all data: thinned first if they are many, then on every row.
+    /// The finalists on all data: thinned first if they are many, then the winner on every row.
+    /// Returns which finalist won.
     ///
-    /// It goes on from where it was judged, and once more from its random beginning, because data that
-    /// were held out may lie beyond a barrier from there; the lower objective wins.
-    fn refit(&self, objective: &Objective, seed: u64, best: &Judged) -> Descent {
+    /// Each goes on from where it was judged, and once more from its random beginning, because data
+    /// that were held out may lie beyond a barrier from there; the lowest objective wins.
+    fn refit(&self, objective: &Objective, seed: u64, finalists: &[&Judged]) -> (usize, Descent) {
         let thinned = objective.thinned(self.options.thin);
-        let (onward, anew) = rayon::join(
-            || self.descend(&thinned, Phase::Refit, best.start, best.descent.parameters.clone()),
-            || self.descend(&thinned, Phase::Refit, best.start, start::random(&thinned, seed, best.start)),
-        );
-        let evaluations = onward.evaluations + anew.evaluations;
-        let mut first = if anew.objective < onward.objective { anew } else { onward };
+        let descents: Vec<Descent> = (0..2 * finalists.len())
+            .into_par_iter()
+            .map(|index| {
+                let finalist = finalists[index / 2];
+                let from = match index % 2 {
+                    0 => finalist.descent.parameters.clone(),
+                    _ => start::random(&thinned, seed, finalist.start),
+                };
+                self.descend(&thinned, Phase::Refit, finalist.start, from)
+            })
+            .collect();
+        let evaluations = descents.iter().map(|descent| descent.evaluations).sum();
+        let (index, mut first) = descents
+            .into_iter()
+            .enumerate()
+            .min_by(|(_, a), (_, b)| a.objective.total_cmp(&b.objective))
+            .expect("there is a finalist");
         first.evaluations = evaluations;
+        let best = finalists[index / 2];
         if objective.scored() == thinned.scored() || self.stopped() {
-            return first;
+            return (index / 2, first);
         }
         let parameters = first.parameters.clone();
         let last =
@@ -238,7 +252,7 @@ impl Watch<'_> {
         let done = first.history.last().map_or(0, |point| point.epoch);
         let on_all_rows = last.history.iter().skip(1);
         first.history.extend(on_all_rows.map(|point| HistoryPoint { epoch: done + point.epoch, ..*point }));
-        Descent { history: first.history, evaluations: evaluations + last.evaluations, ..last }
+        (index / 2, Descent { history: first.history, evaluations: evaluations + last.evaluations, ..last })
     }
 
     fn tell(&self, phase: Phase, start: usize, epoch: usize, nrmse: f64, weight: usize) -> ControlFlow<()> {
@@ -247,7 +261,7 @@ impl Watch<'_> {
             return ControlFlow::Break(());
         }
         *finished += weight;
-        let all = (self.options.starts + REFITS) * self.options.epochs;
+        let all = (self.options.starts + 2 * FINALISTS.min(self.options.starts)) * self.options.epochs;
         let progress = Progress {
             phase,
             start,

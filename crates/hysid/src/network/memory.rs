@@ -371,8 +371,8 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
             let mut v: Lanes =
                 std::array::from_fn(|l| multiply_add::<S>(of_second[g][l], second, of_x[g][l] * x));
             for (u, c) in further.iter().zip(2..) {
-                for l in 0..LANES {
-                    v[l] = multiply_add::<S>(groups[g].weights[c][l], u[t], v[l]);
+                for (v, &weight) in v.iter_mut().zip(&groups[g].weights[c]) {
+                    *v = multiply_add::<S>(weight, u[t], *v);
                 }
             }
             for l in 0..LANES {

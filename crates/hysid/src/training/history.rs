@@ -10,7 +10,7 @@ use crate::training::termination::Termination;
 pub enum Phase {
     /// The random starts, on the training part.
     Starts,
-    /// The chosen start, on all data.
+    /// The best few starts, on all data; the run kept is the winner's.
     Refit,
 }
 

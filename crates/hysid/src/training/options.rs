@@ -20,7 +20,7 @@ pub struct FitOptions {
     pub rate: Option<RateMethod>,
     /// Random networks to start from.
     pub starts: usize,
-    /// Levenberg-Marquardt iterations of each start; the winner gets as many again on all data.
+    /// Levenberg-Marquardt iterations of each start; the best few get as many again on all data.
     pub epochs: usize,
     /// Seed of the random starts.
     pub seed: u64,
