@@ -8,7 +8,7 @@ use hysid::record::ColumnNames;
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::table::Table;
-use crate::unit;
+use hysid::unit;
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use hysid::metrics::Errors;
 use hysid::warning::Significant;
 
-use crate::unit;
+use hysid::unit;
 
 /// What stands in a row of the table.
 type Measure = fn(&Errors) -> String;

@@ -18,7 +18,6 @@ mod progress;
 mod report;
 mod table;
 mod understanding;
-mod unit;
 
 use std::process::ExitCode;
 

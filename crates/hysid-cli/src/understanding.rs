@@ -8,7 +8,7 @@ use hysid::warning::Significant;
 
 use crate::data::Data;
 use crate::messages::note;
-use crate::unit;
+use hysid::unit;
 
 /// Lines are kept within this width.
 const WIDTH: usize = 80;

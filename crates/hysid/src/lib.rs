@@ -44,6 +44,7 @@ pub mod simd;
 pub mod summary;
 pub mod training;
 pub mod turning_points;
+pub mod unit;
 pub mod warning;
 
 pub use error::{Error, Result};

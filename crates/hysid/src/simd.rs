@@ -1,6 +1,6 @@
 //! Run-time choice of the instruction set, from safe code.
 //!
-//! A kernel is one generic function: [`run`] compiles it once for each instruction set and calls the
+//! A kernel is one generic function: `run` compiles it once for each instruction set and calls the
 //! widest that this machine has. Sums of products are fused where the hardware fuses them; results
 //! therefore agree to the last bit on one machine, and to rounding between machines.
 

@@ -255,16 +255,17 @@ fn many_rows_are_thinned_with_little_loss() {
 
 #[test]
 fn data_are_held_out_unless_they_are_too_few() {
-    let options = FitOptions { starts: 2, epochs: 3, ..small(Family::Pnn, 2, 0) };
+    let options = FitOptions { starts: 7, epochs: 3, ..small(Family::Pnn, 2, 0) };
     let held = quietly(&bank_data(100), &options);
     let provenance = held.model.provenance();
     assert_eq!(provenance.validation.as_ref().unwrap().samples, 25);
-    assert!(provenance.runs[..2].iter().all(|run| run.validation_nrmse_percent.is_some()));
-    assert_eq!(provenance.runs[2].phase, Phase::Refit);
-    // The best start on what was held out is the one that became the model.
-    let judged = |run: &hysid::training::Run| run.validation_nrmse_percent.unwrap();
-    let chosen = &provenance.runs[provenance.chosen_start];
-    assert!(provenance.runs[..2].iter().all(|run| judged(chosen) <= judged(run)));
+    let (starts, refit) = provenance.runs.split_at(7);
+    assert_eq!((refit.len(), refit[0].phase, refit[0].start), (1, Phase::Refit, provenance.chosen_start));
+    // One of the three best starts on what was held out is the one that became the model.
+    let judged: Vec<f64> = starts.iter().map(|run| run.validation_nrmse_percent.unwrap()).collect();
+    let chosen = judged[provenance.chosen_start];
+    assert!(judged.iter().filter(|&&other| other < chosen).count() < 3, "{judged:?}");
+    assert_eq!(provenance.validation.as_ref().unwrap().nrmse_std_percent, Some(chosen));
 
     let few = quietly(&bank_data(12), &options);
     assert_eq!(few.model.provenance().validation, None);

@@ -12,6 +12,7 @@ use crate::network::{Architecture, Family, Layout, Network};
 use crate::rate::RateMethod;
 use crate::record::ColumnNames;
 use crate::scaling::Scaling;
+use crate::unit;
 
 /// Version of the layout that is written.
 pub const FORMAT_VERSION: u64 = 1;
@@ -27,6 +28,7 @@ struct File {
     written_by: String,
     model: Family,
     columns: ColumnNames,
+    units: Units,
     rate: Option<RateMethod>,
     trained_ranges: TrainedRanges,
     scaling: Scaling,
@@ -35,6 +37,25 @@ struct File {
     readout: Readout,
     training: Provenance,
     checksum: String,
+}
+
+/// Units, as far as the names of the columns tell them: for the reader, the names decide.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Units {
+    time: Option<String>,
+    inputs: Vec<Option<String>>,
+    output: Option<String>,
+}
+
+impl Units {
+    fn of(names: &ColumnNames) -> Self {
+        Self {
+            time: names.time.as_deref().and_then(unit::of_column),
+            inputs: names.inputs.iter().map(|name| unit::of_column(name)).collect(),
+            output: unit::of_column(&names.output),
+        }
+    }
 }
 
 /// The memory layer, in scaled units.
@@ -86,6 +107,7 @@ pub(super) fn write(model: &Model) -> String {
         written_by: format!("hysid {}", env!("CARGO_PKG_VERSION")),
         model: model.family,
         columns: model.names.clone(),
+        units: Units::of(&model.names),
         rate: model.rate,
         trained_ranges: model.trained.clone(),
         scaling: model.scaling.clone(),
