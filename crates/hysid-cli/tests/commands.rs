@@ -293,7 +293,13 @@ fn the_demo_needs_nothing_and_can_be_typed_after() {
 #[test]
 fn bench_tells_value_unit_and_setting() {
     let bench = json(&Workbench::new().run("bench --json"));
-    let promised = ["simulate_ns_per_sample", "step_ns", "levenberg_marquardt_iteration_ms", "fit_s"];
+    let promised = [
+        "simulate_ns_per_sample",
+        "simulate_record_ns_per_sample",
+        "step_ns",
+        "levenberg_marquardt_iteration_ms",
+        "fit_s",
+    ];
     assert_eq!(sorted(keys(&bench)), sorted(promised.to_vec()));
     for speed in bench.as_object().unwrap().values() {
         assert_eq!(sorted(keys(speed)), ["setting", "unit", "value"]);

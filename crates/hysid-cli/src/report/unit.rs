@@ -6,6 +6,9 @@ pub fn split(column: &str) -> (String, Option<String>) {
     (quantity.to_string(), unit.map(|unit| written(&unit)))
 }
 
+/// Units that a leading `u` makes millionths of.
+const MICRO: [&str; 8] = ["s", "m", "m2", "m3", "V", "A", "C", "T"];
+
 /// A unit with the signs that a column name cannot have: `uC/cm2` is µC/cm².
 fn written(unit: &str) -> String {
     let symbol = |symbol: &str| match symbol {
@@ -14,8 +17,9 @@ fn written(unit: &str) -> String {
         "deg" => "°".into(),
         "ohm" => "Ω".into(),
         _ => {
-            let micro = symbol.strip_prefix('u').map_or(symbol.to_string(), |rest| format!("µ{rest}"));
-            micro.replace('2', "²").replace('3', "³")
+            let micro = symbol.strip_prefix('u').filter(|of| MICRO.contains(of));
+            let symbol = micro.map_or(symbol.to_string(), |of| format!("µ{of}"));
+            symbol.replace('2', "²").replace('3', "³")
         }
     };
     let product = |text: &str| text.split(' ').map(symbol).collect::<Vec<String>>().join(" ");
