@@ -3,9 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
-use hysid::metrics::Errors;
+use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::Model;
-use hysid::network::Architecture;
 use hysid::record::Dataset;
 use hysid::summary::Summary;
 use hysid::training::{FitOptions, fit};
@@ -35,7 +34,7 @@ pub fn identify(
     threads: Option<u16>,
     time_limit: Option<f64>,
 ) -> Result<Identified> {
-    let architecture = architecture(&data.set, options)?;
+    let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
     let summary = Summary::of(&data.set);
     interrupt::listen()?;
     let understood = understanding::understanding(data, &summary, options, &architecture);
@@ -54,15 +53,6 @@ pub fn identify(
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
     Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, understood, warnings })
-}
-
-/// The network that the options ask for on these data.
-fn architecture(set: &Dataset, options: &FitOptions) -> Result<Architecture> {
-    let (inputs, rate) = (set.names().inputs.len(), options.rate.is_some());
-    let mut architecture = Architecture::new(options.model, options.sizes, inputs, rate, set.has_time())
-        .map_err(|error| Usage(error.to_string()))?;
-    architecture.deterioration &= !options.no_deterioration;
-    Ok(architecture)
 }
 
 impl Identified {
@@ -98,13 +88,15 @@ impl Identified {
     }
 
     fn set<'a>(&self, name: &str, data: &'a Dataset) -> Result<ReportSet<'a>> {
-        let simulated = data.records().iter().map(|record| self.model.simulate(record));
-        Ok(ReportSet {
-            name: name.into(),
-            data,
-            simulated: simulated.collect::<hysid::Result<_>>()?,
-            errors: self.model.evaluate(data)?,
-        })
+        let mut sums = ErrorSums::default();
+        let mut simulated = Vec::with_capacity(data.records().len());
+        for record in data.records() {
+            let output = self.model.simulate(record)?;
+            sums.add(record.output(), &output);
+            simulated.push(output);
+        }
+        let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
+        Ok(ReportSet { name: name.into(), data, simulated, errors })
     }
 
     /// Errors, size, time and files, for stdout.

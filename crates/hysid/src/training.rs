@@ -20,7 +20,6 @@ use crate::error::{Error, Result};
 use crate::free_run::FreeRun;
 use crate::metrics::Errors;
 use crate::model::{Model, Provenance};
-use crate::network::Architecture;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
 pub use history::{HistoryPoint, Phase, Run};
@@ -72,7 +71,8 @@ pub struct Fit {
 /// Data that nothing can be identified from, or options outside their meaning.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     data.check_identifiable(FEWEST_ROWS)?;
-    let architecture = architecture(data, options)?;
+    check(options)?;
+    let architecture = options.architecture(data)?;
     let scaling = Scaling::of(data, options.rate)?;
     let watch = Watch { observer: Mutex::new(observer), options, finished: Mutex::new(0) };
 
@@ -133,8 +133,8 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
     Ok(Fit { model, evaluations })
 }
 
-/// The architecture that options and data ask for.
-fn architecture(data: &Dataset, options: &FitOptions) -> Result<Architecture> {
+/// Refuses options outside their meaning.
+fn check(options: &FitOptions) -> Result<()> {
     if !(options.validation > 0.0 && options.validation < 1.0) {
         return Err(Error::Option(format!("validation {} is not between 0 and 1", options.validation)));
     }
@@ -144,12 +144,7 @@ fn architecture(data: &Dataset, options: &FitOptions) -> Result<Architecture> {
     if options.epochs > MOST_EPOCHS {
         return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", options.epochs)));
     }
-    options.regularisation.check()?;
-    let inputs = data.names().inputs.len();
-    let rate = options.rate.is_some();
-    let mut architecture = Architecture::new(options.model, options.sizes, inputs, rate, data.has_time())?;
-    architecture.deterioration &= !options.no_deterioration;
-    Ok(architecture)
+    options.regularisation.check()
 }
 
 /// A descent and how well it does on the data held out.

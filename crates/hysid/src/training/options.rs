@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::network::{Family, Sizes};
+use crate::network::{Architecture, Family, Sizes};
 use crate::rate::RateMethod;
+use crate::record::Dataset;
 
 /// What the user can choose; every field has the name of its command-line option.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,19 @@ impl Default for FitOptions {
             regularisation: Regularisation::default(),
             thin: 20_000,
         }
+    }
+}
+
+impl FitOptions {
+    /// The network that the options ask for on these data.
+    ///
+    /// # Errors
+    /// Sizes or a number of inputs that the family does not have.
+    pub fn architecture(&self, data: &Dataset) -> Result<Architecture> {
+        let (inputs, rate) = (data.names().inputs.len(), self.rate.is_some());
+        let mut architecture = Architecture::new(self.model, self.sizes, inputs, rate, data.has_time())?;
+        architecture.deterioration &= !self.no_deterioration;
+        Ok(architecture)
     }
 }
 
