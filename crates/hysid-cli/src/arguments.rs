@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
 use hysid::network::{Family, Sizes};
 use hysid::rate::RateMethod;
-use hysid::training::FitOptions;
+use hysid::training::genetic::POPULATIONS;
+use hysid::training::{FitOptions, Trainer};
 
 /// Identify hysteresis from measured input and output, simulate it and judge the model.
 #[derive(Debug, Parser)]
@@ -27,6 +29,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Errors of a model's free run against measured data
     Evaluate(Evaluate),
+    /// Run the paper's experiments and set our figures beside its own
+    Reproduce(Reproduce),
     /// Measure the speed on this machine
     Bench(Bench),
 }
@@ -103,6 +107,13 @@ pub struct Fit {
     /// Stop after this time and keep the best model so far
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
+    /// Store the state of the fit in this file, every few seconds and at the end
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// Go on where this checkpoint left off, with the options it was made with; give the same tables and
+    /// columns. It is kept up to date unless --checkpoint names another file
+    #[arg(long, value_name = "FILE", conflicts_with = "TrainingOptions")]
+    pub resume: Option<PathBuf>,
     /// Threads to use; the model does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -133,15 +144,24 @@ pub struct TrainingOptions {
     /// Stops do not deteriorate, whatever the family
     #[arg(long)]
     pub no_deterioration: bool,
-    /// The trainer: levenberg-marquardt
-    #[arg(long, value_name = "TRAINER", default_value = "levenberg-marquardt", hide_possible_values = true)]
+    /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
+    /// method with space dilatation, or either alone
+    #[arg(long, value_name = "TRAINER", default_value = "levenberg-marquardt", value_parser = trainer())]
     pub training: Trainer,
-    /// Random networks to start from
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().starts, value_parser = starts)]
-    pub starts: usize,
-    /// Iterations of each start; the best gets as many again on all data
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().epochs)]
-    pub epochs: usize,
+    /// Random networks or populations to start from [default: 8 for levenberg-marquardt, otherwise 1]
+    #[arg(long, value_name = "N", value_parser = starts)]
+    pub starts: Option<usize>,
+    /// Epochs of each start: iterations or generations, in a hybrid half of each; the best of several
+    /// starts get as many again on all data [default: 40 for levenberg-marquardt, otherwise 2000]
+    #[arg(long, value_name = "N")]
+    pub epochs: Option<usize>,
+    /// Individuals of the genetic algorithm [default: 50]
+    #[arg(long, value_name = "N", value_parser = population)]
+    pub population: Option<usize>,
+    /// Epochs without noticeable improvement after which genetic algorithm or sub-gradient method end; 0
+    /// for never [default: 50]
+    #[arg(long, value_name = "N")]
+    pub stall: Option<usize>,
     /// Seed of the random starts
     #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed)]
     pub seed: u64,
@@ -153,25 +173,35 @@ pub struct TrainingOptions {
 impl TrainingOptions {
     /// The library's options, with the rate decided.
     pub fn fit_options(&self, rate: Option<RateMethod>) -> FitOptions {
+        let defaults = FitOptions::of(self.training);
         FitOptions {
             model: self.model,
             sizes: Sizes { stops: self.stops, hidden: self.hidden, relaxation: self.relaxation },
             no_deterioration: self.no_deterioration,
             rate,
-            starts: self.starts,
-            epochs: self.epochs,
+            starts: self.starts.unwrap_or(defaults.starts),
+            epochs: self.epochs.unwrap_or(defaults.epochs),
+            population: self.population.unwrap_or(defaults.population),
+            stall: self.stall.unwrap_or(defaults.stall),
             seed: self.seed,
             validation: self.validation,
-            ..FitOptions::default()
+            ..defaults
         }
+    }
+
+    /// Options that were asked for and that the trainer has no use for.
+    pub fn useless(&self) -> Vec<&'static str> {
+        let has = self.training;
+        let asked = [
+            ("--population", self.population.is_some() && !has.is_genetic()),
+            ("--stall", self.stall.is_some() && has == Trainer::LevenbergMarquardt),
+        ];
+        asked.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
     }
 }
 
-/// The trainers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Trainer {
-    /// Levenberg-Marquardt with variable projection from several starts
-    LevenbergMarquardt,
+fn trainer() -> impl TypedValueParser<Value = Trainer> {
+    PossibleValuesParser::new(Trainer::ALL.map(Trainer::name)).try_map(|name| name.parse::<Trainer>())
 }
 
 fn family(name: &str) -> Result<Family, String> {
@@ -185,6 +215,10 @@ fn number_within(text: &str, low: usize, high: usize) -> Result<usize, String> {
 
 fn neurons(text: &str) -> Result<usize, String> {
     number_within(text, 1, 1000)
+}
+
+fn population(text: &str) -> Result<usize, String> {
+    number_within(text, *POPULATIONS.start(), *POPULATIONS.end())
 }
 
 fn starts(text: &str) -> Result<usize, String> {
@@ -233,6 +267,23 @@ pub struct Evaluate {
     /// Print the result as one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `reproduce`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// What to run: training
+    #[arg(value_name = "EXPERIMENT", required = true, value_parser = PossibleValuesParser::new(["training"]))]
+    pub experiments: Vec<String>,
+    /// Folder for tables, figures and the page
+    #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
+    pub out: PathBuf,
+    /// A tenth of the epochs, to see how it looks
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of the first repetition
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
 }
 
 /// Arguments of `bench`.

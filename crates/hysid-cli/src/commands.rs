@@ -4,6 +4,7 @@ pub mod bench;
 pub mod demo;
 pub mod evaluate;
 pub mod fit;
+pub mod reproduce;
 pub mod simulate;
 
 use std::path::Path;

@@ -37,6 +37,23 @@ pub fn write(path: &Path, content: &[u8]) -> Result<()> {
     put(path, content).map_err(|error| anyhow!("{}: cannot be written: {}", path.display(), reason(&error)))
 }
 
+/// Writes a file again and again: as [`write()`], but by way of a temporary file that always has the same
+/// name, so that a process killed in the middle leaves at most that one behind, and the next replaces it.
+pub fn replace(path: &Path, content: &[u8]) -> Result<()> {
+    let attempt = || {
+        let target = target(path);
+        let mut name = std::ffi::OsString::from(".");
+        name.push(target.file_name().unwrap_or_default());
+        name.push(".partial");
+        let partial = target.with_file_name(name);
+        let mut file = fs::File::create(&partial)?;
+        file.write_all(content)?;
+        file.sync_all()?;
+        fs::rename(&partial, &target)
+    };
+    attempt().map_err(|error| anyhow!("{}: cannot be written: {}", path.display(), reason(&error)))
+}
+
 /// Refuses, before long work, a path that could not be written to.
 pub fn check_writable(path: &Path) -> Result<()> {
     let attempt = || match fs::metadata(path) {

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use hysid::metrics::{ErrorSums, Errors};
-use hysid::model::Model;
+use hysid::model::{Model, Provenance};
 use hysid::record::Dataset;
 use hysid::summary::Summary;
-use hysid::training::{FitOptions, fit};
+use hysid::training::{Checkpoint, FitOptions, Progress, fit, resume};
 
 use crate::data::Data;
 use crate::messages::{Usage, note, warning};
@@ -27,13 +27,30 @@ pub struct Identified {
     warnings: Vec<String>,
 }
 
+/// What is to be done with the data, and how.
+pub struct Work<'a> {
+    /// The options of the fit.
+    pub options: &'a FitOptions,
+    /// A fit begun before, with these options.
+    pub begun: Option<Checkpoint>,
+    /// Where to store the state of the fit.
+    pub checkpoint: Option<&'a Path>,
+    /// Threads; one for each processor if not said.
+    pub threads: Option<u16>,
+    /// Seconds after which to stop.
+    pub time_limit: Option<f64>,
+}
+
+impl<'a> Work<'a> {
+    /// A fit from its beginning, without limits.
+    pub fn new(options: &'a FitOptions) -> Self {
+        Self { options, begun: None, checkpoint: None, threads: None, time_limit: None }
+    }
+}
+
 /// Identifies a model, following the training on stderr.
-pub fn identify(
-    data: &Data,
-    options: &FitOptions,
-    threads: Option<u16>,
-    time_limit: Option<f64>,
-) -> Result<Identified> {
+pub fn identify(data: &Data, work: Work) -> Result<Identified> {
+    let options = work.options;
     let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
     let summary = Summary::of(&data.set);
     interrupt::listen()?;
@@ -46,10 +63,14 @@ pub fn identify(
     }
     warnings.iter().for_each(warning);
 
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(work.threads.unwrap_or(0).into()).build();
     let pool = pool.context("cannot start the threads")?;
-    let mut follower = Follower::new(options.starts, time_limit);
-    let fitted = pool.install(|| fit(&data.set, options, &mut |progress| follower.observe(progress)));
+    let mut follower = Follower::new(options, work.time_limit, work.checkpoint);
+    let mut observer = |progress: &Progress| follower.observe(progress);
+    let fitted = pool.install(|| match work.begun {
+        Some(begun) => resume(&data.set, begun, &mut observer),
+        None => fit(&data.set, options, &mut observer),
+    });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
     Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, understood, warnings })
@@ -111,11 +132,10 @@ impl Identified {
         }
         let architecture = self.model.network().architecture();
         text += &format!(
-            "\n{} with {} parameters; start {} of {} chosen, {}; {:.1} s\n",
+            "\n{} with {} parameters; {}, {}; {:.1} s\n",
             self.model.family().name(),
             architecture.parameters(),
-            provenance.chosen_start + 1,
-            provenance.options.starts,
+            chosen(provenance),
             provenance.termination,
             self.seconds
         );
@@ -123,6 +143,14 @@ impl Identified {
             text += &format!("{what:<7} {}\n", files::shown(path));
         }
         text
+    }
+}
+
+/// Where the model comes from, in words.
+fn chosen(provenance: &Provenance) -> String {
+    match provenance.options.starts {
+        1 => format!("{} training", provenance.options.training.name()),
+        starts => format!("start {} of {starts} chosen", provenance.chosen_start + 1),
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod cell;
+mod checkpoint;
 mod columns;
 mod commands;
 mod data;
@@ -45,6 +46,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => commands::fit::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
+        Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
     };
     match outcome {

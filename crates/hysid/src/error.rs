@@ -20,6 +20,9 @@ pub enum Error {
     /// A model file that cannot be used.
     #[error("{0}")]
     ModelFile(String),
+    /// A checkpoint that cannot be used.
+    #[error("{0}")]
+    Checkpoint(String),
 }
 
 /// Largest magnitude that a value of a record may have. Beyond it the square of a

@@ -47,8 +47,6 @@ pub struct TrainedRanges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Name of the trainer.
-    pub trainer: String,
     /// The options it was given.
     pub options: FitOptions,
     /// Rows with an output.

@@ -8,18 +8,22 @@
 
 mod architecture;
 mod gradient;
+mod jacobian;
 mod memory;
 mod parameters;
 mod readout;
+mod sweep;
 mod tanh;
 mod transpose;
 
 pub use architecture::{Architecture, Family, Sizes};
-pub use gradient::{Drive, Linearised};
+pub use jacobian::Linearised;
 pub use memory::MemoryState;
 pub use parameters::Layout;
+pub use sweep::Drive;
 
-pub(crate) use gradient::{Columns, Sweep};
+pub(crate) use gradient::GradientOverRecords;
+pub(crate) use jacobian::{Columns, GramOverRecords};
 
 use pulp::{Simd, WithSimd};
 

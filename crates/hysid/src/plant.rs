@@ -1,9 +1,28 @@
 //! Synthetic specimens: materials and devices with hysteresis whose laws are known, to generate
 //! records from and to test identification against.
 //!
-//! Every parameter set says where it comes from: *published*, with its source, or *designed*, chosen
-//! by us so that the specimen shows what it is meant to show.
+//! Every law and parameter set says where it comes from: *published*, with its source, or *designed*,
+//! chosen by us so that the specimen shows what it is meant to show. [`Specimen`] is the catalogue.
 
+pub mod concrete;
 pub mod ferromagnet;
+pub mod generalized_play;
+pub mod magnetostrictive_actuator;
+mod noise;
+mod path;
+pub mod piezo_actuator;
+pub mod rate_dependent_actuator;
+pub mod reinforced_concrete_joint;
+pub mod shape_memory_actuator;
+pub mod specimen;
+pub mod terfenol_actuator;
 
+pub use concrete::{Concrete, ConcreteParameters};
 pub use ferromagnet::{Everett, Ferromagnet};
+pub use generalized_play::GeneralizedPlays;
+pub use magnetostrictive_actuator::MagnetostrictiveActuator;
+pub use noise::with_noise;
+pub use piezo_actuator::PiezoActuator;
+pub use rate_dependent_actuator::RateDependentActuator;
+pub use reinforced_concrete_joint::{BoucWenBaberNoori, ReinforcedConcreteJoint};
+pub use specimen::Specimen;

@@ -154,8 +154,11 @@ fn other_files_and_versions_are_told_apart() {
     let text = FULL.to_json();
     let version = format!("\"version\": {FORMAT_VERSION}");
     assert!(text.contains(&version));
-    let newer = with_fitting_checksum(&text.replacen(&version, "\"version\": 2", 1));
-    assert!(refusal(&newer).contains("version 2") && refusal(&newer).contains("use a newer hysid"));
+    let next = FORMAT_VERSION + 1;
+    let newer = with_fitting_checksum(&text.replacen(&version, &format!("\"version\": {next}"), 1));
+    assert!(
+        refusal(&newer).contains(&format!("version {next}")) && refusal(&newer).contains("use a newer hysid")
+    );
     for none in ["0", "-1", "1.5", "\"1\"", "null"] {
         let text = text.replacen(&version, &format!("\"version\": {none}"), 1);
         assert!(refusal(&with_fitting_checksum(&text)).contains("no valid format version"), "{none}");
@@ -173,7 +176,10 @@ fn an_unknown_field_is_another_layout() {
         let mut extended = text.clone();
         extended.insert_str(at, "\"novelty\": 1, ");
         let said = refusal(&with_fitting_checksum(&extended));
-        assert!(said.contains("layout of version 1") && said.contains("novelty"), "{said}");
+        assert!(
+            said.contains(&format!("layout of version {FORMAT_VERSION}")) && said.contains("novelty"),
+            "{said}"
+        );
     }
 }
 
@@ -312,4 +318,23 @@ fn warnings_give_the_share_of_samples_beyond_the_training() {
     };
     assert_eq!(name, "the rate of x");
     assert!((share_percent - 100.0 / 120.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_file_of_version_1_is_read() {
+    // Written by the program before its first change of layout; the outputs are what it simulated.
+    let model = Model::from_json(include_str!("data/model-version-1.json")).unwrap();
+    assert_eq!((model.family(), model.rate()), (Family::XpnnPlus, Some(RateMethod::Central)));
+    assert_eq!(model.provenance().options.training, hysid::training::Trainer::LevenbergMarquardt);
+    let x = vec![0.0, 0.05218, 0.10412, 0.15493];
+    let time = vec![0.0, 0.1, 0.2, 0.3];
+    let record = Record::new("r", vec![x], vec![f64::NAN; 4]).unwrap().with_time(time).unwrap();
+    let y = model.simulate(&record).unwrap();
+    // The last row's rate is one-sided here.
+    for (found, written) in y.iter().zip([-8.366994376950501e-4, 0.7297365547006063, 1.4568964414396568]) {
+        approx::assert_relative_eq!(*found, written, max_relative = 1e-12);
+    }
+    let again = model.to_json();
+    assert!(again.contains("\"version\": 2") && !again.contains("\"trainer\""));
+    assert_eq!(Model::from_json(&again).unwrap(), model);
 }

@@ -12,7 +12,7 @@ use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
 use crate::columns::Roles;
 use crate::data::Data;
-use crate::identification::{check_outputs, identify, note_interrupted, report_path};
+use crate::identification::{Work, check_outputs, identify, note_interrupted, report_path};
 use crate::messages::{note, results};
 use crate::table::Table;
 use crate::{files, interrupt};
@@ -49,7 +49,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let data = read(&train)?;
     let unseen = read(&test)?;
     let options = fit_as_typed(&train).training.fit_options(None);
-    let identified = identify(&data, &options, None, None)?;
+    let identified = identify(&data, Work::new(&options))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     let mut written = vec![("data", train.clone()), ("data", test.clone())];
     written.extend(identified.save(&out, Some(vec![("training", &data.set), ("unseen", &unseen.set)]))?);

@@ -6,31 +6,49 @@ use anyhow::{Context, Result, bail};
 use hysid::metrics::Errors;
 use hysid::network::{Architecture, Family};
 use hysid::rate::RateMethod;
-use hysid::training::Termination;
+use hysid::training::{Checkpoint, FitOptions, Termination};
 
 use crate::Outcome;
 use crate::arguments::{Fit, RateOption};
 use crate::columns::Roles;
 use crate::commands::read_model;
 use crate::data::{Data, read_tables};
-use crate::identification::{self, Identified, check_outputs, identify, report_path};
-use crate::messages::{Usage, results};
-use crate::{files, interrupt};
+use crate::identification::{self, Identified, Work, check_outputs, identify, report_path};
+use crate::messages::{Usage, note, results, warning};
+use crate::{checkpoint, files, interrupt};
 
 /// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {
     let out = out(arguments)?;
     let report = (!arguments.no_report).then(|| report_path(&out));
-    let outputs: Vec<&Path> = std::iter::once(&out).chain(&report).map(PathBuf::as_path).collect();
+    let checkpoint = arguments.checkpoint.as_ref().or(arguments.resume.as_ref());
+    let outputs: Vec<&Path> =
+        std::iter::once(&out).chain(&report).chain(checkpoint).map(PathBuf::as_path).collect();
     let tables = read_tables(&arguments.train)?;
     let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
-        .with_context(|| tables[0].file.clone())?;
+    let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
+    let options = match &begun {
+        Some(begun) => options_of(begun, &arguments.columns.rate)?,
+        None => {
+            let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
+                .with_context(|| tables[0].file.clone())?;
+            arguments.training.fit_options(rate)
+        }
+    };
     let data = Data::new(tables, roles, true)?;
-    let options = arguments.training.fit_options(rate);
-    let identified = identify(&data, &options, arguments.threads, arguments.time_limit)?;
+    for option in arguments.training.useless() {
+        warning(&format!("{} has no use for {option}", options.training.name()));
+    }
+    let work = Work {
+        options: &options,
+        begun,
+        checkpoint: checkpoint.map(PathBuf::as_path),
+        threads: arguments.threads,
+        time_limit: arguments.time_limit,
+    };
+    let identified = identify(&data, work)?;
 
     let sets = report.is_some().then(|| vec![("training", &data.set)]);
     let written = identified.save(&out, sets)?;
@@ -41,9 +59,19 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     }
     if interrupt::requested() {
         identification::note_interrupted(&out);
+        if let Some(checkpoint) = checkpoint {
+            note_resumable(checkpoint);
+        }
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
+}
+
+fn note_resumable(checkpoint: &Path) {
+    let file = files::shown(checkpoint);
+    note(format_args!(
+        "to go on: the same command with --resume {file} in the place of its training options"
+    ));
 }
 
 /// The model file: as asked, or the first table's name in the present folder.
@@ -66,6 +94,22 @@ fn out(arguments: &Fit) -> Result<PathBuf> {
         return Err(Usage("--out needs the name of a file for the model".into()).into());
     }
     Ok(out.clone())
+}
+
+/// The options of a fit that is taken up again.
+fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
+    let options = begun.options().clone();
+    let agrees = match rate {
+        RateOption::Auto => true,
+        RateOption::None => options.rate.is_none(),
+        RateOption::Column(_) => options.rate == Some(RateMethod::Given),
+        RateOption::Method(method) => options.rate == Some(*method),
+    };
+    if !agrees {
+        let advice = "--rate is not what the checkpoint was made with: leave it out, or begin the fit anew";
+        return Err(Usage(advice.into()).into());
+    }
+    Ok(options)
 }
 
 /// The rate that `--rate` means for these columns and this family.

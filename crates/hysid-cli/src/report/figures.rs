@@ -1,8 +1,8 @@
 //! Loops, and how the training converged.
 
-use hysid::model::Model;
+use hysid::model::{Model, Provenance};
 use hysid::record::Record;
-use hysid::training::{Phase, Run};
+use hysid::training::{Method, Phase, Run};
 
 use super::markup::{count, figure, note, section};
 use super::{ReportSet, unit};
@@ -110,18 +110,19 @@ fn scored_rows(record: &Record) -> std::ops::Range<usize> {
     first.zip(last).map_or(0..record.len(), |(first, last)| first..last + 1)
 }
 
-/// Error against epoch of every start and of the refit.
+/// Error against epoch of every start and of what was trained on all data.
 pub fn convergence_section(model: &Model) -> String {
     let provenance = model.provenance();
     let is_chosen = |run: &Run| run.phase == Phase::Starts && run.start == provenance.chosen_start;
-    let chosen_end = provenance.runs.iter().find(|run| is_chosen(run)).and_then(|run| run.history.last());
-    let offset = chosen_end.map_or(0, |point| point.epoch);
+    let of_chosen = provenance.runs.iter().filter(|run| is_chosen(run));
+    let offset = of_chosen.flat_map(|run| run.history.last()).map(|point| point.epoch).max().unwrap_or(0);
     let mut curves: Vec<Curve> = Vec::new();
     for run in &provenance.runs {
-        let (colour, width, offset) = match run.phase {
-            Phase::Starts if is_chosen(run) => (Colour::Simulated, 2.0, 0),
-            Phase::Starts => (Colour::Faint, 1.0, 0),
-            Phase::Refit => (Colour::Error, 2.0, offset),
+        let (colour, width, offset) = match (run.phase, run.method) {
+            (Phase::Starts, _) if is_chosen(run) => (Colour::Simulated, 2.0, 0),
+            (Phase::Starts, _) => (Colour::Faint, 1.0, 0),
+            (Phase::AllData, Method::Genetic) => (Colour::Input, 2.0, offset),
+            (Phase::AllData, _) => (Colour::Error, 2.0, offset),
         };
         let point = |p: &hysid::training::HistoryPoint| {
             ((offset + p.epoch) as f64, p.train_nrmse_percent.max(LOWEST_PERCENT))
@@ -134,8 +135,7 @@ pub fn convergence_section(model: &Model) -> String {
     }
     curves.sort_by_key(|curve| curve.colour != Colour::Faint);
     let chart = Chart {
-        description: "Training error of every start against epoch, and of the chosen one trained on all data"
-            .into(),
+        description: "Training error against epoch".into(),
         title: String::new(),
         size: (860.0, 300.0),
         x: Axis::linear("epoch", curves.iter().flat_map(|curve| &curve.points).map(|point| point.0)),
@@ -144,20 +144,56 @@ pub fn convergence_section(model: &Model) -> String {
             curves.iter().flat_map(|curve| &curve.points).map(|point| point.1),
         ),
         curves,
-        legend: vec![
-            (Colour::Faint, "other starts".into()),
-            (Colour::Simulated, "chosen start".into()),
-            (Colour::Error, "then on all data".into()),
-        ],
+        legend: convergence_legend(&provenance.runs, provenance.options.starts),
     };
+    section("Convergence", &(figure(&chart.svg(), true) + &note(&convergence_words(provenance))))
+}
+
+fn convergence_legend(runs: &[Run], starts: usize) -> Vec<(Colour, String)> {
+    let mut legend = Vec::new();
+    if starts > 1 {
+        legend.push((Colour::Faint, "other starts".to_string()));
+        legend.push((Colour::Simulated, "chosen start".to_string()));
+    }
+    let after = if starts > 1 { "then on all data" } else { "on all data" };
+    for run in runs.iter().filter(|run| run.phase == Phase::AllData) {
+        legend.push(match run.method {
+            Method::Genetic => (Colour::Input, format!("{after}: genetic algorithm")),
+            Method::Subgradient => (Colour::Error, "sub-gradient method".to_string()),
+            Method::LevenbergMarquardt => (Colour::Error, after.to_string()),
+        });
+    }
+    legend
+}
+
+fn convergence_words(provenance: &Provenance) -> String {
     let best = if provenance.validation.is_some() { "on what was held out" } else { "there" };
-    let refitted = provenance.runs.iter().any(|run| run.phase == Phase::Refit);
-    let words = format!(
-        "{} on the training part; number {} did best {best}{} ({}).",
-        count(provenance.options.starts, "random start"),
-        provenance.chosen_start + 1,
-        if refitted { " and went on to all data" } else { "" },
-        provenance.termination
-    );
-    section("Convergence", &(figure(&chart.svg(), true) + &note(&words)))
+    let on_all_data = provenance.runs.iter().filter(|run| run.phase == Phase::AllData);
+    let refitted = on_all_data.clone().next().is_some();
+    let mut words = match provenance.options.starts {
+        1 => String::new(),
+        starts => format!(
+            "{} on the training part; number {} did best {best}{}. ",
+            count(starts, "random start"),
+            provenance.chosen_start + 1,
+            if refitted { " and went on to all data" } else { "" },
+        ),
+    };
+    for run in on_all_data {
+        let what = match run.method {
+            Method::LevenbergMarquardt => continue,
+            Method::Genetic => "Genetic algorithm",
+            Method::Subgradient => "Sub-gradient method with space dilatation",
+        };
+        let (first, last) = (run.history.first(), run.history.last());
+        let epochs = first.zip(last).map_or(0, |(first, last)| last.epoch - first.epoch);
+        words += &format!("{what}: {}, {}. ", count(epochs, "epoch"), run.termination);
+    }
+    let evaluations = provenance.runs.iter().filter(|run| run.phase == Phase::AllData);
+    let evaluations = evaluations.flat_map(|run| run.history.last()).map(|point| point.evaluations).max();
+    words += &match evaluations {
+        Some(n) if n > 0 => format!("The objective was evaluated {n} times on all data. "),
+        _ => String::new(),
+    };
+    words + &format!("The training ended: {}.", provenance.termination)
 }

@@ -42,6 +42,7 @@ pub fn section(report: &Report) -> String {
             number(100.0 * options.validation, 3),
             count(errors.samples, "sample")
         ),
+        None if options.starts == 1 => "nothing: there was but one start".into(),
         None => "nothing: too few data".into(),
     };
     let mut sizes = count(a.stops, "stop");
@@ -51,17 +52,21 @@ pub fn section(report: &Report) -> String {
     if a.relaxation > 0 {
         sizes += &format!(", {} of each input", count(a.relaxation, "relaxation neuron"));
     }
+    let (starts, epochs) = match options.starts {
+        1 => ("1".into(), format!("at most {}", options.epochs)),
+        starts => (
+            format!("{starts}, of which number {} was chosen", provenance.chosen_start + 1),
+            format!("at most {} of each start, and again on all data", options.epochs),
+        ),
+    };
     let pair = |name: &str, value: String| (name.to_string(), value);
-    let pairs = [
+    let mut pairs = vec![
         pair("Model", format!("{} ({sizes})", report.model.family().name())),
         pair("Deterioration", if a.deterioration { "yes".into() } else { "no".into() }),
         pair("Rate", rate.into()),
-        pair("Trainer", provenance.trainer.clone()),
-        pair(
-            "Starts",
-            format!("{}, of which number {} was chosen", options.starts, provenance.chosen_start + 1),
-        ),
-        pair("Epochs", format!("{} of each start, and again on all data", options.epochs)),
+        pair("Training", options.training.name().into()),
+        pair("Starts", starts),
+        pair("Epochs", epochs),
         pair("Seed", options.seed.to_string()),
         pair("Held out", held_out),
         pair(
@@ -73,5 +78,8 @@ pub fn section(report: &Report) -> String {
         pair("Model file", report.model_file.clone()),
         pair("Version", format!("hysid {}", env!("CARGO_PKG_VERSION"))),
     ];
+    if options.training.is_genetic() {
+        pairs.insert(6, pair("Population", options.population.to_string()));
+    }
     section_of("Options and provenance", &definitions(&pairs))
 }

@@ -15,7 +15,7 @@ use crate::scaling::Scaling;
 use crate::unit;
 
 /// Version of the layout that is written.
-pub const FORMAT_VERSION: u64 = 1;
+pub const FORMAT_VERSION: u64 = 2;
 
 const FORMAT: &str = "hysid-model";
 const CHECKSUM_KEY: &str = "\"checksum\"";
@@ -175,10 +175,27 @@ pub(super) fn read(text: &str) -> Result<Model> {
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
-    let file: File = serde_json::from_str(text).map_err(|error| {
-        damaged(format!("the model file does not have the layout of version {FORMAT_VERSION}: {error}"))
+    let version = value["version"].as_u64().unwrap_or_default();
+    let file = match version {
+        // The text itself tells the place of an error.
+        FORMAT_VERSION => serde_json::from_str(text),
+        _ => serde_json::from_value(upgraded(value)),
+    };
+    let file: File = file.map_err(|error| {
+        damaged(format!("the model file does not have the layout of version {version}: {error}"))
     })?;
     assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
+}
+
+/// A file of any earlier version in the layout of the present one.
+fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
+    // Version 1 named the trainer beside the options and had but one.
+    if value["version"] == 1
+        && let Some(training) = value["training"].as_object_mut()
+    {
+        training.remove("trainer");
+    }
+    value
 }
 
 fn assemble(file: File) -> Result<Model> {

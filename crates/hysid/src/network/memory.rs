@@ -75,7 +75,7 @@ pub(crate) struct Sensitivity {
 }
 
 /// Outputs of the memory layer over a block, and their derivatives, each neuron-major.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct MemorySlopes {
     /// `∂z_j/∂w_jc`, see [`MemorySlopes::by_weight`].
     pub weights: Vec<Row>,

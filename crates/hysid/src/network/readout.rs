@@ -10,6 +10,7 @@
 use pulp::Simd;
 
 use crate::network::memory::{BLOCK, Row, whole_lanes};
+use crate::network::sweep::Block;
 use crate::network::tanh::tanh;
 use crate::network::{Architecture, Layout};
 use crate::simd::multiply_add;
@@ -109,9 +110,47 @@ impl Readout {
     }
 }
 
+/// The readout run backward: a weight for each row, carried to all that the output depends on.
+#[derive(Debug, Clone)]
+pub(crate) struct Backward {
+    /// By the weighted sum of each tanh neuron: the weight times `c_i (1 - h_i²)`.
+    pub by_sum: Vec<Row>,
+    /// By the output of each memory neuron: the weight times `q_j`, theory.md (2.11).
+    pub by_memory: Vec<Row>,
+}
+
+impl Backward {
+    pub fn new(architecture: &Architecture) -> Self {
+        Self {
+            by_sum: vec![[0.0; BLOCK]; architecture.hidden],
+            by_memory: vec![[0.0; BLOCK]; architecture.memory_neurons()],
+        }
+    }
+
+    #[inline(always)]
+    pub fn run<S: Simd>(&mut self, readout: &Readout, output: &[f64], weight: &Row, block: &Block) {
+        let (_, hidden, direct) = readout.split(output);
+        for (j, q) in self.by_memory.iter_mut().enumerate() {
+            let d = direct.get(j).copied().unwrap_or(0.0);
+            for (q, weight) in q.iter_mut().zip(weight) {
+                *q = d * weight;
+            }
+        }
+        for (i, ((&c, h), slope)) in hidden.iter().zip(&block.h).zip(&mut self.by_sum).enumerate() {
+            for ((slope, &h), &weight) in slope.iter_mut().zip(h).zip(weight) {
+                *slope = c * multiply_add::<S>(-h, h, 1.0) * weight;
+            }
+            let (_, weights) = readout.neuron(i);
+            for (q, &weight) in self.by_memory.iter_mut().zip(weights) {
+                accumulate::<S>(weight, slope, q);
+            }
+        }
+    }
+}
+
 /// `y += factor * x`, row by row.
 #[inline(always)]
-pub(crate) fn accumulate<S: Simd>(factor: f64, x: &[f64], y: &mut [f64]) {
+fn accumulate<S: Simd>(factor: f64, x: &[f64], y: &mut [f64]) {
     for (y, &x) in y.iter_mut().zip(x) {
         *y = multiply_add::<S>(factor, x, *y);
     }

@@ -19,6 +19,12 @@
 
 use std::f64::consts::FRAC_2_PI;
 
+use crate::error::Result;
+use crate::record::Record;
+
+use super::path;
+use super::specimen::{Columns, Specimen};
+
 /// Permeability of vacuum in T m/A.
 const MU_0: f64 = 4e-7 * std::f64::consts::PI;
 
@@ -211,6 +217,44 @@ impl Ferromagnet {
         };
         self.extrema.push(Extremum { h, j });
     }
+}
+
+pub(super) static SPECIMEN: Specimen = Specimen {
+    name: "ferromagnet",
+    example: "example 1",
+    summary: "electrical steel sheet M330-50A: field and flux density, a Preisach model with minor loops",
+    published: "the Everett function and its parameters for M330-50A (Modelica Standard Library, \
+                HysteresisEverettParameter, in the copies of Wolfram System Modeler)",
+    designed: "the path of the field",
+    training: "growing amplitudes up to 400 A/m, minor loops on both branches, then demagnetisation; about 1500 rows",
+    testing: "a demagnetised sheet on another path: other amplitudes and other minor loops within the same range",
+    columns: Columns { time: None, input: "H_A_per_m", output: "B_T" },
+    train: || Ok(vec![magnetised("growing and minor loops", &TRAIN)?]),
+    test: || Ok(vec![magnetised("other loops", &TEST)?]),
+};
+
+/// Rows of each record, about.
+const ROWS: f64 = 1500.0;
+
+/// Turning points of the field in the training record, in A/m.
+const TRAIN: [f64; 38] = [
+    0.0, 30.0, -30.0, 60.0, -60.0, 100.0, -100.0, 160.0, -160.0, 250.0, -250.0, 400.0, 50.0, 200.0, -40.0,
+    90.0, -100.0, 0.0, -400.0, -30.0, -150.0, 60.0, -80.0, 120.0, 20.0, 400.0, -300.0, 300.0, -200.0, 200.0,
+    -130.0, 130.0, -80.0, 80.0, -45.0, 45.0, -20.0, 0.0,
+];
+
+/// Turning points of the field in the test record, in A/m.
+const TEST: [f64; 26] = [
+    0.0, 45.0, -45.0, 130.0, -130.0, 330.0, 80.0, 150.0, -20.0, 40.0, -60.0, -10.0, -330.0, -90.0, -200.0,
+    20.0, -50.0, 70.0, 40.0, 370.0, -180.0, 180.0, -110.0, 60.0, -30.0, 0.0,
+];
+
+/// The sheet along a path of the field, which is rounded to 0.01 A/m.
+fn magnetised(name: &str, turning: &[f64]) -> Result<Record> {
+    let path = path::through(turning, path::travel(turning) / ROWS);
+    let h: Vec<f64> = path.into_iter().map(|h| (100.0 * h).round() / 100.0).collect();
+    let b = Ferromagnet::m330_50a().run(&h);
+    Record::new(name, vec![h], b)
 }
 
 #[cfg(test)]

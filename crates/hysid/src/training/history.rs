@@ -1,36 +1,45 @@
-//! What became of each start of a fit.
+//! What became of each training run.
 
 use serde::{Deserialize, Serialize};
 
+use crate::training::options::Method;
 use crate::training::termination::Termination;
 
 /// A part of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
-    /// The random starts, on the training part.
+    /// Several starts, on the training part.
     Starts,
-    /// The best few starts, on all data; the run kept is the winner's.
-    Refit,
+    /// The best few starts, or the only one, on all data; the run kept is the winner's.
+    #[serde(alias = "refit")]
+    AllData,
 }
 
 /// One point of a training history.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HistoryPoint {
-    /// Iteration.
+    /// Epoch: an iteration, or a generation.
     pub epoch: usize,
+    /// Evaluations of the objective so far, gradients included; 0 in old files, which did not count.
+    #[serde(default)]
+    pub evaluations: usize,
     /// Error on the training rows, in percent of the output's standard deviation.
     pub train_nrmse_percent: f64,
 }
 
-/// What became of one start, or of the refit.
+/// What one method made of one start, or of all data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Which part of the fit it is.
     pub phase: Phase,
     /// Start, counted from 0.
     pub start: usize,
-    /// Error after each iteration.
+    /// The method; those of a hybrid are two runs.
+    #[serde(default)]
+    pub method: Method,
+    /// Error after each epoch; where epochs are many, those at which it fell noticeably, and the last.
+    /// Epochs and evaluations of a hybrid's second method go on from the first.
     pub history: Vec<HistoryPoint>,
     /// Why it ended.
     pub termination: Termination,

@@ -3,11 +3,8 @@
 //! The output weights are never searched: each value of the objective already has the best ones, and
 //! the Gauss-Newton matrix (3.4) knows that they follow.
 
-use std::ops::ControlFlow;
+use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
-use crate::network::{Architecture, Network};
-use crate::training::history::HistoryPoint;
 use crate::training::objective::{Objective, Slope, Value};
 use crate::training::termination::Termination;
 
@@ -16,93 +13,74 @@ const FIRST_DAMPING: f64 = 1e-2;
 /// Damping at which the search gives up.
 const LARGEST_DAMPING: f64 = 1e12;
 const SMALLEST_DAMPING: f64 = 1e-12;
+/// Share of the largest curvature seen that is left after an iteration.
+const MEMORY_OF_CURVATURE: f64 = 0.9;
+/// Smallest curvature assumed, as a share of the largest of all directions.
+const LEAST_CURVATURE: f64 = 1e-4;
 /// Relative fall of the objective that counts as none.
 const STALL: f64 = 1e-6;
 /// Iterations in a row without a noticeable fall that end the search.
 const PATIENCE: usize = 3;
 
-/// Where a descent ended.
-#[derive(Debug, Clone)]
-pub struct Descent {
-    /// The parameters found by search.
-    pub parameters: Vec<f64>,
-    /// Their output weights.
-    pub output: Vec<f64>,
-    /// The objective there, theory.md (3.1).
-    pub objective: f64,
-    /// Error after each iteration.
-    pub history: Vec<HistoryPoint>,
-    /// Why it ended.
-    pub termination: Termination,
-    /// Evaluations of the objective, gradients included.
-    pub evaluations: usize,
-}
-
-impl Descent {
-    pub(crate) fn network(&self, architecture: &Architecture) -> Result<Network> {
-        Network::new(*architecture, self.parameters.clone(), self.output.clone())
-    }
-}
-
-/// Descends from `parameters` for at most `epochs` iterations. `told` gets the iteration and the error
-/// in percent of the standard deviation, and may break.
-pub fn descend(
-    objective: &Objective,
+/// The state of a descent. It can be stored and taken up again, to the last bit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct LevenbergMarquardt {
     parameters: Vec<f64>,
-    epochs: usize,
-    mut told: impl FnMut(usize, f64) -> ControlFlow<()>,
-) -> Descent {
-    let mut value = objective.value(&parameters);
-    let mut descent = Descent {
-        output: value.output_weights().to_vec(),
-        parameters,
-        objective: value.objective,
-        history: vec![point(0, &value)],
-        termination: Termination::EpochsUsed,
-        evaluations: 1,
-    };
-    let mut damping = Damping::new();
-    let mut stalled = 0;
-    for epoch in 1..=epochs {
-        let slope = objective.slope(&descent.parameters, &value);
-        descent.evaluations += 1;
-        damping.see(&slope);
+    /// The objective at the parameters; computed anew after a descent was stored.
+    #[serde(skip)]
+    value: Option<Value>,
+    damping: Damping,
+    stalled: usize,
+    evaluations: usize,
+}
+
+impl LevenbergMarquardt {
+    /// Begins at `parameters`.
+    pub fn new(objective: &Objective, parameters: Vec<f64>) -> Self {
+        let value = Some(objective.value(&parameters));
+        Self { parameters, value, damping: Damping::new(), stalled: 0, evaluations: 1 }
+    }
+
+    /// Where the descent is.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Evaluations of the objective so far, gradients included.
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// The objective where the descent is.
+    pub fn value(&mut self, objective: &Objective) -> &Value {
+        self.value.get_or_insert_with(|| objective.value(&self.parameters))
+    }
+
+    /// One iteration, which lowers the objective unless it tells that there is no way on.
+    pub fn advance(&mut self, objective: &Objective) -> Option<Termination> {
+        let value = self.value(objective).clone();
+        let slope = objective.slope(&self.parameters, &value);
+        self.evaluations += 1;
+        self.damping.see(&slope);
         if slope.gradient.iter().all(|g| g.abs() < 1e-14) {
-            descent.termination = Termination::GradientVanished;
-            break;
+            return Some(Termination::GradientVanished);
         }
-        let Some((parameters, better)) =
-            damping.step(objective, &slope, &descent.parameters, &value, &mut descent.evaluations)
-        else {
-            descent.termination = Termination::NoFurtherImprovement;
-            break;
+        let found = self.damping.step(objective, &slope, &self.parameters, &value, &mut self.evaluations);
+        let Some((parameters, better)) = found else {
+            return Some(Termination::NoFurtherImprovement);
         };
         let fall = (value.objective - better.objective) / value.objective;
-        descent.parameters = parameters;
-        value = better;
-        descent.output.copy_from_slice(value.output_weights());
-        descent.objective = value.objective;
-        let point = point(epoch, &value);
-        descent.history.push(point);
-        if told(epoch, point.train_nrmse_percent).is_break() {
-            descent.termination = Termination::Stopped;
-            break;
-        }
-        stalled = if fall < STALL { stalled + 1 } else { 0 };
-        if stalled == PATIENCE {
-            descent.termination = Termination::Converged;
-            break;
-        }
+        self.parameters = parameters;
+        self.value = Some(better);
+        self.stalled = if fall < STALL { self.stalled + 1 } else { 0 };
+        (self.stalled == PATIENCE).then_some(Termination::Converged)
     }
-    descent
 }
 
-fn point(epoch: usize, value: &Value) -> HistoryPoint {
-    HistoryPoint { epoch, train_nrmse_percent: 100.0 * value.mean_square.sqrt() }
-}
-
-/// μ and D of theory.md (3.5). D is the largest curvature seen in each direction (Moré), so that a
-/// parameter that matters little now is not thrown far away.
+/// μ and D of theory.md (3.5). D is the largest curvature seen lately in each direction (Moré), so that a
+/// parameter that matters little now is not thrown far away; it fades, because curvature seen far away
+/// would hold the parameter for ever.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Damping {
     mu: f64,
     growth: f64,
@@ -117,9 +95,9 @@ impl Damping {
     fn see(&mut self, slope: &Slope) {
         self.scale.resize(slope.gradient.len(), 0.0);
         for (index, scale) in self.scale.iter_mut().enumerate() {
-            *scale = scale.max(slope.matrix.diagonal(index));
+            *scale = (MEMORY_OF_CURVATURE * *scale).max(slope.matrix.diagonal(index));
         }
-        let floor = 1e-6 * self.scale.iter().copied().fold(0.0, f64::max) + 1e-30;
+        let floor = LEAST_CURVATURE * self.scale.iter().copied().fold(0.0, f64::max) + 1e-30;
         for scale in &mut self.scale {
             *scale = scale.max(floor);
         }

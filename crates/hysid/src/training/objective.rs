@@ -5,9 +5,10 @@ use std::borrow::Cow;
 
 use crate::error::Result;
 use crate::linear_algebra::Symmetric;
-use crate::network::{Architecture, Columns, Drive, Layout, Sweep};
+use crate::network::{Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::training::genetic::mix;
 use crate::training::least_squares::{OutputProblem, OutputSolution};
 use crate::training::options::{FitOptions, Regularisation};
 
@@ -87,10 +88,8 @@ impl<'a> Objective<'a> {
             rows = 0;
             for (seen, y) in targets.iter_mut().flatten().filter(|y| !y.is_nan()).enumerate() {
                 let (index, place) = (seen / run, seen % run);
-                // A fixed hash (splitmix) picks the place within each run.
-                let mut hash = (index as u64).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-                hash = (hash ^ (hash >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-                if place as u64 == (hash >> 33) % run as u64 {
+                // A fixed hash picks the place within each run.
+                if place as u64 == (mix(index as u64) >> 33) % run as u64 {
                     rows += 1;
                 } else {
                     *y = f64::NAN;
@@ -127,9 +126,17 @@ impl<'a> Objective<'a> {
         (longest > 0.0).then_some((step, longest))
     }
 
+    /// Half of the range of the first input, in scaled units.
+    pub(crate) fn half_range_of_input(&self) -> f64 {
+        let inputs = self.drives.iter().flat_map(|drive| &drive.channels[0]);
+        let (low, high) =
+            inputs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        0.5 * (high - low)
+    }
+
     /// The value at a point.
     pub fn value(&self, parameters: &[f64]) -> Value {
-        let gram = self.sweep(parameters, None);
+        let gram = self.gram(parameters, None);
         let solution = self.output_problem(&gram).solve();
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
         Value {
@@ -141,11 +148,23 @@ impl<'a> Objective<'a> {
 
     /// Gradient of F by the parameters, at a point with its value.
     pub fn gradient(&self, parameters: &[f64], value: &Value) -> Vec<f64> {
-        self.slope(parameters, value).gradient
+        let sums = GradientOverRecords {
+            architecture: &self.architecture,
+            parameters,
+            output: &value.solution.weights,
+            drives: &self.drives,
+            targets: &self.targets,
+        };
+        let mut gradient = sums.sum();
+        gradient.iter_mut().for_each(|g| *g /= self.rows as f64);
+        for (index, weight) in self.weights(parameters) {
+            gradient[index] += self.regularisation.decay * weight;
+        }
+        gradient
     }
 
     pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Slope {
-        let gram = self.sweep(parameters, Some(&value.solution.weights));
+        let gram = self.gram(parameters, Some(&value.solution.weights));
         let (mut gradient, mut matrix) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
         for (index, weight) in self.weights(parameters) {
@@ -155,9 +174,9 @@ impl<'a> Objective<'a> {
         Slope { gradient, matrix }
     }
 
-    fn sweep(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
+    fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
         let columns = Columns { architecture: &self.architecture, parameters, output };
-        Sweep { columns, drives: &self.drives, targets: &self.targets }.gram()
+        GramOverRecords { columns, drives: &self.drives, targets: &self.targets }.gram()
     }
 
     fn output_problem<'g>(&self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
@@ -172,5 +191,41 @@ impl<'a> Objective<'a> {
 
     fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
         parameters.iter().enumerate().filter(|(index, _)| self.layout.is_weight(*index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::{Family, Sizes};
+    use crate::record::{ColumnNames, Record};
+
+    #[test]
+    fn the_gradient_is_the_same_with_and_without_the_jacobian() {
+        for family in Family::ALL {
+            for rows in [64, 200, 331] {
+                let x: Vec<f64> =
+                    (0..rows).map(|k| (0.17 * k as f64).sin() * (1.0 + 0.01 * k as f64)).collect();
+                let mut y: Vec<f64> = (0..rows).map(|k| (0.17 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+                y[5] = f64::NAN;
+                let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+                let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
+                let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+                let sizes = Sizes { stops: 11, hidden: 3, relaxation: 2 };
+                let rate = Some(crate::rate::RateMethod::Central);
+                let options = FitOptions { model: family, sizes, rate, ..FitOptions::default() };
+                let scaling = Scaling::of(&data, rate).unwrap();
+                let architecture = options.architecture(&data).unwrap();
+                let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+                let point = crate::training::start::random(&objective, 1, 0);
+                let value = objective.value(&point);
+                let of_slope = objective.slope(&point, &value).gradient;
+                let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));
+                assert!(size > 1e-4);
+                for (a, b) in of_slope.iter().zip(objective.gradient(&point, &value)) {
+                    assert!((a - b).abs() < 1e-11 * size, "{family:?}, {rows} rows: {a} and {b}");
+                }
+            }
+        }
     }
 }

@@ -6,6 +6,95 @@ use crate::error::{Error, Result};
 use crate::network::{Architecture, Family, Sizes};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::training::genetic::POPULATIONS;
+
+/// How networks are trained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Trainer {
+    /// Levenberg-Marquardt with variable projection from several starts.
+    #[default]
+    LevenbergMarquardt,
+    /// The paper's: a genetic algorithm, then the sub-gradient method from its best individual.
+    Hybrid,
+    /// The genetic algorithm alone.
+    Genetic,
+    /// The sub-gradient method with space dilatation alone.
+    Subgradient,
+}
+
+/// A way to lower the objective.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Levenberg-Marquardt.
+    #[default]
+    LevenbergMarquardt,
+    /// The genetic algorithm; an epoch is a generation.
+    Genetic,
+    /// The sub-gradient method with space dilatation; an epoch is an outer iteration.
+    Subgradient,
+}
+
+impl Trainer {
+    /// All trainers.
+    pub const ALL: [Trainer; 4] =
+        [Trainer::LevenbergMarquardt, Trainer::Hybrid, Trainer::Genetic, Trainer::Subgradient];
+
+    /// The name on the command line and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Trainer::LevenbergMarquardt => "levenberg-marquardt",
+            Trainer::Hybrid => "hybrid",
+            Trainer::Genetic => "genetic",
+            Trainer::Subgradient => "subgradient",
+        }
+    }
+
+    /// Starts unless the user says otherwise: the paper trains one network.
+    pub fn default_starts(self) -> usize {
+        match self {
+            Trainer::LevenbergMarquardt => 8,
+            _ => 1,
+        }
+    }
+
+    /// Epochs unless the user says otherwise.
+    pub fn default_epochs(self) -> usize {
+        match self {
+            Trainer::LevenbergMarquardt => 40,
+            _ => 2000,
+        }
+    }
+
+    /// True if it breeds a population.
+    pub fn is_genetic(self) -> bool {
+        matches!(self, Trainer::Hybrid | Trainer::Genetic)
+    }
+
+    /// Its methods, one after another, and the epochs of each.
+    pub(crate) fn plan(self, epochs: usize) -> Vec<(Method, usize)> {
+        match self {
+            Trainer::LevenbergMarquardt => vec![(Method::LevenbergMarquardt, epochs)],
+            Trainer::Hybrid => {
+                vec![(Method::Genetic, epochs / 2), (Method::Subgradient, epochs - epochs / 2)]
+            }
+            Trainer::Genetic => vec![(Method::Genetic, epochs)],
+            Trainer::Subgradient => vec![(Method::Subgradient, epochs)],
+        }
+    }
+}
+
+impl std::str::FromStr for Trainer {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        Trainer::ALL.into_iter().find(|trainer| trainer.name() == name).ok_or_else(|| {
+            let names = Trainer::ALL.map(Trainer::name).join(", ");
+            Error::Option(format!("training `{name}` is unknown: choose one of {names}"))
+        })
+    }
+}
 
 /// What the user can choose; every field has the name of its command-line option.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,10 +108,23 @@ pub struct FitOptions {
     pub no_deterioration: bool,
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
-    /// Random networks to start from.
+    /// The trainer.
+    #[serde(default)]
+    pub training: Trainer,
+    /// Random networks, or populations, to start from. Of several, those are chosen that do best on
+    /// data held out; a single one is trained on everything at once.
     pub starts: usize,
-    /// Levenberg-Marquardt iterations of each start; the best few get as many again on all data.
+    /// Epochs of each start: Levenberg-Marquardt iterations, generations or outer iterations of the
+    /// sub-gradient method; a hybrid shares them out in halves. The best few of several starts get as
+    /// many again on all data.
     pub epochs: usize,
+    /// Individuals of the genetic algorithm.
+    #[serde(default = "default_population")]
+    pub population: usize,
+    /// Epochs without a relative improvement of 1e-4 after which the genetic algorithm or the
+    /// sub-gradient method ends; 0 for never.
+    #[serde(default = "default_stall")]
+    pub stall: usize,
     /// Seed of the random starts.
     pub seed: u64,
     /// Share of the data held out to choose among the starts.
@@ -35,24 +137,40 @@ pub struct FitOptions {
     pub thin: usize,
 }
 
+fn default_population() -> usize {
+    50
+}
+
+fn default_stall() -> usize {
+    50
+}
+
 impl Default for FitOptions {
     fn default() -> Self {
+        Self::of(Trainer::default())
+    }
+}
+
+impl FitOptions {
+    /// The defaults of a trainer.
+    pub fn of(training: Trainer) -> Self {
         Self {
             model: Family::XpnnPlus,
             sizes: Sizes::default(),
             no_deterioration: false,
             rate: None,
-            starts: 8,
-            epochs: 40,
+            training,
+            starts: training.default_starts(),
+            epochs: training.default_epochs(),
+            population: default_population(),
+            stall: default_stall(),
             seed: 1,
             validation: 0.25,
             regularisation: Regularisation::default(),
             thin: 20_000,
         }
     }
-}
 
-impl FitOptions {
     /// The network that the options ask for on these data.
     ///
     /// # Errors
@@ -63,7 +181,34 @@ impl FitOptions {
         architecture.deterioration &= !self.no_deterioration;
         Ok(architecture)
     }
+
+    /// Refuses options outside their meaning.
+    pub(crate) fn check(&self) -> Result<()> {
+        if !(self.validation > 0.0 && self.validation < 1.0) {
+            return Err(Error::Option(format!("validation {} is not between 0 and 1", self.validation)));
+        }
+        if self.starts == 0 || self.starts > MOST_STARTS {
+            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
+        }
+        if self.epochs > MOST_EPOCHS {
+            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
+        }
+        if !POPULATIONS.contains(&self.population) {
+            let (fewest, most) = (POPULATIONS.start(), POPULATIONS.end());
+            return Err(Error::Option(format!(
+                "a population of {}: choose {fewest} to {most}",
+                self.population
+            )));
+        }
+        self.regularisation.check()
+    }
 }
+
+/// Most epochs of a start.
+const MOST_EPOCHS: usize = 1_000_000;
+
+/// Most starts.
+const MOST_STARTS: usize = 10_000;
 
 /// Penalties on the weights, in scaled units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

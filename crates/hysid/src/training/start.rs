@@ -58,7 +58,7 @@ pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64>
 }
 
 /// A standard normal number, by Box and Muller.
-fn normal(generator: &mut impl Rng) -> f64 {
+pub(crate) fn normal(generator: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (generator.random(), generator.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

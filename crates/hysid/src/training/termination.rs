@@ -12,6 +12,8 @@ pub enum Termination {
     GradientVanished,
     /// No step, however short, improves the objective at this precision.
     NoFurtherImprovement,
+    /// The best value fell by less than one part in 10 000 over as many epochs as the stall rule allows.
+    Stalled,
     /// All iterations were used.
     EpochsUsed,
     /// The observer said stop: Ctrl-C or a time limit.
@@ -31,8 +33,38 @@ impl std::fmt::Display for Termination {
             Self::Converged => "converged",
             Self::GradientVanished => "converged (gradient vanished)",
             Self::NoFurtherImprovement => "converged (no step improves further)",
+            Self::Stalled => "no longer improving noticeably",
             Self::EpochsUsed => "all epochs used",
             Self::Stopped => "stopped",
         })
+    }
+}
+
+/// Relative fall of the best value that counts as an improvement.
+const NOTICEABLE: f64 = 1e-4;
+
+/// The stall rule: no noticeable improvement in so many epochs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stall {
+    patience: usize,
+    reference: f64,
+    epochs: usize,
+}
+
+impl Stall {
+    /// From a value on; without the rule if `patience` is 0.
+    pub fn new(value: f64, patience: usize) -> Self {
+        Self { patience, reference: value, epochs: 0 }
+    }
+
+    /// Takes the best value after one more epoch.
+    pub fn is_reached(&mut self, best: f64) -> bool {
+        if best < self.reference - NOTICEABLE * self.reference.abs() {
+            self.reference = best;
+            self.epochs = 0;
+            return false;
+        }
+        self.epochs += 1;
+        self.patience > 0 && self.epochs >= self.patience
     }
 }

@@ -1,0 +1,59 @@
+"""One peer in a process of its own: `worker.py PEER CASE TASK...`.
+
+Prepares every formulation and tells its difference from the reference; then, for each line of names on
+stdin, runs these formulations and tells their times. Answers are lines of JSON.
+"""
+
+import importlib
+import json
+import statistics
+import sys
+import time
+
+import case as cases
+
+RUNS = 9
+"""A time is the median of this many runs, as in `hysid bench`."""
+
+
+def measure(run):
+    """Seconds of a run, and how many cores it kept busy."""
+    times = []
+    busy, began = time.process_time(), time.perf_counter()
+    for _ in range(RUNS):
+        start = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - start)
+    cores = (time.process_time() - busy) / (time.perf_counter() - began)
+    return {"seconds": statistics.median(times), "cores": cores}
+
+
+def formulations(peer, case):
+    """All of a peer's formulations, by task and name."""
+    if peer == "numba":
+        return importlib.import_module("numba_peer").formulations(case)
+    jax_peer = importlib.import_module("jax_peer")
+    return {"simulate": jax_peer.simulations(case), **jax_peer.population_formulations(case)}
+
+
+def main():
+    peer, path, *tasks = sys.argv[1:]
+    # Libraries may print: only answers go to the parent.
+    answers, sys.stdout = sys.stdout, sys.stderr
+    case = cases.load(path)
+    every = formulations(peer, case)
+    runs = {task: every[task] for task in tasks}
+    differences = {
+        # The first run compiles.
+        task: {name: float(case.difference(task, run())) for name, run in ways.items()}
+        for task, ways in runs.items()
+    }
+    print(json.dumps(differences), file=answers, flush=True)
+    for line in sys.stdin:
+        wanted = json.loads(line)
+        times = {task: {name: measure(runs[task][name]) for name in names} for task, names in wanted.items()}
+        print(json.dumps(times), file=answers, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,238 @@
+//! Exact derivatives of the output by every parameter found by search, and the Gram matrix that
+//! gathers all that least squares needs of them.
+//!
+//! ```text
+//! q_j = ∂y/∂z_j = Σ_i c_i (1 - h_i²) U_ij + d_j      theory.md (2.11)
+//! ```
+//!
+//! The derivative by a parameter of a memory neuron is `q_j` times that of its output, theory.md
+//! (2.9) and (2.10).
+
+use pulp::{Simd, WithSimd};
+
+use crate::linear_algebra::{Batch, Gram};
+use crate::network::memory::{BLOCK, Row};
+use crate::network::readout::{Backward, Readout};
+use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
+use crate::network::{Architecture, Layout, Network};
+use crate::simd;
+
+/// Output and Jacobian of a network over a record.
+#[derive(Debug, Clone)]
+pub struct Linearised {
+    /// Scaled output of each row.
+    pub output: Vec<f64>,
+    /// Derivative of the output by each parameter in the order of [`Layout`], output weights held:
+    /// one column of all rows for each parameter. At a kink of a stop, one of the two one-sided
+    /// derivatives (a sub-gradient).
+    pub jacobian: Vec<Vec<f64>>,
+}
+
+impl Network {
+    /// Output and exact Jacobian over a record, from the virgin state. It holds rows times parameters
+    /// numbers: meant for analysis; training gathers what it needs without storing it.
+    ///
+    /// # Panics
+    /// If the drive's channels are not those of the architecture.
+    pub fn linearise(&self, drive: &Drive) -> Linearised {
+        let p = self.parameters.len();
+        let mut rows = Rows {
+            wanted: 1 + p,
+            first: self.architecture.output_weights(),
+            columns: vec![Vec::with_capacity(drive.len()); 1 + p],
+        };
+        let columns = Columns {
+            architecture: &self.architecture,
+            parameters: &self.parameters,
+            output: Some(&self.output),
+        };
+        simd::run(CollectRows { columns, drive, rows: &mut rows });
+        let jacobian = rows.columns.split_off(1);
+        let mut output = vec![0.0; drive.len()];
+        let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
+        self.simulator().run(&u, &drive.steps, &mut output);
+        Linearised { output, jacobian }
+    }
+}
+
+/// What is computed for every row that has a target: features, target and, if output weights are
+/// given, the Jacobian; in this order, as columns.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Columns<'a> {
+    pub architecture: &'a Architecture,
+    pub parameters: &'a [f64],
+    pub output: Option<&'a [f64]>,
+}
+
+impl<'a> Columns<'a> {
+    /// Number of columns.
+    pub fn count(&self) -> usize {
+        let jacobian = if self.output.is_some() { self.parameters.len() } else { 0 };
+        self.architecture.output_weights() + 1 + jacobian
+    }
+
+    fn walk(&self) -> Walk<'a> {
+        Walk {
+            architecture: self.architecture,
+            parameters: self.parameters,
+            with_slopes: self.output.is_some(),
+        }
+    }
+}
+
+/// Gathers the Gram matrix of the [`Columns`] over records; a target of NaN is passed over.
+pub(crate) struct GramOverRecords<'a> {
+    pub columns: Columns<'a>,
+    pub drives: &'a [Drive],
+    pub targets: &'a [Vec<f64>],
+}
+
+impl GramOverRecords<'_> {
+    pub fn gram(self) -> Gram {
+        simd::run(self)
+    }
+}
+
+impl WithSimd for GramOverRecords<'_> {
+    type Output = Gram;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Gram {
+        let n = self.columns.count();
+        let gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n) };
+        let mut taken = ColumnsOfBlock::new(self.columns, gathered);
+        self.columns.walk().over(simd, self.drives, self.targets, &mut taken);
+        let Gathered { mut gram, mut batch } = taken.to;
+        gram.add(simd, &mut batch);
+        gram
+    }
+}
+
+/// Takes the columns of some rows.
+trait TakeRows {
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]);
+}
+
+/// Gathers rows into a Gram matrix.
+struct Gathered {
+    gram: Gram,
+    batch: Batch,
+}
+
+impl TakeRows for Gathered {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]) {
+        if self.batch.free() < rows {
+            self.gram.add(simd, &mut self.batch);
+        }
+        self.batch.append(columns, rows);
+    }
+}
+
+/// Keeps some of the columns of every row.
+struct Rows {
+    first: usize,
+    wanted: usize,
+    columns: Vec<Vec<f64>>,
+}
+
+impl TakeRows for &mut Rows {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, _: S, rows: usize, columns: &[Row]) {
+        let wanted = &columns[self.first..self.first + self.wanted];
+        for (kept, column) in self.columns.iter_mut().zip(wanted) {
+            kept.extend_from_slice(&column[..rows]);
+        }
+    }
+}
+
+struct CollectRows<'a> {
+    columns: Columns<'a>,
+    drive: &'a Drive,
+    rows: &'a mut Rows,
+}
+
+impl WithSimd for CollectRows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let target = vec![0.0; self.drive.len()];
+        let mut taken = ColumnsOfBlock::new(self.columns, self.rows);
+        self.columns.walk().over(simd, std::slice::from_ref(self.drive), &[target], &mut taken);
+    }
+}
+
+/// Computes the columns of a block and hands them on.
+struct ColumnsOfBlock<'a, T> {
+    spec: Columns<'a>,
+    layout: Layout,
+    backward: Backward,
+    columns: Vec<Row>,
+    to: T,
+}
+
+impl<'a, T> ColumnsOfBlock<'a, T> {
+    fn new(spec: Columns<'a>, to: T) -> Self {
+        Self {
+            spec,
+            layout: Layout::new(*spec.architecture),
+            backward: Backward::new(spec.architecture),
+            columns: vec![[0.0; BLOCK]; spec.count()],
+            to,
+        }
+    }
+
+    /// Columns of the Jacobian, theory.md (2.11).
+    #[inline(always)]
+    fn jacobian<S: Simd>(&mut self, output: &[f64], block: &Block, readout: &Readout) {
+        let m = self.spec.architecture.output_weights();
+        let jacobian = &mut self.columns[m + 1..];
+        let Block { u, z, slopes, .. } = block;
+        self.backward.run::<S>(readout, output, &[1.0; BLOCK], block);
+        let by_neuron = &mut jacobian[self.layout.hidden.clone()];
+        for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
+            columns[0] = *slope;
+            for (column, z) in columns[1..].iter_mut().zip(z) {
+                product(slope, z, column);
+            }
+        }
+        let (linear, rest) = self.backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
+        let (stops, relaxation) = rest.split_at(self.spec.architecture.stops);
+        let channels = u.len();
+        for (k, column) in jacobian[self.layout.stop_weights.clone()].iter_mut().enumerate() {
+            let (j, c) = (k / channels, k % channels);
+            product(&stops[j], slopes.by_weight(stops.len(), channels, j, c), column);
+        }
+        for (j, column) in jacobian[self.layout.ln_beta.clone()].iter_mut().enumerate() {
+            product(&stops[j], &slopes.ln_beta[j], column);
+        }
+        for (c, column) in jacobian[self.layout.linear.clone()].iter_mut().enumerate() {
+            product(&linear[0], &u[c], column);
+        }
+        for (k, column) in jacobian[self.layout.ln_tau.clone()].iter_mut().enumerate() {
+            product(&relaxation[k], &slopes.ln_tau[k], column);
+        }
+    }
+}
+
+impl<T: TakeRows> TakeBlock for ColumnsOfBlock<'_, T> {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
+        let m = self.spec.architecture.output_weights();
+        let (features, rest) = self.columns.split_at_mut(m);
+        readout.features(&block.z, &block.h, features);
+        rest[0] = block.target;
+        if let Some(output) = self.spec.output {
+            self.jacobian::<S>(output, block, readout);
+        }
+        self.to.take(simd, rows, &self.columns);
+    }
+}
+
+#[inline(always)]
+fn product(a: &Row, b: &Row, out: &mut Row) {
+    for ((out, &a), &b) in out.iter_mut().zip(a).zip(b) {
+        *out = a * b;
+    }
+}

@@ -1,0 +1,203 @@
+//! One walk of a network over records, handing on whole blocks of the rows that have a target.
+//!
+//! Blocks run through every row of a record, since memory needs them all; rows with a target are
+//! gathered, so that readout and derivatives are computed for whole blocks of them. Memory does not
+//! grow with the record.
+
+use pulp::Simd;
+
+use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, Row};
+use crate::network::readout::Readout;
+use crate::network::{Architecture, limited};
+
+/// A record as a network sees it: scaled inputs by channel (first input, rate, further inputs), and
+/// the time step before each row, 0 at the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// One column for each channel of the architecture.
+    pub channels: Vec<Vec<f64>>,
+    /// Time steps; empty for an architecture without relaxation neurons.
+    pub steps: Vec<f64>,
+}
+
+impl Drive {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.channels.first().map_or(0, Vec::len)
+    }
+
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A network on its way over records: its parameters found by search, and whether derivatives are
+/// wanted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Walk<'a> {
+    pub architecture: &'a Architecture,
+    pub parameters: &'a [f64],
+    pub with_slopes: bool,
+}
+
+/// A block of rows with a target.
+pub(crate) struct Block {
+    /// Scaled inputs by channel; of rows with slopes only.
+    pub u: Vec<Row>,
+    /// Outputs of the memory neurons.
+    pub z: Vec<Row>,
+    /// Outputs of the tanh neurons.
+    pub h: Vec<Row>,
+    /// Derivatives of the memory neurons' outputs by their own parameters, if wanted.
+    pub slopes: MemorySlopes,
+    pub target: Row,
+}
+
+/// Takes blocks. A trait and no closure, because a closure would not be compiled for the instruction
+/// set of the kernel that calls it.
+pub(crate) trait TakeBlock {
+    /// Takes the first `rows` rows of a block. What stands beyond them is finite and means nothing.
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout);
+}
+
+impl Walk<'_> {
+    /// Walks over every record from the virgin state.
+    #[inline(always)]
+    pub fn over<S: Simd>(
+        &self,
+        simd: S,
+        records: &[Drive],
+        targets: &[impl AsRef<[f64]>],
+        to: &mut impl TakeBlock,
+    ) {
+        let mut workspace = Workspace::new(self);
+        for (drive, target) in records.iter().zip(targets) {
+            workspace.record(simd, drive, target.as_ref(), to);
+        }
+        workspace.flush(simd, to);
+    }
+}
+
+impl Block {
+    fn new(walk: &Walk) -> Self {
+        let a = walk.architecture;
+        Self {
+            u: vec![[0.0; BLOCK]; a.channels()],
+            z: vec![[0.0; BLOCK]; a.memory_neurons()],
+            h: vec![[0.0; BLOCK]; a.hidden],
+            slopes: if walk.with_slopes { MemorySlopes::new(a) } else { MemorySlopes::default() },
+            target: [0.0; BLOCK],
+        }
+    }
+
+    /// Copies one row, as it is before the readout.
+    #[inline(always)]
+    fn copy_row(&mut self, to: usize, other: &Block, from: usize, with_slopes: bool) {
+        let copy = |to_rows: &mut [Row], from_rows: &[Row]| {
+            for (a, b) in to_rows.iter_mut().zip(from_rows) {
+                a[to] = b[from];
+            }
+        };
+        copy(&mut self.z, &other.z);
+        if with_slopes {
+            copy(&mut self.u, &other.u);
+            copy(&mut self.slopes.weights, &other.slopes.weights);
+            copy(&mut self.slopes.ln_beta, &other.slopes.ln_beta);
+            copy(&mut self.slopes.ln_tau, &other.slopes.ln_tau);
+        }
+        self.target[to] = other.target[from];
+    }
+}
+
+/// Buffers of a walk.
+struct Workspace {
+    with_slopes: bool,
+    memory: MemoryLayer,
+    readout: Readout,
+    block: Block,
+    /// Rows with a target that wait until they fill a block.
+    pending: Block,
+    filled: usize,
+}
+
+impl Workspace {
+    fn new(walk: &Walk) -> Self {
+        let a = walk.architecture;
+        Self {
+            with_slopes: walk.with_slopes,
+            memory: MemoryLayer::new(a, walk.parameters),
+            readout: Readout::new(a, walk.parameters),
+            block: Block::new(walk),
+            pending: Block::new(walk),
+            filled: 0,
+        }
+    }
+
+    /// Runs through a record and hands on whole blocks of rows with a target.
+    #[inline(always)]
+    fn record<S: Simd>(&mut self, simd: S, drive: &Drive, target: &[f64], to: &mut impl TakeBlock) {
+        let mut state = self.memory.virgin();
+        let mut sensitivity = self.memory.virgin_sensitivity();
+        let mut steps = [0.0; BLOCK];
+        for start in (0..drive.len()).step_by(BLOCK) {
+            let rows = BLOCK.min(drive.len() - start);
+            for (block, channel) in self.block.u.iter_mut().zip(&drive.channels) {
+                for (block, &u) in block.iter_mut().zip(&channel[start..start + rows]) {
+                    *block = limited(u);
+                }
+            }
+            if !drive.steps.is_empty() {
+                steps[..rows].copy_from_slice(&drive.steps[start..start + rows]);
+            }
+            self.block.target[..rows].copy_from_slice(&target[start..start + rows]);
+            let Block { u, z, slopes, .. } = &mut self.block;
+            if self.with_slopes {
+                self.memory.forward_with_slopes(
+                    simd,
+                    &mut state,
+                    &mut sensitivity,
+                    u,
+                    &steps,
+                    rows,
+                    z,
+                    slopes,
+                );
+            } else {
+                self.memory.forward(simd, &mut state, u, &steps, rows, z);
+            }
+            let wanted = self.block.target[..rows].iter().filter(|y| !y.is_nan()).count();
+            if wanted == BLOCK && self.filled == 0 {
+                std::mem::swap(&mut self.block, &mut self.pending);
+                self.filled = BLOCK;
+                self.flush(simd, to);
+                continue;
+            }
+            if wanted == 0 {
+                continue;
+            }
+            for t in 0..rows {
+                if self.block.target[t].is_nan() {
+                    continue;
+                }
+                self.pending.copy_row(self.filled, &self.block, t, self.with_slopes);
+                self.filled += 1;
+                if self.filled == BLOCK {
+                    self.flush(simd, to);
+                }
+            }
+        }
+    }
+
+    /// Hands on the pending rows.
+    #[inline(always)]
+    fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeBlock) {
+        let rows = std::mem::take(&mut self.filled);
+        if rows == 0 {
+            return;
+        }
+        let Block { z, h, .. } = &mut self.pending;
+        self.readout.tanh_layer(simd, z, rows, h);
+        to.take(simd, rows, &self.pending, &self.readout);
+    }
+}

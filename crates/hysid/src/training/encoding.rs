@@ -1,0 +1,106 @@
+//! The genes of a network, theory.md (3.9): its searched parameters, with thresholds `r = 1/w` in the
+//! place of the stops' first weights. A threshold is what spreads evenly over a range of inputs.
+
+use std::ops::Range;
+
+use rand::{Rng, RngExt};
+
+use crate::training::objective::Objective;
+use crate::training::start::normal;
+
+/// Largest threshold, in half ranges of the input: beyond 1 a stop no longer slides.
+const LARGEST_THRESHOLD: f64 = 1.2;
+/// Smallest threshold, in largest ones.
+const SMALLEST_THRESHOLD: f64 = 1e-3;
+/// Largest magnitude of a stop's weight of the rate or of a further input.
+const LARGEST_WEIGHT: f64 = 3.0;
+/// log10 of the smallest and the largest β; the latter stands for no deterioration.
+const LOG10_BETA: (f64, f64) = (0.5, 7.0);
+/// Largest magnitude of a bias, and of a weight of the linear neuron.
+const LARGEST_BIAS: f64 = 2.0;
+/// Largest magnitude of a tanh neuron's weight, in deviations of the first population.
+const LARGEST_DEVIATION: f64 = 10.0;
+
+/// Bounds of the genes and the way between genes and parameters.
+#[derive(Debug, Clone)]
+pub(crate) struct Encoding {
+    bounds: Vec<(f64, f64)>,
+    /// Genes that are thresholds: the first of each run of a stop's weights.
+    stop_weights: Range<usize>,
+    channels: usize,
+    /// Genes that are weights or biases of tanh neurons: a run for each, the bias first.
+    hidden: Range<usize>,
+    run: usize,
+}
+
+impl Encoding {
+    pub fn new(objective: &Objective) -> Self {
+        let architecture = objective.architecture();
+        let layout = objective.layout();
+        let channels = architecture.channels();
+        let run = 1 + architecture.memory_neurons();
+        let largest = LARGEST_THRESHOLD * objective.half_range_of_input().max(1e-3);
+        let spread = deviation(run);
+        let (shortest, longest) = objective.time_scales().unwrap_or((1.0, 1.0));
+        let ln_beta = (LOG10_BETA.0 * std::f64::consts::LN_10, LOG10_BETA.1 * std::f64::consts::LN_10);
+        let bound = |index: usize| {
+            let (low, high) = layout.bounds(index);
+            let wanted = if layout.stop_weights.contains(&index) {
+                match (index - layout.stop_weights.start) % channels {
+                    0 => (SMALLEST_THRESHOLD * largest, largest),
+                    _ => (-LARGEST_WEIGHT, LARGEST_WEIGHT),
+                }
+            } else if layout.ln_beta.contains(&index) {
+                ln_beta
+            } else if layout.linear.contains(&index) {
+                (-LARGEST_BIAS, LARGEST_BIAS)
+            } else if layout.ln_tau.contains(&index) {
+                (shortest.ln(), longest.ln())
+            } else if (index - layout.hidden.start).is_multiple_of(run) {
+                (-LARGEST_BIAS, LARGEST_BIAS)
+            } else {
+                (-LARGEST_DEVIATION * spread, LARGEST_DEVIATION * spread)
+            };
+            (wanted.0.clamp(low, high), wanted.1.clamp(low, high))
+        };
+        Self {
+            bounds: (0..layout.len()).map(bound).collect(),
+            stop_weights: layout.stop_weights.clone(),
+            channels,
+            hidden: layout.hidden.clone(),
+            run,
+        }
+    }
+
+    /// Lowest and highest value of each gene.
+    pub fn bounds(&self) -> &[(f64, f64)] {
+        &self.bounds
+    }
+
+    /// Genes of a first individual: weights of tanh neurons normal, all else evenly within its bounds.
+    pub fn draw(&self, generator: &mut impl Rng) -> Vec<f64> {
+        let gene = |(index, &(low, high)): (usize, &(f64, f64))| {
+            let is_weight =
+                self.hidden.contains(&index) && !(index - self.hidden.start).is_multiple_of(self.run);
+            match is_weight {
+                true => deviation(self.run) * normal(generator),
+                false => low + (high - low) * generator.random::<f64>(),
+            }
+        };
+        self.bounds.iter().enumerate().map(gene).collect()
+    }
+
+    /// The parameters that genes stand for.
+    pub fn parameters(&self, genes: &[f64]) -> Vec<f64> {
+        let mut parameters = genes.to_vec();
+        for threshold in parameters[self.stop_weights.clone()].iter_mut().step_by(self.channels) {
+            *threshold = 1.0 / *threshold;
+        }
+        parameters
+    }
+}
+
+/// Deviation of a tanh neuron's weights for sums of about 1.
+fn deviation(run: usize) -> f64 {
+    1.0 / (run as f64).sqrt()
+}

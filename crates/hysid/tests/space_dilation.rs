@@ -1,0 +1,196 @@
+//! The minimiser of non-smooth functions, on functions whose minimum is known. The iterations allowed
+//! are about those of an independent implementation, with room for another starting point.
+
+use hysid::training::Termination;
+use hysid::training::space_dilation::{Dilation, DilationOptions, Limits, Minimum, SpaceDilation, minimise};
+
+fn solve(
+    mut f: impl FnMut(&[f64], &mut [f64]) -> f64,
+    x: Vec<f64>,
+    options: DilationOptions,
+    iterations: usize,
+    target: f64,
+) -> Minimum {
+    let limits = Limits { iterations, target, ..Limits::default() };
+    minimise(&mut f, x, options, limits).unwrap().0
+}
+
+/// Σ κ^{i/(n-1)} x_i²
+fn quadratic(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
+    move |x, g| {
+        let n = x.len() as f64;
+        let mut value = 0.0;
+        for (i, (x, g)) in x.iter().zip(g).enumerate() {
+            let weight = condition.powf(i as f64 / (n - 1.0));
+            value += weight * x * x;
+            *g = 2.0 * weight * x;
+        }
+        value
+    }
+}
+
+/// Σ κ^{i/(n-1)} |x_i|
+fn absolute_values(condition: f64) -> impl FnMut(&[f64], &mut [f64]) -> f64 {
+    move |x, g| {
+        let n = x.len() as f64;
+        let mut value = 0.0;
+        for (i, (x, g)) in x.iter().zip(g).enumerate() {
+            let weight = condition.powf(i as f64 / (n - 1.0));
+            value += weight * x.abs();
+            *g = weight * x.signum();
+        }
+        value
+    }
+}
+
+/// max x_i²
+fn largest_square(x: &[f64], g: &mut [f64]) -> f64 {
+    let largest = (0..x.len()).max_by(|&i, &j| x[i].abs().total_cmp(&x[j].abs())).unwrap();
+    g.fill(0.0);
+    g[largest] = 2.0 * x[largest];
+    x[largest] * x[largest]
+}
+
+fn rosenbrock(x: &[f64], g: &mut [f64]) -> f64 {
+    let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
+    g[0] = -2.0 * a - 400.0 * x[0] * b;
+    g[1] = 200.0 * b;
+    a * a + 100.0 * b * b
+}
+
+fn options(coefficient: f64, shrinkage: f64) -> DilationOptions {
+    DilationOptions { coefficient, shrinkage, ..DilationOptions::default() }
+}
+
+fn ramp(n: usize) -> Vec<f64> {
+    (1..=n).map(|i| i as f64).collect()
+}
+
+#[test]
+fn a_quadratic_of_condition_one_million() {
+    // theory.md section 3: an independent implementation took 356 iterations with these settings.
+    let found = solve(quadratic(1e6), vec![1.0; 100], options(2.3, 0.95), 400, 1e-8);
+    assert!(found.value <= 1e-8, "{} after {}", found.value, found.iterations);
+    assert!(found.evaluations < 3 * found.iterations);
+}
+
+#[test]
+fn rosenbrocks_valley_in_about_31_iterations() {
+    let found = solve(rosenbrock, vec![-1.2, 1.0], options(2.5, 1.0), 40, 1e-8);
+    assert!(found.value <= 1e-8, "{} after {}", found.value, found.iterations);
+    assert!((found.x[0] - 1.0).abs() < 1e-3 && (found.x[1] - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn kinks_need_steps_that_do_not_shrink() {
+    for coefficient in [2.0, 2.3, 3.0] {
+        let found = solve(absolute_values(1e3), vec![1.0; 100], options(coefficient, 1.0), 3000, 1e-6);
+        assert!(found.value <= 1e-6, "α {coefficient}: {} after {}", found.value, found.iterations);
+    }
+    // Where the steps shrink faster than the space dilates, the search stands still far away.
+    let stalled = solve(absolute_values(1e3), vec![1.0; 100], options(1.1, 0.5), 3000, 1e-6);
+    assert!(stalled.value > 1.0, "{}", stalled.value);
+}
+
+#[test]
+fn a_space_begun_anew_keeps_the_step_of_the_undilated_space() {
+    // With the step of the dilated space the search stalls at 1e-3 (theory.md section 3).
+    for coefficient in [2.3, 3.0, 4.0] {
+        let found = solve(largest_square, ramp(50), options(coefficient, 1.0), 6000, 1e-19);
+        assert!(found.value <= 1e-19, "α {coefficient}: {} after {}", found.value, found.iterations);
+    }
+}
+
+#[test]
+fn dilation_along_the_sub_gradient_knows_the_lower_bound() {
+    let along =
+        |coefficient| DilationOptions { dilation: Dilation::Subgradient, ..options(coefficient, 1.0) };
+    let found = solve(absolute_values(1e3), vec![1.0; 100], along(2.0), 5000, 1e-6);
+    assert!(found.value <= 1e-6, "{}", found.value);
+    let found = solve(quadratic(1e6), vec![1.0; 100], along(2.0), 1500, 1e-8);
+    assert!(found.value <= 1e-8, "{}", found.value);
+    // A bound far too low makes steps that overshoot: the best point is kept all the same.
+    let wrong = DilationOptions { lower_bound: -1e3, ..along(2.0) };
+    let found = solve(rosenbrock, vec![-1.2, 1.0], wrong, 200, 1e-8);
+    assert!(found.value <= 24.2, "worse than the start: {}", found.value);
+}
+
+#[test]
+fn units_of_the_variables_do_not_matter_to_scaled_steps() {
+    // The same problem in metres and in micrometres.
+    let mut metres = |x: &[f64], g: &mut [f64]| rosenbrock(x, g);
+    let mut micrometres = |x: &[f64], g: &mut [f64]| {
+        let value = rosenbrock(&[1e-6 * x[0], x[1]], g);
+        g[0] *= 1e-6;
+        value
+    };
+    let options = DilationOptions::default();
+    let mut first = SpaceDilation::new(vec![-1.2, 1.0], vec![1.0, 1.0], options, &mut metres).unwrap();
+    let mut second =
+        SpaceDilation::new(vec![-1.2e6, 1.0], vec![1e6, 1.0], options, &mut micrometres).unwrap();
+    for _ in 0..25 {
+        first.advance(&mut metres);
+        second.advance(&mut micrometres);
+        let (a, b) = (first.best().value, second.best().value);
+        assert!((a - b).abs() <= 1e-6 * a, "{a} and {b}");
+    }
+    assert!(first.best().value < 1e-2);
+}
+
+#[test]
+fn a_search_taken_up_again_goes_on_to_the_last_bit() {
+    let mut f = quadratic(1e3);
+    let mut whole = SpaceDilation::new(ramp(7), vec![1.0; 7], DilationOptions::default(), &mut f).unwrap();
+    for _ in 0..20 {
+        whole.advance(&mut f);
+    }
+    let stored = serde_json::to_string(&whole).unwrap();
+    let mut again: SpaceDilation = serde_json::from_str(&stored).unwrap();
+    for _ in 0..20 {
+        whole.advance(&mut f);
+        again.advance(&mut f);
+    }
+    assert_eq!(whole, again);
+}
+
+#[test]
+fn it_says_why_it_ends() {
+    let limits = Limits { iterations: 50, ..Limits::default() };
+    let end = |mut f: fn(&[f64], &mut [f64]) -> f64, limits: Limits| {
+        minimise(&mut f, vec![1.0, 2.0], DilationOptions::default(), limits).unwrap().1
+    };
+    let flat: fn(&[f64], &mut [f64]) -> f64 = |_, g| {
+        g.fill(0.0);
+        1.0
+    };
+    assert_eq!(end(flat, limits), Termination::GradientVanished);
+    let kink: fn(&[f64], &mut [f64]) -> f64 = |x, g| {
+        g.copy_from_slice(&[x[0].signum(), 0.5 * x[1].signum()]);
+        1.0 + x[0].abs() + 0.5 * x[1].abs()
+    };
+    assert_eq!(end(kink, limits), Termination::EpochsUsed);
+    assert_eq!(end(kink, Limits { stall: 10, iterations: 500, ..limits }), Termination::Stalled);
+    assert_eq!(end(kink, Limits { target: 1.5, ..limits }), Termination::Converged);
+    // A wall beyond which the function is no number: the search stays on this side.
+    let wall: fn(&[f64], &mut [f64]) -> f64 = |x, g| {
+        g.copy_from_slice(&[1.0, 2.0 * x[1]]);
+        if x[0] < 0.5 { f64::NAN } else { x[0] + x[1] * x[1] }
+    };
+    let (minimum, _) = minimise(&mut { wall }, vec![1.0, 2.0], DilationOptions::default(), limits).unwrap();
+    assert!(minimum.x[0] >= 0.5 && minimum.value < 1.0, "{minimum:?}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let refused = |x: Vec<f64>, options: DilationOptions| {
+        let limits = Limits::default();
+        minimise(&mut rosenbrock, x, options, limits).unwrap_err().to_string()
+    };
+    assert!(refused(vec![], options(2.0, 1.0)).contains("variables"));
+    assert!(refused(vec![f64::NAN, 1.0], options(2.0, 1.0)).contains("finite"));
+    assert!(refused(vec![1.0, 1.0], options(1.0, 1.0)).contains("dilatation"));
+    assert!(refused(vec![1.0, 1.0], options(2.0, 1.5)).contains("shrinkage"));
+    assert!(refused(vec![1e300, 1.0], options(2.0, 1.0)).contains("at the start"));
+    let mut f = rosenbrock;
+    assert!(SpaceDilation::new(vec![1.0, 1.0], vec![1.0, 0.0], options(2.0, 1.0), &mut f).is_err());
+}
