@@ -1,8 +1,8 @@
 """The comparison: ours and the peers in turns, round by round."""
 
+import contextlib
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -21,14 +21,25 @@ TOLERANCE = 1e-9
 WORTH_REPEATING = 2.0
 """A formulation this many times slower than its peer's best in the first round is not run again."""
 
-XLA_FLAGS = " ".join([
-    # Loops in scans become one compiled function each, not a chain of calls for every step.
-    "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000",
-    # What fastmath is to numba.
-    "--xla_cpu_enable_fast_math=true",
-    "--xla_cpu_enable_fast_min_max=true",
-    "--xla_cpu_prefer_vector_width=512",
-])
+XLA_FLAGS = " ".join(
+    [
+        # Loops in scans become one compiled function each, not a chain of calls for every step.
+        "--xla_backend_extra_options=xla_cpu_small_while_loop_byte_threshold=1000000000",
+        # What fastmath is to numba.
+        "--xla_cpu_enable_fast_math=true",
+        "--xla_cpu_enable_fast_min_max=true",
+        "--xla_cpu_prefer_vector_width=512",
+    ]
+)
+
+WORK_STEALING = {
+    # OpenMP waits for a thread that lost its core to another program; TBB gives its work to the other.
+    "NUMBA_THREADING_LAYER_PRIORITY": "tbb workqueue omp",
+    # Where pip puts libtbb, which numba looks for as a system library.
+    "LD_LIBRARY_PATH": os.pathsep.join(
+        filter(None, [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH")])
+    ),
+}
 
 KEEP_MEMORY = {
     # glibc would give large arrays back to the system after each run, and fault them in again.
@@ -43,11 +54,13 @@ class Worker:
     def __init__(self, peer, tasks, case_path, environment):
         self.peer = peer
         command = [sys.executable, str(HERE / "worker.py"), peer, str(case_path), *tasks]
+        # A file: nobody would empty a pipe, and XLA may fill it.
+        self.complaints = tempfile.TemporaryFile("w+")
         self.process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=self.complaints,
             text=True,
             env=os.environ | KEEP_MEMORY | environment,
         )
@@ -56,18 +69,22 @@ class Worker:
     def answer(self):
         line = self.process.stdout.readline()
         if not line:
-            complaint = (self.process.stderr.read().strip() or "no message").splitlines()[-1]
+            self.complaints.seek(0)
+            complaint = (self.complaints.read().strip() or "no message").splitlines()[-1]
             raise Failure(f"the {self.peer} process ended: {complaint}")
         return json.loads(line)
 
     def measure(self, wanted):
         """Runs the formulations wanted, names by task."""
-        self.process.stdin.write(json.dumps(wanted) + "\n")
-        self.process.stdin.flush()
+        # A process that has ended has said why: `answer` finds it.
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.write(json.dumps(wanted) + "\n")
+            self.process.stdin.flush()
         return self.answer()
 
     def close(self):
-        self.process.stdin.close()
+        with contextlib.suppress(BrokenPipeError):
+            self.process.stdin.close()
         self.process.wait()
 
 
@@ -78,7 +95,7 @@ def start_workers(case_path):
     one_thread = {"XLA_FLAGS": XLA_FLAGS + " --xla_cpu_multi_thread_eigen=false", "NPROC": "1"}
     devices = {"XLA_FLAGS": f"{XLA_FLAGS} --xla_force_host_platform_device_count={cores}"}
     settings = [
-        ("numba", cases.TASKS, {}),
+        ("numba", cases.TASKS, WORK_STEALING),
         ("JAX", ("simulate",), one_thread),
         ("JAX", evaluation, {"XLA_FLAGS": XLA_FLAGS}),
         *([("JAX", evaluation, devices)] if cores > 1 else []),
@@ -97,11 +114,8 @@ def check(ours, workers):
         if not difference <= TOLERANCE:
             raise Failure(f"{name} differs from the reference by {difference:.1e}, more than {TOLERANCE:.0e}")
     return {
-        "hysid": ours,
-        **{
-            peer: max(d for w in workers if w.peer == peer for ways in w.differences.values() for d in ways.values())
-            for peer in results.PEERS
-        },
+        name: max(difference for key, difference in compared.items() if key.startswith(name))
+        for name in ("hysid", *results.PEERS)
     }
 
 

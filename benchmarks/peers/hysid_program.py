@@ -33,7 +33,7 @@ def build():
         raise Failure("cargo build failed, see above; --hysid PATH takes a program that is built")
     # Cargo may have been told to put it anywhere.
     messages = [json.loads(line) for line in built.stdout.splitlines()]
-    return Path(next(m["executable"] for m in messages if m.get("executable")))
+    return Path(next(m["executable"] for m in messages if m.get("target", {}).get("kind") == ["bin"]))
 
 
 def ask(program, *arguments):
@@ -51,9 +51,7 @@ def ask(program, *arguments):
 def speeds(program):
     """Seconds of each task that this program measures."""
     bench = json.loads(ask(program, "bench", "--json"))
-    return {
-        task: bench[key]["value"] * seconds for task, (key, seconds) in SPEEDS.items() if key in bench
-    }
+    return {task: bench[key]["value"] * seconds for task, (key, seconds) in SPEEDS.items() if key in bench}
 
 
 def fitted_model(program, folder):

@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 from network import FEATURES, HIDDEN, POPULATION, RIDGE, STOPS
 
 FAST = {"nnan", "ninf", "nsz", "arcp", "contract", "afn"}
-# Without reordering: for tanh, whose rounding trick it would cancel.
+# Sums need it for vector lanes; tanh must not have it, for it would cancel the rounding.
 REORDERED = FAST | {"reassoc"}
 
 

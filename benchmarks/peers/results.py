@@ -22,9 +22,12 @@ TITLES = {
 
 def medians(rounds):
     """Our median seconds by task, and the peers' by (peer, task, formulation)."""
-    keys = lambda part: {key for one in rounds for key in one[part]}
-    over = lambda part, key: statistics.median(one[part][key] for one in rounds if key in one[part])
-    return tuple({key: over(part, key) for key in keys(part)} for part in (0, 1))
+
+    def over(part):
+        keys = {key for one in rounds for key in one[part]}
+        return {key: statistics.median(one[part][key] for one in rounds if key in one[part]) for key in keys}
+
+    return over(0), over(1)
 
 
 def ratios(rounds, key):
@@ -32,14 +35,16 @@ def ratios(rounds, key):
     return [peers[key] / ours[key[1]] for ours, peers in rounds if key in peers and key[1] in ours]
 
 
-def best(peers, peer, task):
-    """The peer's fastest formulation that was run in every round, for it was the fastest in median."""
-    return min((key for key in peers if key[:2] == (peer, task)), key=peers.get)
+def best(rounds, peer, task):
+    """The peer's fastest formulation of those that were run in every round."""
+    _, peers = medians(rounds)
+    always = set.intersection(*(set(peers) for _, peers in rounds))
+    return min((key for key in always if key[:2] == (peer, task)), key=peers.get)
 
 
 def figure(value):
     """Three digits."""
-    return f"{value:.{max(0, 2 - len(str(int(value))) + 1)}f}"
+    return f"{value:.{max(0, 3 - len(str(int(value))))}f}"
 
 
 def ratio(rounds, key):
@@ -60,7 +65,7 @@ def table(rounds):
         mine = figure(scale * ours[task]) if task in ours else "not measured"
         cells = [title, unit, mine]
         for peer in PEERS:
-            key = best(peers, peer, task)
+            key = best(rounds, peer, task)
             cells += [figure(scale * peers[key]), ratio(rounds, key)]
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
@@ -101,7 +106,9 @@ def processor():
 
 def page(table, rounds, differences, program, load):
     """The whole of results.md."""
-    packages = ", ".join(f"{name} {version(name)}" for name in ("numba", "llvmlite", "jax", "jaxlib", "numpy"))
+    packages = ", ".join(
+        f"{name} {version(name)}" for name in ("numba", "llvmlite", "jax", "jaxlib", "numpy")
+    )
     program_version = first_line(str(program), "--version") or "hysid"
     rust = first_line("rustc", "--version") or "Rust unknown"
     agreement = ", ".join(f"{name} {difference:.0e}" for name, difference in differences.items())

@@ -53,7 +53,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let options = work.options;
     let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
     let summary = Summary::of(&data.set);
-    interrupt::listen()?;
+    interrupt::listen("stopping to save the best model so far")?;
     let understood = understanding::understanding(data, &summary, options, &architecture);
     understanding::print(&understood);
     let mut warnings: Vec<String> =

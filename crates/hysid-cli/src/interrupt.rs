@@ -11,13 +11,13 @@ pub const EXIT_STATUS: u8 = 130;
 
 static PRESSED: AtomicUsize = AtomicUsize::new(0);
 
-/// From now on Ctrl-C asks instead of killing.
-pub fn listen() -> Result<()> {
-    ctrlc::set_handler(|| {
+/// From now on Ctrl-C asks instead of killing, and gets this answer.
+pub fn listen(answer: &'static str) -> Result<()> {
+    ctrlc::set_handler(move || {
         if PRESSED.fetch_add(1, Ordering::SeqCst) > 0 {
             std::process::exit(EXIT_STATUS.into());
         }
-        note(format_args!("stopping to save the best model so far (Ctrl-C again stops at once)"));
+        note(format_args!("{answer} (Ctrl-C again stops at once)"));
     })
     .context("cannot listen for Ctrl-C")
 }

@@ -14,9 +14,11 @@ mod files;
 mod identification;
 mod interrupt;
 mod messages;
+mod page;
 mod plot;
 mod progress;
 mod report;
+mod reproduction;
 mod table;
 mod understanding;
 

@@ -45,7 +45,22 @@ pub enum Colour {
     Error,
     /// What is there for comparison only.
     Faint,
+    /// One of several things of the same kind, counted from 0; colours repeat after [`SERIES`].
+    Series(usize),
 }
+
+/// Markers of the series, told apart by hue and by lightness.
+const SERIES_MARKERS: [RGBColor; SERIES] = [
+    RGBColor(0x01, 0x60, 0xD0),
+    RGBColor(0x02, 0x40, 0x20),
+    RGBColor(0x03, 0x80, 0x40),
+    RGBColor(0x04, 0x60, 0xA0),
+    RGBColor(0x05, 0x90, 0x10),
+    RGBColor(0x06, 0x90, 0x90),
+];
+
+/// Colours of [`Colour::Series`].
+pub const SERIES: usize = 6;
 
 impl Colour {
     fn marker(self) -> RGBColor {
@@ -55,6 +70,7 @@ impl Colour {
             Colour::Input => RGBColor(0x20, 0x80, 0x40),
             Colour::Error => RGBColor(0xC0, 0x40, 0x20),
             Colour::Faint => RGBColor(0xB0, 0xB0, 0xB0),
+            Colour::Series(index) => SERIES_MARKERS[index % SERIES],
         }
     }
 }

@@ -3,7 +3,6 @@
 mod errors;
 mod figures;
 mod histories;
-mod markup;
 mod neurons;
 mod provenance;
 mod unit;
@@ -12,8 +11,6 @@ mod usage;
 use hysid::metrics::Errors;
 use hysid::model::Model;
 use hysid::record::Dataset;
-
-use crate::plot::{self, escape};
 
 /// What is reported.
 pub struct Report<'a> {
@@ -45,11 +42,8 @@ pub struct ReportSet<'a> {
     pub errors: Errors,
 }
 
-const STYLE: &str = include_str!("report/style.css");
-
 /// The whole page.
 pub fn page(report: &Report) -> String {
-    let title = escape(&report.title);
     let sections = [
         errors::section(report),
         report.sets.iter().map(figures::loops_section).collect(),
@@ -62,15 +56,7 @@ pub fn page(report: &Report) -> String {
         usage::section(report),
     ]
     .concat();
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
-         <h1>{title}</h1>\n{}{sections}</main>\n</body>\n</html>\n",
-        plot::STYLE,
-        errors::verdict(report),
-    )
+    crate::page::whole(&report.title, &(errors::verdict(report) + &sections))
 }
 
 /// Measured and simulated loops of a set in one chart, an `svg` element.

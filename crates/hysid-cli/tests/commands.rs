@@ -298,6 +298,11 @@ fn bench_tells_value_unit_and_setting() {
         "simulate_record_ns_per_sample",
         "step_ns",
         "levenberg_marquardt_iteration_ms",
+        "genetic_evaluation_us",
+        "genetic_generation_ms",
+        "subgradient_us",
+        "subgradient_iteration_us",
+        "hybrid_2000_epochs_s",
         "fit_s",
     ];
     assert_eq!(sorted(keys(&bench)), sorted(promised.to_vec()));

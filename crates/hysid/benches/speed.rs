@@ -12,7 +12,7 @@ use hysid::record::{ColumnNames, Dataset, Record};
 use hysid::scaling::Scaling;
 use hysid::training::levenberg_marquardt::LevenbergMarquardt;
 use hysid::training::objective::Objective;
-use hysid::training::{FitOptions, fit};
+use hysid::training::{FitOptions, Trainer, fit};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
@@ -137,6 +137,24 @@ fn jacobian(criterion: &mut Criterion) {
     });
 }
 
+/// What the paper's training is made of.
+fn paper(criterion: &mut Criterion) {
+    let data = data();
+    let mut group = group(criterion, "paper");
+    group.sample_size(10);
+    for (name, training, population) in [
+        ("genetic_50_generations_of_50_2000x10x10", Trainer::Genetic, 50),
+        ("subgradient_50_iterations_2000x10x10", Trainer::Subgradient, 50),
+    ] {
+        let sizes = options().sizes;
+        let defaults = FitOptions::of(training);
+        let options = FitOptions { model: Family::Xpnn, sizes, population, epochs: 50, stall: 0, ..defaults };
+        group.bench_function(name, |b| {
+            b.iter(|| fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap())
+        });
+    }
+}
+
 fn training(criterion: &mut Criterion) {
     let data = data();
     let options = options();
@@ -148,5 +166,5 @@ fn training(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, operators, simulation, jacobian, training);
+criterion_group!(benches, operators, simulation, jacobian, paper, training);
 criterion_main!(benches);

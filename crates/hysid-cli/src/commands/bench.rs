@@ -10,7 +10,9 @@ use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Fit, FitOptions, fit};
+use hysid::scaling::Scaling;
+use hysid::training::objective::Objective;
+use hysid::training::{Fit, FitOptions, Method, Trainer, fit};
 
 use crate::Outcome;
 use crate::arguments::Bench;
@@ -21,6 +23,9 @@ const SAMPLES: usize = 1_000_000;
 
 /// Samples of the training record.
 const TRAINING_SAMPLES: usize = 2000;
+
+/// Evaluations of the objective in a run.
+const EVALUATIONS: usize = 200;
 
 /// A speed is the median of this many runs.
 const RUNS: usize = 9;
@@ -68,6 +73,7 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
     let one_thread =
         rayon::ThreadPoolBuilder::new().num_threads(1).build().context("cannot start a thread")?;
     let (fitted, iteration_ms) = one_thread.install(|| one_start(&data, &options))?;
+    let paper = paper_trainer(&data, &options, &fitted)?;
 
     let speed = |value, unit, setting| Speed { value, unit, setting };
     let threads = rayon::current_num_threads();
@@ -93,6 +99,52 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
         (
             "levenberg_marquardt_iteration_ms",
             speed(iteration_ms, "ms", format!("{network}, {TRAINING_SAMPLES} samples, 1 thread")),
+        ),
+        (
+            "genetic_evaluation_us",
+            speed(
+                paper.evaluation_us,
+                "µs",
+                format!(
+                    "{network}, {TRAINING_SAMPLES} samples, one individual with its least squares, 1 thread"
+                ),
+            ),
+        ),
+        (
+            "genetic_generation_ms",
+            speed(
+                paper.generation_ms,
+                "ms",
+                format!("{network}, {TRAINING_SAMPLES} samples, 50 individuals, {threads} threads"),
+            ),
+        ),
+        (
+            "subgradient_us",
+            speed(
+                paper.subgradient_us,
+                "µs",
+                format!("{network}, {TRAINING_SAMPLES} samples, without its evaluation, 1 thread"),
+            ),
+        ),
+        (
+            "subgradient_iteration_us",
+            speed(
+                paper.iteration_us,
+                "µs",
+                format!(
+                    "{network}, {TRAINING_SAMPLES} samples, outer iteration with all its evaluations, 1 thread"
+                ),
+            ),
+        ),
+        (
+            "hybrid_2000_epochs_s",
+            speed(
+                paper.hybrid_s,
+                "s",
+                format!(
+                    "{network}, {TRAINING_SAMPLES} samples, 1000 generations of 50 and 1000 outer iterations, {threads} threads"
+                ),
+            ),
         ),
         (
             "fit_s",
@@ -128,6 +180,57 @@ fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fit, f64)> {
         ControlFlow::Continue(())
     })?;
     Ok((fitted, 1e3 * began.elapsed().as_secs_f64() / iterations.max(1) as f64))
+}
+
+/// Speeds of the paper's training.
+struct PaperTrainer {
+    evaluation_us: f64,
+    generation_ms: f64,
+    subgradient_us: f64,
+    iteration_us: f64,
+    hybrid_s: f64,
+}
+
+fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fit) -> Result<PaperTrainer> {
+    let scaling = Scaling::of(data, options.rate)?;
+    let objective = Objective::new(data, &scaling, options.architecture(data)?, options)?;
+    let parameters = fitted.model.network().parameters();
+    let value = objective.value(parameters);
+    let evaluation_us = 1e-3
+        * median(|| {
+            for _ in 0..EVALUATIONS {
+                black_box(objective.value(black_box(parameters)));
+            }
+            Ok(EVALUATIONS)
+        })?;
+    let subgradient_us = 1e-3
+        * median(|| {
+            for _ in 0..EVALUATIONS {
+                black_box(objective.gradient(black_box(parameters), &value));
+            }
+            Ok(EVALUATIONS)
+        })?;
+    // The whole training tells the rest: when its first phase ended, and when its second.
+    let hybrid = FitOptions { stall: 0, starts: 1, ..FitOptions::of(Trainer::Hybrid) };
+    let hybrid = FitOptions { model: options.model, sizes: options.sizes, rate: options.rate, ..hybrid };
+    let began = Instant::now();
+    let (mut genetic_s, mut generations, mut epochs) = (0.0, 0usize, 0usize);
+    fit(data, &hybrid, &mut |progress| {
+        epochs += 1;
+        if progress.method == Method::Genetic {
+            generations += 1;
+            genetic_s = began.elapsed().as_secs_f64();
+        }
+        ControlFlow::Continue(())
+    })?;
+    let hybrid_s = began.elapsed().as_secs_f64();
+    Ok(PaperTrainer {
+        evaluation_us,
+        subgradient_us,
+        generation_ms: 1e3 * genetic_s / generations.max(1) as f64,
+        iteration_us: 1e6 * (hybrid_s - genetic_s) / (epochs - generations).max(1) as f64,
+        hybrid_s,
+    })
 }
 
 /// The network alone: scaled inputs and rates in, scaled outputs out.

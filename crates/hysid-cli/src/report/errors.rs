@@ -2,9 +2,8 @@
 
 use hysid::metrics::Errors;
 
-use super::markup::{note, number, section as section_of, table};
 use super::{Report, unit};
-use crate::plot::escape;
+use crate::page::{note, number, section as section_of, table};
 
 /// Error in percent of the standard deviation below which a model may be called so.
 const GRADES: [(f64, &str); 4] = [
@@ -28,6 +27,7 @@ pub fn verdict(report: &Report) -> String {
         Some(errors) => {
             format!("{} on data held out from it, before it was trained on everything", judged(errors))
         }
+        None if provenance.options.starts == 1 => "unknown on new data, since none were held out".into(),
         None => "unknown on new data, since there were too few to hold any out".into(),
     });
     let unseen = report.sets.iter().filter(|set| set.name != "training");
@@ -36,7 +36,7 @@ pub fn verdict(report: &Report) -> String {
         "Driven by the input alone, the model’s error in percent of the output’s standard deviation is {}.",
         joined(&parts)
     );
-    format!("<p class=\"verdict\">{}</p>\n", escape(&text))
+    crate::page::verdict(&text)
 }
 
 /// An error and what to think of it.

@@ -4,8 +4,8 @@ use hysid::model::{Model, Provenance};
 use hysid::record::Record;
 use hysid::training::{Method, Phase, Run};
 
-use super::markup::{count, figure, note, section};
 use super::{ReportSet, unit};
+use crate::page::{count, figure, note, section};
 use crate::plot::thin::{thin, thin_path};
 use crate::plot::{Axis, Chart, Colour, Curve};
 

@@ -1,7 +1,7 @@
 //! Output, error and input over time.
 
-use super::markup::{figure, note, number, section as section_of};
 use super::{ReportSet, unit};
+use crate::page::{figure, note, number, section as section_of};
 use crate::plot::thin::{Point, thin};
 use crate::plot::{Axis, Chart, Colour, Curve, escape};
 

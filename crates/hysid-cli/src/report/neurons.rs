@@ -4,8 +4,8 @@ use hysid::network::Layout;
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid::record::Record;
 
-use super::markup::{count, figure, note, number, section as section_of, table};
 use super::{Report, unit};
+use crate::page::{count, figure, note, number, section as section_of, table};
 use crate::plot::{Axis, Chart, Colour, Curve};
 
 /// From this capacity on a stop counts as one that never deteriorates.
@@ -48,7 +48,7 @@ pub fn section(report: &Report) -> String {
         kinds.into_iter().filter(|&(n, _)| n > 0).map(|(n, kind)| count(n, kind)).collect();
     let words = format!("{}; {} in all.", kinds.join(", "), count(a.parameters(), "parameter"));
     let content = [
-        super::markup::paragraph(&words),
+        crate::page::paragraph(&words),
         "<h3>Stops</h3>\n".into(),
         figure(&threshold_chart(report, &stops), true),
         stop_table(report, &stops),

@@ -3,7 +3,7 @@
 use hysid::rate::RateMethod;
 
 use super::Report;
-use super::markup::{count, definitions, number, section as section_of};
+use crate::page::{count, definitions, number, section as section_of};
 use crate::plot::escape;
 
 /// What was understood of the data.

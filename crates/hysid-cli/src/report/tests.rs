@@ -90,7 +90,7 @@ fn the_figures_of_the_errors_are_there() {
     for errors in [&model.provenance().train, model.provenance().validation.as_ref().unwrap()] {
         let figures = [errors.rmse, errors.nrmse_std_percent.unwrap(), errors.max_abs_error];
         for figure in figures {
-            assert!(page.contains(&format!("<td>{}</td>", markup::number(figure, 4))), "{figure}");
+            assert!(page.contains(&format!("<td>{}</td>", crate::page::number(figure, 4))), "{figure}");
         }
     }
     assert!(

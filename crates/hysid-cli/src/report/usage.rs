@@ -1,7 +1,7 @@
 //! How to go on with the model, and what it cannot do.
 
-use super::markup::{note, paragraph, section as section_of, span, table};
 use super::{Report, unit};
+use crate::page::{note, paragraph, section as section_of, span, table};
 use crate::plot::escape;
 
 /// Commands and limits.

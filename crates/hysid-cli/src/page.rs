@@ -1,8 +1,28 @@
-//! Pieces of HTML. Cells and headings come in as text and are escaped here.
+//! Pages of HTML that need nothing but themselves, and their pieces. Cells and headings come in as text and are escaped here.
 
 use hysid::warning::Significant;
 
-use crate::plot::escape;
+use crate::plot::{self, escape};
+
+const STYLE: &str = include_str!("page/style.css");
+
+/// A whole page; `content` is HTML.
+pub fn whole(title: &str, content: &str) -> String {
+    let title = escape(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
+         <h1>{title}</h1>\n{content}</main>\n</body>\n</html>\n",
+        plot::STYLE,
+    )
+}
+
+/// The sentence that a reader should take away.
+pub fn verdict(text: &str) -> String {
+    format!("<p class=\"verdict\">{}</p>\n", escape(text))
+}
 
 /// A section with its heading; none without content. `content` is HTML.
 pub fn section(heading: &str, content: &str) -> String {

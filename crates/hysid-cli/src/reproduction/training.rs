@@ -1,0 +1,189 @@
+//! The paper's comparison of trainers: genetic algorithm alone, sub-gradient method alone, the two
+//! together, each for the same number of epochs, and Levenberg-Marquardt beside them.
+
+mod page;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use hysid::metrics::Errors;
+use hysid::network::Family;
+use hysid::plant::Specimen;
+use hysid::rate::RateMethod;
+use hysid::record::Dataset;
+use hysid::training::{FitOptions, Trainer, fit};
+
+use crate::messages::{note, results};
+use crate::{Outcome, files, interrupt};
+
+/// Stands in for the paper's second example, on which it compares the trainers.
+const SPECIMEN: &str = "reinforced-concrete-joint";
+
+/// Repetitions, each from another seed.
+const SEEDS: u64 = 5;
+
+/// Epochs of every trainer of the paper.
+const EPOCHS: usize = 2000;
+
+/// Levenberg-Marquardt gets this share of the epochs; most of its descents converge before.
+const SHARE_OF_EPOCHS: usize = 10;
+
+/// In the order of the tables.
+const TRAINERS: [Trainer; 4] =
+    [Trainer::Genetic, Trainer::Subgradient, Trainer::Hybrid, Trainer::LevenbergMarquardt];
+
+/// What is run.
+pub struct Protocol {
+    specimen: &'static Specimen,
+    train: Dataset,
+    test: Dataset,
+    first_seed: u64,
+    epochs: usize,
+}
+
+/// A moment of a training.
+#[derive(Debug, Clone, Copy)]
+struct Moment {
+    epoch: usize,
+    evaluations: usize,
+    seconds: f64,
+    /// Lowest error so far, in percent of the output's standard deviation.
+    nrmse_percent: f64,
+}
+
+/// One training.
+struct Training {
+    trainer: Trainer,
+    seed: u64,
+    train: Errors,
+    test: Errors,
+    moments: Vec<Moment>,
+    seconds: f64,
+    evaluations: usize,
+}
+
+/// All trainings from one seed.
+struct Repetition {
+    trainings: Vec<Training>,
+    /// Seconds until Levenberg-Marquardt, begun anew whenever it ends, reaches the hybrid's error; `None`
+    /// if it does not within the hybrid's time.
+    seconds_to_match: Option<f64>,
+}
+
+impl Protocol {
+    /// The whole protocol, or a tenth of its epochs.
+    pub fn new(first_seed: u64, quick: bool) -> Self {
+        let specimen = Specimen::named(SPECIMEN).expect("the specimen is in the catalogue");
+        let (train, test) = (specimen.train(), specimen.test());
+        Self { specimen, train, test, first_seed, epochs: if quick { EPOCHS / 10 } else { EPOCHS } }
+    }
+
+    fn options(&self, trainer: Trainer, seed: u64) -> FitOptions {
+        FitOptions {
+            model: Family::Xpnn,
+            rate: Some(RateMethod::Central),
+            starts: 1,
+            epochs: match trainer {
+                Trainer::LevenbergMarquardt => self.epochs / SHARE_OF_EPOCHS,
+                _ => self.epochs,
+            },
+            stall: 0,
+            seed,
+            ..FitOptions::of(trainer)
+        }
+    }
+}
+
+/// Runs the comparison and writes tables, figures and page into a folder.
+pub fn run(protocol: &Protocol, folder: &Path) -> Result<Outcome> {
+    let mut repetitions = Vec::new();
+    for seed in protocol.first_seed..protocol.first_seed + SEEDS {
+        let Some(repetition) = repetition(protocol, seed)? else { break };
+        repetitions.push(repetition);
+        // What is there survives an interruption of the next.
+        for (name, content) in page::files(protocol, &repetitions) {
+            files::write(&folder.join(name), content.as_bytes())?;
+        }
+    }
+    if !repetitions.is_empty() {
+        results(
+            &(page::text(protocol, &repetitions)
+                + &format!("\npage    {}\n", files::shown(&folder.join("training.html")))),
+        )?;
+    }
+    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// All trainers from one seed; `None` if interrupted.
+fn repetition(protocol: &Protocol, seed: u64) -> Result<Option<Repetition>> {
+    let mut trainings = Vec::new();
+    for trainer in TRAINERS {
+        let Some(training) = training(protocol, trainer, seed)? else { return Ok(None) };
+        note(format_args!(
+            "seed {seed}, {:<19} {:8.4} % of std, {:6.2} s, {:>6} evaluations",
+            trainer.name(),
+            training.train.nrmse_std_percent.unwrap_or_default(),
+            training.seconds,
+            training.evaluations
+        ));
+        trainings.push(training);
+    }
+    let hybrid = trainings.iter().find(|training| training.trainer == Trainer::Hybrid);
+    let hybrid = hybrid.context("the hybrid is among the trainers")?;
+    let seconds_to_match = seconds_to_match(protocol, seed, hybrid)?;
+    Ok((!interrupt::requested()).then_some(Repetition { trainings, seconds_to_match }))
+}
+
+fn training(protocol: &Protocol, trainer: Trainer, seed: u64) -> Result<Option<Training>> {
+    let mut moments: Vec<Moment> = Vec::new();
+    let began = Instant::now();
+    let fitted = fit(&protocol.train, &protocol.options(trainer, seed), &mut |progress| {
+        moments.push(Moment {
+            epoch: progress.epoch,
+            evaluations: progress.evaluations,
+            seconds: began.elapsed().as_secs_f64(),
+            nrmse_percent: progress.train_nrmse_percent,
+        });
+        if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    let seconds = began.elapsed().as_secs_f64();
+    if interrupt::requested() {
+        return Ok(None);
+    }
+    Ok(Some(Training {
+        trainer,
+        seed,
+        train: fitted.model.provenance().train.clone(),
+        test: fitted.model.evaluate(&protocol.test)?,
+        moments,
+        seconds,
+        evaluations: fitted.evaluations,
+    }))
+}
+
+/// Levenberg-Marquardt from one start after another until it is as low as the hybrid was at its end.
+fn seconds_to_match(protocol: &Protocol, seed: u64, hybrid: &Training) -> Result<Option<f64>> {
+    let target = hybrid.train.nrmse_std_percent.context("the specimen's output varies")?;
+    let began = Instant::now();
+    let mut reached = None;
+    for start in 0.. {
+        let over = || began.elapsed().as_secs_f64() > hybrid.seconds || interrupt::requested();
+        if reached.is_some() || over() {
+            break;
+        }
+        // Seeds of other repetitions are not used twice.
+        let options = protocol.options(Trainer::LevenbergMarquardt, seed + start * 1_000_003);
+        fit(&protocol.train, &options, &mut |progress| {
+            if progress.train_nrmse_percent <= target {
+                reached = Some(began.elapsed().as_secs_f64());
+            }
+            if reached.is_some() || over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+    }
+    Ok(reached)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,73 @@
+use hysid::metrics::ErrorSums;
+
+use super::*;
+
+/// Errors of so many percent of the output's standard deviation.
+fn errors(percent: f64) -> Errors {
+    let mut sums = ErrorSums::default();
+    let error = percent / 100.0;
+    sums.add(&[1.0, -1.0, 1.0, -1.0], &[1.0 + error, -1.0 + error, 1.0 - error, -1.0 - error]);
+    sums.errors("force_kN").unwrap()
+}
+
+/// A repetition with these errors of genetic, sub-gradient, hybrid, Levenberg-Marquardt; the hybrid takes
+/// 10 s.
+fn repetition_of(percents: [f64; 4], seconds_to_match: Option<f64>) -> Repetition {
+    let training = |(trainer, percent): (Trainer, f64)| Training {
+        trainer,
+        seed: 1,
+        train: errors(percent),
+        test: errors(percent),
+        moments: vec![Moment { epoch: 1, evaluations: 2, seconds: 0.1, nrmse_percent: percent }],
+        seconds: 10.0,
+        evaluations: 100,
+    };
+    Repetition { trainings: TRAINERS.into_iter().zip(percents).map(training).collect(), seconds_to_match }
+}
+
+#[test]
+fn the_sentence_says_what_the_figures_say() {
+    let claim = |percents: &[[f64; 4]]| {
+        let repetitions: Vec<Repetition> =
+            percents.iter().map(|percents| repetition_of(*percents, None)).collect();
+        page::claim(&repetitions)
+    };
+    let holds = claim(&[[4.0, 2.0, 1.0, 1.0], [4.0, 2.0, 1.0, 1.0], [4.0, 0.5, 1.0, 1.0]]);
+    assert!(holds.contains("holds here:") && holds.contains("in 2 of 3 seeds"), "{holds}");
+    assert!(
+        holds.contains("16 times below that of the genetic")
+            && holds.contains("4 times below that of the sub")
+    );
+    let half = claim(&[[4.0, 1.0, 2.0, 1.0]]);
+    assert!(half.contains("but not against the sub-gradient method alone"), "{half}");
+    assert!(half.contains("4 times above that of the sub-gradient"), "{half}");
+    assert!(claim(&[[1.0, 1.0, 2.0, 1.0]]).contains("does not hold here"));
+}
+
+#[test]
+fn levenberg_marquardt_is_timed_against_the_hybrid() {
+    let percents = [4.0, 2.0, 1.0, 1.0];
+    let matched = page::matched(&[repetition_of(percents, Some(0.2)), repetition_of(percents, None)]);
+    assert!(matched.contains("in 1 of 2 seeds, after 1/50 of that time"), "{matched}");
+    assert!(page::matched(&[repetition_of(percents, None)]).contains("does not reach"));
+}
+
+#[test]
+fn a_short_comparison_leaves_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
+    assert!(matches!(run(&protocol, folder.path()).unwrap(), Outcome::Done));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let table = read("training.csv");
+    assert_eq!(table.lines().count(), 1 + 5 * TRAINERS.len());
+    assert!(table.contains("\n3,genetic,") && table.contains("\n7,levenberg-marquardt,"), "{table}");
+    // The history of the genetic algorithm: 10 generations of 50, the best of which lives on.
+    assert!(read("training-history.csv").contains(",genetic,10,540,"), "{}", read("training-history.csv"));
+    let page = read("training.html");
+    for word in ["Synthetic specimen reinforced-concrete-joint", "The paper&#39;s claim", "Designed:", "<svg"]
+    {
+        assert!(page.contains(word), "{word}");
+    }
+    assert!(read("training.md").contains("| trainer | training MSE, kN² |"));
+    assert!(read("training-seconds.svg").starts_with("<svg"));
+}
