@@ -39,7 +39,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     };
     let data = Data::new(tables, roles, true)?;
     for option in arguments.training.useless() {
-        warning(&format!("{} has no use for {option}", options.training.name()));
+        warning(format_args!("{} has no use for {option}", options.training.name()));
     }
     let work = Work {
         options: &options,
