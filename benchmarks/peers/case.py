@@ -7,7 +7,8 @@ import numpy as np
 import network as reference
 from network import Network
 
-TASKS = ("simulate", "population", "population_fit")
+ONE_THREAD = ("simulate", "evaluation")
+ALL_CORES = ("population", "population_fit")
 
 
 class Case(NamedTuple):
@@ -33,11 +34,15 @@ class Case(NamedTuple):
         if task == "population":
             # Devices may have got some individuals twice, to have the same number each.
             return relative(np.asarray(answer)[: len(self.population_y)], self.population_y)
-        weights, mean_squares = (np.asarray(part)[: len(self.weights)] for part in answer)
+        # Of one individual: the first.
+        answer = [np.asarray(part)[None] if task == "evaluation" else np.asarray(part) for part in answer]
+        weights, mean_squares = (part[: len(self.weights)] for part in answer)
+        features, expected_weights = self.features[: len(weights)], self.weights[: len(weights)]
         # Nearly parallel tanh neurons share a weight as rounding will have it: what counts is their sum.
-        fitted = np.einsum("pnf,pf->pn", self.features, weights)
-        expected = np.einsum("pnf,pf->pn", self.features, self.weights)
-        return max(relative(fitted, expected), np.max(np.abs(mean_squares / self.mean_squares - 1)))
+        fitted = np.einsum("pnf,pf->pn", features, weights)
+        expected = np.einsum("pnf,pf->pn", features, expected_weights)
+        errors = mean_squares / self.mean_squares[: len(weights)] - 1
+        return max(relative(fitted, expected), np.max(np.abs(errors)))
 
 
 def relative(found, expected):

@@ -91,14 +91,13 @@ class Worker:
 def start_workers(case_path):
     """Each is the peer's best setting for its tasks; what fits one task may not fit another."""
     cores = os.cpu_count()
-    evaluation = ("population", "population_fit")
     one_thread = {"XLA_FLAGS": XLA_FLAGS + " --xla_cpu_multi_thread_eigen=false", "NPROC": "1"}
     devices = {"XLA_FLAGS": f"{XLA_FLAGS} --xla_force_host_platform_device_count={cores}"}
     settings = [
-        ("numba", cases.TASKS, WORK_STEALING),
-        ("JAX", ("simulate",), one_thread),
-        ("JAX", evaluation, {"XLA_FLAGS": XLA_FLAGS}),
-        *([("JAX", evaluation, devices)] if cores > 1 else []),
+        ("numba", cases.ONE_THREAD + cases.ALL_CORES, WORK_STEALING),
+        ("JAX", cases.ONE_THREAD, one_thread),
+        ("JAX", cases.ALL_CORES, {"XLA_FLAGS": XLA_FLAGS}),
+        *([("JAX", cases.ALL_CORES, devices)] if cores > 1 else []),
     ]
     return [Worker(peer, tasks, case_path, environment) for peer, tasks, environment in settings]
 
@@ -125,7 +124,7 @@ def one_round(program, workers, wanted):
     for worker, names in zip(workers, wanted):
         for task, ways in worker.measure(names).items():
             for name, time in ways.items():
-                if task == "simulate" and time["cores"] > 1.1:
+                if task in cases.ONE_THREAD and time["cores"] > 1.1:
                     raise Failure(f"{worker.peer}, {name} keeps {time['cores']:.1f} cores busy, not one")
                 peers[worker.peer, task, name] = time["seconds"]
     return ours, peers

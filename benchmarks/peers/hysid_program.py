@@ -13,6 +13,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 SPEEDS = {
     "simulate": ("simulate_ns_per_sample", 1e-9 * reference.SAMPLES),
+    "evaluation": ("genetic_evaluation_us", 1e-6),
     "population_fit": ("genetic_generation_ms", 1e-3),
 }
 """For each task we measure: the key of `hysid bench --json`, and the seconds of its unit."""

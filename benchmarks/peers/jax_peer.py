@@ -249,6 +249,24 @@ def simulations(case):
     return {name: prepared(way) for name, way in ways.items()}
 
 
+def evaluations(case):
+    """Ways to evaluate one individual with its least squares."""
+    network = Network(*(jnp.asarray(parameters[0]) for parameters in case.population))
+    drive = [jnp.asarray(values) for values in (case.population_x, case.population_rate, case.target)]
+    memories = {"scan": scanned, "scan by stop": scanned_by_stop}
+    readouts = {"": tanh_neurons, ", matrix product": tanh_neurons_by_matrix}
+
+    def prepared(memory, readout):
+        compiled = jax.jit(partial(fit_output, memory, readout))
+        return lambda: jax.block_until_ready(compiled(network, *drive))
+
+    return {
+        memory + readout: prepared(memories[memory], readouts[readout])
+        for memory in memories
+        for readout in readouts
+    }
+
+
 def population_formulations(case):
     """Ways to evaluate the population, with given and with fitted output weights."""
     population = Network(*map(jnp.asarray, case.population))

@@ -284,8 +284,13 @@ def formulations(case):
         kernel(*case.population, case.population_x, case.population_rate, population_y)
         return population_y
 
+    drive = (case.population_x, case.population_rate, case.target)
+    first = [parameters[0] for parameters in case.population[:4]]
+
+    def fitted():
+        return weights[0], fit_output(*first, *drive, weights[0])
+
     def population_fitted():
-        drive = (case.population_x, case.population_rate, case.target)
         fit_population(*case.population[:4], *drive, weights, mean_squares)
         return weights, mean_squares
 
@@ -294,6 +299,7 @@ def formulations(case):
             "plain loops": lambda: simulated(simulate_plainly),
             "blocks and lanes": lambda: simulated(simulate),
         },
+        "evaluation": {"blocks and lanes, Cholesky": fitted},
         "population": {
             "plain loops, prange": lambda: population_simulated(simulate_population_plainly),
             "blocks and lanes, prange": lambda: population_simulated(simulate_population),

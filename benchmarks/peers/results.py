@@ -14,8 +14,9 @@ PEERS = ("numba", "JAX")
 
 TITLES = {
     "simulate": ("simulation, 1 thread", "ns a sample", 1e9 / reference.SAMPLES),
-    "population": ("population, output weights given", "ms a generation", 1e3),
-    "population_fit": ("population, output weights by least squares", "ms a generation", 1e3),
+    "evaluation": ("one individual, least squares, 1 thread", "µs", 1e6),
+    "population": ("50 individuals, output weights given, all cores", "ms", 1e3),
+    "population_fit": ("50 individuals, least squares, all cores", "ms", 1e3),
 }
 """For each task: title, unit, and its units in a second."""
 

@@ -6,29 +6,35 @@ stdin, runs these formulations and tells their times. Answers are lines of JSON.
 
 import importlib
 import json
+import math
 import statistics
 import sys
 import time
 
 import case as cases
 
-RUNS = 9
-"""A time is the median of at least this many runs, as in `hysid bench`,"""
+BATCHES = 9
+"""A time is the median of this many batches of runs, as in `hysid bench`."""
 
-SECONDS = 0.2
-"""and of runs for at least so long."""
+SECONDS = 0.02
+"""A batch takes at least so long, or one run: a shorter one would slip between two of another program's
+turns on the core, which ours does not."""
 
 
 def measure(run):
     """Seconds of a run, and how many cores it kept busy."""
+    began = time.perf_counter()
+    run()
+    runs = math.ceil(SECONDS / (time.perf_counter() - began))
     times, cores = [], []
-    while len(times) < RUNS or sum(times) < SECONDS:
+    for _ in range(BATCHES):
         busy, began = time.process_time(), time.perf_counter()
-        run()
+        for _ in range(runs):
+            run()
         times.append(time.perf_counter() - began)
         cores.append((time.process_time() - busy) / times[-1])
-    # Medians: the tidying up of something earlier may fall into one run.
-    return {"seconds": statistics.median(times), "cores": statistics.median(cores)}
+    # Medians: the tidying up of something earlier may fall into one batch.
+    return {"seconds": statistics.median(times) / runs, "cores": statistics.median(cores)}
 
 
 def formulations(peer, case):
@@ -36,7 +42,11 @@ def formulations(peer, case):
     if peer == "numba":
         return importlib.import_module("numba_peer").formulations(case)
     jax_peer = importlib.import_module("jax_peer")
-    return {"simulate": jax_peer.simulations(case), **jax_peer.population_formulations(case)}
+    return {
+        "simulate": jax_peer.simulations(case),
+        "evaluation": jax_peer.evaluations(case),
+        **jax_peer.population_formulations(case),
+    }
 
 
 def main():

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use hysid::classical::identification::{ClassicalOptions, Rival};
+use hysid::classical::linear_fit::Sign;
+use hysid::identification::{ModelName, Request};
 use hysid::network::{Family, Sizes};
 use hysid::rate::RateMethod;
 use hysid::training::genetic::POPULATIONS;
@@ -29,6 +32,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Errors of a model's free run against measured data
     Evaluate(Evaluate),
+    /// Fit every model to the same data and compare them on data that none has seen
+    Compare(Compare),
     /// Run the paper's experiments and set our figures beside its own
     Reproduce(Reproduce),
     /// Measure the speed on this machine
@@ -112,7 +117,7 @@ pub struct Fit {
     pub checkpoint: Option<PathBuf>,
     /// Go on where this checkpoint left off, with the options it was made with; give the same tables and
     /// columns. It is kept up to date unless --checkpoint names another file
-    #[arg(long, value_name = "FILE", conflicts_with = "TrainingOptions")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["TrainingOptions", "RivalOptions"])]
     pub resume: Option<PathBuf>,
     /// Threads to use; the model does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -129,15 +134,15 @@ pub struct Fit {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Model and training")]
 pub struct TrainingOptions {
-    /// Network family: pnn, gpnn, preisach-nn, xpnn (also epnn) or xpnn+
-    #[arg(long, value_name = "MODEL", default_value = "xpnn+", value_parser = family)]
-    pub model: Family,
-    /// Stop neurons
-    #[arg(long, value_name = "N", default_value_t = Sizes::default().stops, value_parser = neurons)]
-    pub stops: usize,
-    /// Tanh neurons, for families that have a tanh layer
-    #[arg(long, value_name = "N", default_value_t = Sizes::default().hidden, value_parser = neurons)]
-    pub hidden: usize,
+    /// A network: pnn, gpnn, preisach-nn, xpnn (also epnn) or xpnn+; or another model: see `hysid compare`
+    #[arg(long, value_name = "MODEL", default_value = "xpnn+", value_parser = model)]
+    pub model: ModelName,
+    /// Stop neurons of a network [default: 10]
+    #[arg(long, value_name = "N", value_parser = neurons)]
+    pub stops: Option<usize>,
+    /// Tanh neurons, for models that have them [default: 10; neuro-madelung 8, random-stops none]
+    #[arg(long, value_name = "N", value_parser = neurons)]
+    pub hidden: Option<usize>,
     /// Relaxation neurons of each input, for xpnn+ with time stamps; 0 for none
     #[arg(long, value_name = "N", default_value_t = Sizes::default().relaxation)]
     pub relaxation: usize,
@@ -168,15 +173,75 @@ pub struct TrainingOptions {
     /// Share of the data held out to choose among the starts
     #[arg(long, value_name = "FRACTION", default_value_t = FitOptions::default().validation, value_parser = fraction)]
     pub validation: f64,
+    /// What can be chosen of the other models.
+    #[command(flatten)]
+    pub rival: RivalOptions,
+}
+
+/// What can be chosen of the models that are no networks.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Models that are no networks")]
+pub struct RivalOptions {
+    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops
+    #[arg(long, value_name = "N", value_parser = neurons)]
+    pub operators: Option<usize>,
+    /// Thresholds of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii in the unit of the input, such as 0.1,0.2,0.5
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub thresholds: Option<Vec<f64>>,
+    /// Sign of the weights of plays or cells: any, non-negative or non-positive [default: what validates best]
+    #[arg(long, value_name = "SIGN", value_parser = sign())]
+    pub sign: Option<Sign>,
+    /// Dead zones on each side of modified-prandtl-ishlinskii [default: 6]
+    #[arg(long, value_name = "N", value_parser = neurons)]
+    pub dead_zones: Option<usize>,
+    /// A weight for each play in place of an exponential law: true or false
+    #[arg(long, value_name = "BOOL")]
+    pub free_weights: Option<bool>,
+    /// Thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate
+    #[arg(long)]
+    pub logarithmic_thresholds: bool,
+    /// bouc-wen with the degradation and pinching of Baber and Noori
+    #[arg(long)]
+    pub degradation: bool,
+    /// jiles-atherton in its differential form of 1992
+    #[arg(long)]
+    pub differential_form: bool,
 }
 
 impl TrainingOptions {
-    /// The library's options, with the rate decided.
-    pub fn fit_options(&self, rate: Option<RateMethod>) -> FitOptions {
+    /// What the library is asked for, with the rate decided.
+    pub fn request(&self, rate: Option<RateMethod>) -> Request {
+        match self.model {
+            ModelName::Network(model) => Request::Network(self.fit_options(model, rate)),
+            ModelName::Rival(model) => Request::Classical(ClassicalOptions {
+                operators: self.rival.operators,
+                thresholds: self.rival.thresholds.clone(),
+                sign: self.rival.sign,
+                dead_zones: self.rival.dead_zones,
+                free_weights: self.rival.free_weights,
+                logarithmic_thresholds: self.rival.logarithmic_thresholds,
+                degradation: self.rival.degradation,
+                differential_form: self.rival.differential_form,
+                hidden: self.hidden,
+                rate,
+                starts: self.starts,
+                epochs: self.epochs,
+                seed: self.seed,
+                ..ClassicalOptions::of(model)
+            }),
+        }
+    }
+
+    fn fit_options(&self, model: Family, rate: Option<RateMethod>) -> FitOptions {
         let defaults = FitOptions::of(self.training);
+        let sizes = Sizes::default();
         FitOptions {
-            model: self.model,
-            sizes: Sizes { stops: self.stops, hidden: self.hidden, relaxation: self.relaxation },
+            model,
+            sizes: Sizes {
+                stops: self.stops.unwrap_or(sizes.stops),
+                hidden: self.hidden.unwrap_or(sizes.hidden),
+                relaxation: self.relaxation,
+            },
             no_deterioration: self.no_deterioration,
             rate,
             starts: self.starts.unwrap_or(defaults.starts),
@@ -189,22 +254,76 @@ impl TrainingOptions {
         }
     }
 
-    /// Options that were asked for and that the trainer has no use for.
+    /// The trainer of a network, or the model that is fitted in its own way.
+    pub fn trained_by(&self) -> &'static str {
+        match self.model {
+            ModelName::Network(_) => self.training.name(),
+            ModelName::Rival(rival) => rival.name(),
+        }
+    }
+
+    /// Options that were asked for and that the model or its trainer has no use for.
     pub fn useless(&self) -> Vec<&'static str> {
+        let is_rival = matches!(self.model, ModelName::Rival(_));
+        let is = |rival: Rival| self.model == ModelName::Rival(rival);
+        let given_thresholds =
+            is(Rival::Masing) || is(Rival::PrandtlIshlinskii) || is(Rival::ModifiedPrandtlIshlinskii);
+        let exponential =
+            is(Rival::GeneralizedPrandtlIshlinskii) || is(Rival::RateDependentPrandtlIshlinskii);
         let has = self.training;
+        let other = &self.rival;
+        let searched = match self.model {
+            ModelName::Network(_) => true,
+            ModelName::Rival(rival) => rival.is_searched(),
+        };
         let asked = [
-            ("--population", self.population.is_some() && !has.is_genetic()),
-            ("--stall", self.stall.is_some() && has == Trainer::LevenbergMarquardt),
+            ("--population", self.population.is_some() && (is_rival || !has.is_genetic())),
+            ("--stall", self.stall.is_some() && (is_rival || has == Trainer::LevenbergMarquardt)),
+            ("--training", is_rival && has != Trainer::default()),
+            ("--stops", self.stops.is_some() && is_rival),
+            ("--no-deterioration", self.no_deterioration && is_rival),
+            ("--starts", self.starts.is_some() && !searched),
+            ("--epochs", self.epochs.is_some() && !searched),
+            (
+                "--hidden",
+                self.hidden.is_some() && is_rival && !is(Rival::NeuroMadelung) && !is(Rival::RandomStops),
+            ),
+            (
+                "--operators",
+                other.operators.is_some()
+                    && (!is_rival
+                        || is(Rival::NeuroMadelung)
+                        || is(Rival::BoucWen)
+                        || is(Rival::JilesAtherton)),
+            ),
+            ("--thresholds", other.thresholds.is_some() && !given_thresholds),
+            ("--sign", other.sign.is_some() && !is(Rival::Preisach) && !given_thresholds),
+            ("--dead-zones", other.dead_zones.is_some() && !is(Rival::ModifiedPrandtlIshlinskii)),
+            ("--free-weights", other.free_weights.is_some() && !exponential),
+            (
+                "--logarithmic-thresholds",
+                other.logarithmic_thresholds && !is(Rival::RateDependentPrandtlIshlinskii),
+            ),
+            ("--degradation", other.degradation && !is(Rival::BoucWen)),
+            ("--differential-form", other.differential_form && !is(Rival::JilesAtherton)),
         ];
         asked.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
     }
+}
+
+fn sign() -> impl TypedValueParser<Value = Sign> {
+    PossibleValuesParser::new(["any", "non-negative", "non-positive"]).map(|name| match name.as_str() {
+        "non-negative" => Sign::NonNegative,
+        "non-positive" => Sign::NonPositive,
+        _ => Sign::Any,
+    })
 }
 
 fn trainer() -> impl TypedValueParser<Value = Trainer> {
     PossibleValuesParser::new(Trainer::ALL.map(Trainer::name)).try_map(|name| name.parse::<Trainer>())
 }
 
-fn family(name: &str) -> Result<Family, String> {
+fn model(name: &str) -> Result<ModelName, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
 }
 
@@ -267,6 +386,41 @@ pub struct Evaluate {
     /// Print the result as one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// Tables of measured data to fit to: CSV with a header line
+    #[arg(value_name = "TRAIN.csv", required = true)]
+    pub train: Vec<PathBuf>,
+    /// Table of measured data that no model sees; without it, errors are those of the training
+    #[arg(long, value_name = "TEST.csv")]
+    pub test: Option<PathBuf>,
+    /// Models to compare, such as xpnn,preisach [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = model)]
+    pub models: Vec<ModelName>,
+    /// The page with table and loops [default: first TRAIN with `-compared.html`, in this folder]
+    #[arg(short, long, value_name = "PAGE.html")]
+    pub out: Option<PathBuf>,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Time for each model, after which its search ends with what it has
+    #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = seconds)]
+    pub time_limit: f64,
+    /// Seed of all randomness
+    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed)]
+    pub seed: u64,
+    /// Models fitted at a time, each on one thread [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print the result as a list of JSON objects
+    #[arg(long)]
+    pub json: bool,
+    /// Write no page
+    #[arg(long)]
+    pub no_report: bool,
 }
 
 /// Arguments of `reproduce`.

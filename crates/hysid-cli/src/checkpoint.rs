@@ -38,7 +38,8 @@ impl Keeper {
         if now < self.due && !last {
             return Ok(());
         }
-        files::replace(&self.path, &progress.checkpoint().to_bytes())?;
+        let Some(checkpoint) = progress.checkpoint() else { return Ok(()) };
+        files::replace(&self.path, &checkpoint.to_bytes())?;
         // A slow disk or a large network must not make the fit slow.
         let spent = now.elapsed();
         self.due = Instant::now() + BETWEEN.max(spent.div_f64(LARGEST_SHARE));

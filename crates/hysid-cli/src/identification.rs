@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
+use hysid::identification::Request;
 use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::{Model, Provenance};
 use hysid::record::Dataset;
 use hysid::summary::Summary;
-use hysid::training::{Checkpoint, FitOptions, Progress, fit, resume};
+use hysid::training::{Checkpoint, Progress, resume};
 
 use crate::data::Data;
 use crate::messages::{Usage, note, warning};
@@ -29,8 +30,8 @@ pub struct Identified {
 
 /// What is to be done with the data, and how.
 pub struct Work<'a> {
-    /// The options of the fit.
-    pub options: &'a FitOptions,
+    /// What is to be identified.
+    pub request: &'a Request,
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,
     /// Where to store the state of the fit.
@@ -43,33 +44,42 @@ pub struct Work<'a> {
 
 impl<'a> Work<'a> {
     /// A fit from its beginning, without limits.
-    pub fn new(options: &'a FitOptions) -> Self {
-        Self { options, begun: None, checkpoint: None, threads: None, time_limit: None }
+    pub fn new(request: &'a Request) -> Self {
+        Self { request, begun: None, checkpoint: None, threads: None, time_limit: None }
     }
 }
 
 /// Identifies a model, following the training on stderr.
 pub fn identify(data: &Data, work: Work) -> Result<Identified> {
-    let options = work.options;
-    let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
+    let request = work.request;
+    let model = match request {
+        Request::Network(options) => {
+            let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
+            understanding::parts(&architecture)
+        }
+        Request::Classical(_) => String::new(),
+    };
+    if let Some(hindrance) = request.model().hindrance(&data.set, request.rate()) {
+        return Err(Usage(format!("{} {hindrance}", request.model().name())).into());
+    }
     let summary = Summary::of(&data.set);
     interrupt::listen("stopping to save the best model so far")?;
-    let understood = understanding::understanding(data, &summary, options, &architecture);
+    let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
     let mut warnings: Vec<String> =
         summary.warnings(&data.set).iter().map(|warning| warning.to_string()).collect();
-    if options.rate.is_some() && !architecture.rate {
-        warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", options.model.name()));
+    if request.rate().is_some() && !request.model().uses_rate() {
+        warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
     }
     warnings.iter().for_each(warning);
 
     let pool = rayon::ThreadPoolBuilder::new().num_threads(work.threads.unwrap_or(0).into()).build();
     let pool = pool.context("cannot start the threads")?;
-    let mut follower = Follower::new(options, work.time_limit, work.checkpoint);
+    let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);
     let fitted = pool.install(|| match work.begun {
         Some(begun) => resume(&data.set, begun, &mut observer),
-        None => fit(&data.set, options, &mut observer),
+        None => hysid::identification::identify(&data.set, request, &mut observer),
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
@@ -130,11 +140,10 @@ impl Identified {
         if provenance.validation.is_some() {
             text += "(validation: data held out from the chosen start, before it was trained on all)\n";
         }
-        let architecture = self.model.network().architecture();
         text += &format!(
             "\n{} with {} parameters; {}, {}; {:.1} s\n",
-            self.model.family().name(),
-            architecture.parameters(),
+            self.model.name().name(),
+            self.model.parameters(),
             chosen(provenance),
             provenance.termination,
             self.seconds
@@ -148,8 +157,13 @@ impl Identified {
 
 /// Where the model comes from, in words.
 fn chosen(provenance: &Provenance) -> String {
-    match provenance.options.starts {
-        1 => format!("{} training", provenance.options.training.name()),
+    let options = match &provenance.options {
+        Request::Network(options) => options,
+        Request::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
+        Request::Classical(_) => return "linear least squares".into(),
+    };
+    match options.starts {
+        1 => format!("{} training", options.training.name()),
         starts => format!("start {} of {starts} chosen", provenance.chosen_start + 1),
     }
 }

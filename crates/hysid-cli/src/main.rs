@@ -8,6 +8,7 @@ mod cell;
 mod checkpoint;
 mod columns;
 mod commands;
+mod comparison;
 mod data;
 mod errors_table;
 mod files;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => commands::fit::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
+        Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
     };

@@ -42,22 +42,26 @@ pub fn note(text: &str) -> String {
     format!("<p class=\"note\">{}</p>\n", escape(text))
 }
 
-/// A table; the first cell of each row is its heading.
+/// A table; the first cell of each row is its heading. A row that is cut short ends in words.
 pub fn table(headings: &[String], rows: &[Vec<String>]) -> String {
     let head: String =
         headings.iter().map(|cell| format!("<th scope=\"col\">{}</th>", escape(cell))).collect();
-    let body: String = rows.iter().map(|row| table_row(row)).collect();
+    let body: String = rows.iter().map(|row| table_row(row, headings.len())).collect();
     format!(
         "<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
     )
 }
 
-fn table_row(cells: &[String]) -> String {
+/// A row; if it has fewer cells than the table has columns, its last one goes over all that are left.
+fn table_row(cells: &[String], columns: usize) -> String {
     let mut row = String::from("<tr>");
     for (index, cell) in cells.iter().enumerate() {
         let cell = escape(cell);
         row += &match index {
             0 => format!("<th scope=\"row\">{cell}</th>"),
+            last if last + 1 == cells.len() && cells.len() < columns => {
+                format!("<td class=\"words\" colspan=\"{}\">{cell}</td>", columns - last)
+            }
             _ => format!("<td>{cell}</td>"),
         };
     }

@@ -89,6 +89,17 @@ pub struct Curve {
     pub width: f64,
 }
 
+/// Text to the right of a point.
+#[derive(Debug, Clone)]
+pub struct Label {
+    /// The point.
+    pub point: Point,
+    /// How far above the point it stands, in pixels.
+    pub rise: f64,
+    /// What is written.
+    pub text: String,
+}
+
 /// A chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
@@ -104,6 +115,8 @@ pub struct Chart {
     pub y: Axis,
     /// What is drawn, from the back to the front.
     pub curves: Vec<Curve>,
+    /// Text beside points.
+    pub labels: Vec<Label>,
     /// What the colours mean.
     pub legend: Vec<(Colour, String)>,
 }
@@ -171,6 +184,12 @@ impl Chart {
                     }
                 }
             }
+        }
+        for Label { point, rise, text } in &self.labels {
+            let style = text_style().pos(Pos::new(HPos::Left, VPos::Center));
+            let offset = (fine(8.0), -fine(*rise));
+            let label = EmptyElement::at(*point) + Text::new(text.clone(), offset, style);
+            chart.draw_series(std::iter::once(label))?;
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use hysid::training::{FitOptions, Method, Phase, Progress};
+use hysid::training::{Method, Phase, Progress};
 use hysid::warning::Significant;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -35,7 +35,7 @@ pub struct Follower {
 
 impl Follower {
     /// Begins now, and ends at the limit, if any; keeps a checkpoint if there is a file for it.
-    pub fn new(options: &FitOptions, time_limit: Option<f64>, checkpoint: Option<&Path>) -> Self {
+    pub fn new(starts: usize, time_limit: Option<f64>, checkpoint: Option<&Path>) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(STEPS as u64);
             let style = ProgressStyle::with_template("[{bar:24}] {percent:>3} % {msg}");
@@ -47,7 +47,7 @@ impl Follower {
         Self {
             started: now,
             limit,
-            starts: options.starts,
+            starts,
             keeper: checkpoint.map(Keeper::new),
             failed: false,
             best: f64::INFINITY,
@@ -90,6 +90,7 @@ impl Follower {
             (Phase::Starts, _) => format!("{} starts", self.starts),
             (Phase::AllData, Method::LevenbergMarquardt) => "all data".to_string(),
             (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
+            (Phase::AllData, Method::LeastSquares) => format!("round {}", progress.epoch),
             (Phase::AllData, Method::Subgradient) => format!("sub-gradient {}", progress.epoch),
         };
         let elapsed = self.started.elapsed().as_secs_f64();

@@ -4,6 +4,7 @@ mod errors;
 mod figures;
 mod histories;
 mod neurons;
+mod parameters;
 mod provenance;
 mod unit;
 mod usage;
@@ -50,6 +51,7 @@ pub fn page(report: &Report) -> String {
         report.sets.iter().map(histories::section).collect(),
         figures::convergence_section(report.model),
         neurons::section(report),
+        parameters::section(report),
         provenance::understood(report),
         provenance::warnings(report),
         provenance::section(report),
@@ -63,6 +65,16 @@ pub fn page(report: &Report) -> String {
 /// [`plot::standalone`] makes a file of it.
 pub fn loops_svg(set: &ReportSet) -> String {
     figures::loops(set)
+}
+
+/// Measured and simulated loops of a set in a small chart with this title.
+pub fn small_loops(set: &ReportSet, title: String) -> String {
+    figures::small_loops(set, title)
+}
+
+/// A column's name as the label of an axis.
+pub fn unit_label(column: &str) -> String {
+    unit::label(column)
 }
 
 #[cfg(test)]

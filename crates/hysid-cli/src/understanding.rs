@@ -1,9 +1,9 @@
 //! What the program understood of the data, said before the work begins.
 
+use hysid::identification::Request;
 use hysid::network::Architecture;
 use hysid::rate::RateMethod;
 use hysid::summary::Summary;
-use hysid::training::FitOptions;
 use hysid::warning::Significant;
 
 use crate::data::Data;
@@ -17,8 +17,8 @@ const WIDTH: usize = 80;
 pub fn understanding(
     data: &Data,
     summary: &Summary,
-    options: &FitOptions,
-    architecture: &Architecture,
+    request: &Request,
+    model: &str,
 ) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
@@ -38,8 +38,9 @@ pub fn understanding(
     let first = &data.roles.inputs[0];
     let turning = summary.turning_points();
     say("turning", format!("{turning} turning point{} of {first}", if turning == 1 { "" } else { "s" }));
-    say("rate", rate(first, data.roles.rate.as_deref(), options.rate.filter(|_| architecture.rate)));
-    say("model", format!("{}: {}", options.model.name(), parts(architecture)));
+    let used = request.rate().filter(|_| request.model().uses_rate());
+    say("rate", rate(first, data.roles.rate.as_deref(), used));
+    say("model", format!("{}{model}", request.model().name()));
     lines
 }
 
@@ -91,7 +92,7 @@ pub fn parts(architecture: &Architecture) -> String {
     if architecture.relaxation > 0 {
         parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
     }
-    format!("{} parameters; {}", architecture.parameters(), parts.join(", "))
+    format!(": {} parameters; {}", architecture.parameters(), parts.join(", "))
 }
 
 fn samples(summary: &Summary) -> String {

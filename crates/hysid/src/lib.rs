@@ -32,6 +32,7 @@
 pub mod classical;
 pub mod error;
 mod free_run;
+pub mod identification;
 mod linear_algebra;
 pub mod metrics;
 pub mod model;

@@ -1,7 +1,11 @@
 //! Dense linear algebra of the training loop: the Gram matrix of many rows, and the Cholesky
-//! factor of a small matrix.
+//! factor of a symmetric matrix.
 
-use pulp::Simd;
+mod blocked_cholesky;
+
+use pulp::{Simd, WithSimd};
+
+use crate::simd;
 
 /// Rows of a [`Batch`]: its columns stay in the second-level cache.
 const BATCH: usize = 256;
@@ -68,6 +72,18 @@ impl Gram {
         self.data[row * self.stride + column]
     }
 
+    /// Adds a batch's rows, and empties it, with the widest instruction set of this machine.
+    pub fn gather(&mut self, batch: &mut Batch) {
+        simd::run(AddBatch { gram: self, batch });
+    }
+
+    /// Adds `factor` times another Gram matrix of the same columns: 1 for the rows of both, -1 to take
+    /// rows out again.
+    pub fn add_multiple(&mut self, other: &Gram, factor: f64) {
+        debug_assert_eq!(self.n, other.n);
+        self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += factor * b);
+    }
+
     /// Adds a batch's rows, and empties it.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch) {
@@ -127,6 +143,20 @@ impl Gram {
     }
 }
 
+struct AddBatch<'a> {
+    gram: &'a mut Gram,
+    batch: &'a mut Batch,
+}
+
+impl WithSimd for AddBatch<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.gram.add(simd, self.batch);
+    }
+}
+
 /// A symmetric matrix by rows, of which the lower triangle counts.
 #[derive(Debug, Clone)]
 pub(crate) struct Symmetric {
@@ -149,6 +179,40 @@ impl Symmetric {
         self.data[i * self.n + i]
     }
 
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.data[row.max(column) * self.n + row.min(column)]
+    }
+
+    /// Adds to the entry of `row` and `column`, which is also that of `column` and `row`.
+    pub fn add_at(&mut self, row: usize, column: usize, value: f64) {
+        self.data[row.max(column) * self.n + row.min(column)] += value;
+    }
+
+    /// The matrix of some rows and columns, given in rising order.
+    pub fn select(&self, chosen: &[usize]) -> Self {
+        let mut data = vec![0.0; chosen.len() * chosen.len()];
+        for (k, &i) in chosen.iter().enumerate() {
+            let (row, from) = (&mut data[k * chosen.len()..], &self.data[i * self.n..]);
+            for (to, &j) in row[..=k].iter_mut().zip(chosen) {
+                *to = from[j];
+            }
+        }
+        Self { n: chosen.len(), data }
+    }
+
+    /// The product with a vector.
+    pub fn times(&self, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.n];
+        for i in 0..self.n {
+            let row = &self.data[i * self.n..i * self.n + i];
+            product[i] += dot(row, &v[..i]) + self.diagonal(i) * v[i];
+            for (product, a) in product.iter_mut().zip(row) {
+                *product += a * v[i];
+            }
+        }
+        product
+    }
+
     pub fn add_to_diagonal(&mut self, i: usize, value: f64) {
         self.data[i * self.n + i] += value;
     }
@@ -166,6 +230,10 @@ impl Symmetric {
     /// Cholesky factor `L` with `self = L Lᵀ`; `None` unless positive definite to rounding.
     pub fn cholesky(mut self) -> Option<Cholesky> {
         let n = self.n;
+        if n >= blocked_cholesky::WORTH_BLOCKS {
+            let data = blocked_cholesky::factorise(self.data, n)?;
+            return Some(Cholesky { n, data });
+        }
         for i in 0..n {
             let (done, rest) = self.data.split_at_mut(i * n);
             let row = &mut rest[..=i];
@@ -273,17 +341,45 @@ mod tests {
 
     #[test]
     fn cholesky_solves_and_refuses() {
-        let n = 37;
-        let product = |i: usize, j: usize| (0..60).map(|row| value(row, i) * value(row, j)).sum::<f64>();
+        for n in [1, 37, blocked_cholesky::WORTH_BLOCKS, 331] {
+            cholesky_solves(n);
+        }
+        for n in [2, blocked_cholesky::WORTH_BLOCKS + 3] {
+            let indefinite = Symmetric::from_fn(n, |i, j| if i == j { 1.0 } else { 2.0 });
+            assert!(indefinite.cholesky().is_none());
+            let mut poisoned = Symmetric::from_fn(n, |i, j| f64::from(i == j));
+            poisoned.add_at(n - 1, 0, f64::NAN);
+            assert!(poisoned.cholesky().is_none());
+        }
+    }
+
+    fn cholesky_solves(n: usize) {
+        let product = |i: usize, j: usize| (0..n + 23).map(|row| value(row, i) * value(row, j)).sum::<f64>();
         let entry = |i: usize, j: usize| product(i, j) + if i == j { 3.0 } else { 0.0 };
         let matrix = Symmetric::from_fn(n, entry);
         let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
-        let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * exact[j]).sum()).collect();
+        let mut b = matrix.times(&exact);
+        for i in [0, n / 2, n - 1] {
+            let product: f64 = (0..n).map(|j| entry(i, j) * exact[j]).sum();
+            approx::assert_relative_eq!(b[i], product, max_relative = 1e-11, epsilon = 1e-9);
+        }
         matrix.clone().cholesky().unwrap().solve(&mut b);
         for (found, exact) in b.iter().zip(&exact) {
             approx::assert_relative_eq!(found, exact, epsilon = 1e-7);
         }
-        assert!(Symmetric::from_fn(2, |i, j| if i == j { 1.0 } else { 2.0 }).cholesky().is_none());
-        assert!(Symmetric::from_fn(1, |_, _| f64::NAN).cholesky().is_none());
+    }
+
+    #[test]
+    fn rows_can_be_taken_out_of_a_gram_matrix() {
+        let n = 6;
+        let (mut all, mut some) = (Gram::new(n), Gram::new(n));
+        simd::run(Fill(&mut all, 40));
+        simd::run(Fill(&mut some, 15));
+        all.add_multiple(&some, -1.0);
+        let exact: f64 = (15..40).map(|row| value(row, 4) * value(row, 2)).sum();
+        approx::assert_relative_eq!(all.at(2, 4), exact, epsilon = 1e-10);
+        let matrix = Symmetric::from_fn(n, |i, j| (10 * i + j) as f64);
+        let part = matrix.select(&[1, 4, 5]);
+        assert_eq!((part.at(0, 2), part.at(2, 1), part.n), (51.0, 54.0, 3));
     }
 }

@@ -1,19 +1,21 @@
-//! A fitted model: a network, its scaling, what it was trained on and how. It simulates in the user's
-//! units.
+//! A fitted model: a network with its scaling or a classical law, what it was trained on and how. It
+//! simulates in the user's units.
 
 mod file;
 
 use serde::{Deserialize, Serialize};
 
+use crate::classical::series::Series;
+use crate::classical::{Classical, ClassicalState, Law, Sample};
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::free_run::FreeRun;
-use crate::metrics::Errors;
-use crate::network::{Family, Network, Simulator};
+use crate::identification::{ModelName, Request};
+use crate::metrics::{ErrorSums, Errors};
+use crate::network::{Network, Simulator};
 use crate::rate::RateMethod;
 use crate::record::{ColumnNames, Dataset, Record};
 use crate::scaling::Scaling;
 use crate::training::history::Run;
-use crate::training::options::FitOptions;
 use crate::training::termination::Termination;
 use crate::warning::Warning;
 
@@ -22,13 +24,74 @@ pub use file::FORMAT_VERSION;
 /// A fitted model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    family: Family,
-    network: Network,
-    scaling: Scaling,
+    body: Body,
     rate: Option<RateMethod>,
     names: ColumnNames,
     trained: TrainedRanges,
     provenance: Provenance,
+}
+
+/// What simulates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Body {
+    /// A network in scaled units, and the factors to the user's.
+    Network {
+        /// The network.
+        network: Network,
+        /// Factors between the user's units and the network's.
+        scaling: Scaling,
+    },
+    /// A classical law in the user's units.
+    Law(Classical),
+}
+
+impl Body {
+    /// Free run over a record from the virgin state, in the user's unit.
+    fn simulate(&self, rate: Option<RateMethod>, record: &Record) -> Result<Vec<f64>> {
+        match self {
+            Self::Network { network, scaling } => FreeRun::new(network, scaling, rate).record(record),
+            Self::Law(law) => {
+                if record.inputs().len() != 1 {
+                    let problem = DataProblem::Inputs { expected: 1, found: record.inputs().len() };
+                    return Err(record.defect(None, None, problem));
+                }
+                Ok(law.run(&Series::of(record, rate)?.samples))
+            }
+        }
+    }
+
+    /// Errors of free runs over all records that have an output.
+    pub(crate) fn errors(&self, rate: Option<RateMethod>, data: &Dataset) -> Result<Errors> {
+        if let Self::Network { network, scaling } = self {
+            return FreeRun::new(network, scaling, rate).errors(data);
+        }
+        let mut sums = ErrorSums::default();
+        for record in data.records().iter().filter(|record| record.scored() > 0) {
+            sums.add(record.output(), &self.simulate(rate, record)?);
+        }
+        sums.errors(&data.names().output)
+            .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
+    }
+
+    /// Number of inputs.
+    fn inputs(&self) -> usize {
+        match self {
+            Self::Network { scaling, .. } => scaling.inputs.len(),
+            Self::Law(_) => 1,
+        }
+    }
+
+    /// Parameters that were found from the data.
+    fn parameters(&self) -> usize {
+        match self {
+            Self::Network { network, .. } => network.architecture().parameters(),
+            Self::Law(law) => law.parameters().len(),
+        }
+    }
+
+    fn relaxes(&self) -> bool {
+        matches!(self, Self::Network { network, .. } if network.architecture().relaxation > 0)
+    }
 }
 
 /// Smallest and largest values seen in training, in the user's units.
@@ -47,8 +110,8 @@ pub struct TrainedRanges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// The options it was given.
-    pub options: FitOptions,
+    /// What was asked for.
+    pub options: Request,
     /// Rows with an output.
     pub samples: usize,
     /// Records.
@@ -68,18 +131,18 @@ pub struct Provenance {
 
 impl Model {
     pub(crate) fn new(
-        family: Family,
-        network: Network,
-        scaling: Scaling,
+        body: Body,
         rate: Option<RateMethod>,
         data: &Dataset,
         provenance: Provenance,
     ) -> Result<Self> {
-        let rate = rate.filter(|_| network.architecture().rate);
+        let uses_rate = match &body {
+            Body::Network { network, .. } => network.architecture().rate,
+            Body::Law(_) => provenance.options.model().uses_rate(),
+        };
+        let rate = rate.filter(|_| uses_rate);
         let mut model = Self {
-            family,
-            network,
-            scaling,
+            body,
             rate,
             names: data.names().clone(),
             trained: TrainedRanges {
@@ -97,8 +160,8 @@ impl Model {
                 }
             }
             model.trained.rate = Some(range);
-        } else {
-            model.scaling.rate = None;
+        } else if let Body::Network { scaling, .. } = &mut model.body {
+            scaling.rate = None;
         }
         Ok(model)
     }
@@ -116,19 +179,35 @@ impl Model {
         file::write(self)
     }
 
-    /// The network family.
-    pub fn family(&self) -> Family {
-        self.family
+    /// Which model it is.
+    pub fn name(&self) -> ModelName {
+        self.provenance.options.model()
     }
 
-    /// The network, in scaled units.
-    pub fn network(&self) -> &Network {
-        &self.network
+    /// What simulates.
+    pub fn body(&self) -> &Body {
+        &self.body
     }
 
-    /// Factors between the user's units and the network's.
-    pub fn scaling(&self) -> &Scaling {
-        &self.scaling
+    /// The network, in scaled units; `None` for a classical law.
+    pub fn network(&self) -> Option<&Network> {
+        match &self.body {
+            Body::Network { network, .. } => Some(network),
+            Body::Law(_) => None,
+        }
+    }
+
+    /// Factors between the user's units and the network's; `None` for a classical law, which needs none.
+    pub fn scaling(&self) -> Option<&Scaling> {
+        match &self.body {
+            Body::Network { scaling, .. } => Some(scaling),
+            Body::Law(_) => None,
+        }
+    }
+
+    /// Number of parameters that were found from the data.
+    pub fn parameters(&self) -> usize {
+        self.body.parameters()
     }
 
     /// How the rate is found; `None` for a model without rate.
@@ -153,7 +232,7 @@ impl Model {
 
     /// True if the model needs time stamps.
     pub fn needs_time(&self) -> bool {
-        self.network.architecture().relaxation > 0 || self.rate.is_some_and(|rate| rate != RateMethod::Given)
+        self.body.relaxes() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
     /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
@@ -163,7 +242,7 @@ impl Model {
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
         self.check_time(record)?;
-        FreeRun::new(&self.network, &self.scaling, self.rate).record(record)
+        self.body.simulate(self.rate, record)
     }
 
     /// Errors of free runs over all records.
@@ -172,7 +251,7 @@ impl Model {
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(record))?;
-        FreeRun::new(&self.network, &self.scaling, self.rate).errors(data)
+        self.body.errors(self.rate, data)
     }
 
     fn check_time(&self, record: &Record) -> Result<()> {
@@ -184,12 +263,13 @@ impl Model {
 
     /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.
     pub fn stepper(&self) -> Stepper<'_> {
-        Stepper {
-            model: self,
-            simulator: self.network.simulator(),
-            u: vec![0.0; self.network.architecture().channels()],
-            last: None,
-        }
+        let memory = match &self.body {
+            Body::Network { network, .. } => {
+                Memory::Network(network.simulator(), vec![0.0; network.architecture().channels()])
+            }
+            Body::Law(law) => Memory::Law(law.virgin()),
+        };
+        Stepper { model: self, memory, last: None }
     }
 
     /// Warns of inputs and rates beyond what the model was trained on.
@@ -231,10 +311,17 @@ impl Model {
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
     model: &'m Model,
-    simulator: Simulator,
-    u: Vec<f64>,
+    memory: Memory,
     /// Time and first input of the last sample.
     last: Option<(f64, f64)>,
+}
+
+/// What a stepper knows of the past.
+#[derive(Debug, Clone)]
+enum Memory {
+    /// A network's simulator, and room for its channels.
+    Network(Simulator, Vec<f64>),
+    Law(ClassicalState),
 }
 
 impl Stepper<'_> {
@@ -245,13 +332,9 @@ impl Stepper<'_> {
     /// # Errors
     /// Another number of inputs, a value that is not finite, or time that does not advance.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
-        let scaling = &self.model.scaling;
-        if inputs.len() != scaling.inputs.len() {
-            return Err(Error::Option(format!(
-                "{} inputs where the model has {}",
-                inputs.len(),
-                scaling.inputs.len()
-            )));
+        let expected = self.model.body.inputs();
+        if inputs.len() != expected {
+            return Err(Error::Option(format!("{} inputs where the model has {expected}", inputs.len())));
         }
         let elapsed = match self.last {
             Some((before, _)) => time - before,
@@ -260,29 +343,46 @@ impl Stepper<'_> {
         if self.model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
             return Err(Error::Option(format!("time {time} does not come after the last sample's")));
         }
-        let mut u = self.u.iter_mut();
-        for (input, (&x, &scale)) in inputs.iter().zip(&scaling.inputs).enumerate() {
-            *u.next().expect("a channel for each input") = x * (1.0 / scale);
-            if input == 0
-                && let Some(scale) = scaling.rate
-            {
-                let backward = match self.last {
-                    Some((_, before)) => (x - before) / elapsed,
-                    None => 0.0,
-                };
-                *u.next().expect("a channel for the rate") = rate.unwrap_or(backward) * (1.0 / scale);
-            }
-        }
-        if let Some(bad) = self.u.iter().find(|u| !u.is_finite()) {
+        let rate = self.model.rate.map(|_| {
+            let backward = self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
+            rate.unwrap_or(backward)
+        });
+        if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
             return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
         }
+        let y = match (&self.model.body, &mut self.memory) {
+            (Body::Network { scaling, .. }, Memory::Network(simulator, u)) => {
+                let mut channels = u.iter_mut();
+                for (input, (&x, &scale)) in inputs.iter().zip(&scaling.inputs).enumerate() {
+                    *channels.next().expect("a channel for each input") = x * (1.0 / scale);
+                    if input == 0
+                        && let Some((rate, scale)) = rate.zip(scaling.rate)
+                    {
+                        *channels.next().expect("a channel for the rate") = rate * (1.0 / scale);
+                    }
+                }
+                if let Some(bad) = u.iter().find(|u| !u.is_finite()) {
+                    return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
+                }
+                scaling.output(simulator.step(u, elapsed))
+            }
+            (Body::Law(law), Memory::Law(state)) => {
+                let step = if self.model.needs_time() { elapsed } else { 0.0 };
+                law.step(state, Sample { x: inputs[0], rate: rate.unwrap_or(0.0), step })
+            }
+            _ => unreachable!("the memory was made for the body"),
+        };
         self.last = Some((time, inputs[0]));
-        Ok(scaling.output(self.simulator.step(&self.u, elapsed)))
+        Ok(y)
     }
 
     /// Back to the virgin state.
     pub fn reset(&mut self) {
-        self.simulator.reset();
+        match (&self.model.body, &mut self.memory) {
+            (Body::Law(law), Memory::Law(state)) => *state = law.virgin(),
+            (_, Memory::Network(simulator, _)) => simulator.reset(),
+            _ => unreachable!("the memory was made for the body"),
+        }
         self.last = None;
     }
 }

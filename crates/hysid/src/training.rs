@@ -13,6 +13,7 @@ pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod objective;
 pub mod options;
+pub mod random_stops;
 mod run;
 pub mod space_dilation;
 pub mod start;
@@ -20,6 +21,7 @@ pub mod termination;
 
 use std::ops::ControlFlow;
 
+use crate::classical::search::SearchProgress;
 use crate::error::Result;
 use crate::model::Model;
 use crate::record::Dataset;
@@ -50,14 +52,28 @@ pub struct Progress<'a> {
     pub train_nrmse_percent: f64,
     /// Share of the work done, 0 to 1, if every start takes all its epochs.
     pub done: f64,
-    snapshot: Snapshot<'a>,
+    snapshot: Option<Snapshot<'a>>,
 }
 
 impl Progress<'_> {
-    /// All that is needed to take up the fit from here. It costs a copy of the state, so it is made
-    /// when it is asked for.
-    pub fn checkpoint(&self) -> Checkpoint {
-        self.snapshot.checkpoint()
+    /// All that is needed to take up the fit from here; `None` for a model that has no checkpoints. It
+    /// costs a copy of the state, so it is made when it is asked for.
+    pub fn checkpoint(&self) -> Option<Checkpoint> {
+        self.snapshot.map(|snapshot| snapshot.checkpoint())
+    }
+
+    /// Of a classical model's search.
+    pub(crate) fn of_search(progress: &SearchProgress) -> Self {
+        Self {
+            phase: Phase::AllData,
+            method: Method::LeastSquares,
+            start: 0,
+            epoch: progress.round,
+            evaluations: progress.evaluations,
+            train_nrmse_percent: progress.train_nrmse_percent,
+            done: progress.round as f64 / progress.rounds.max(1) as f64,
+            snapshot: None,
+        }
     }
 }
 

@@ -63,7 +63,7 @@ fn cut_at(
             return ControlFlow::Continue(());
         }
         assert!(bytes.is_none(), "called again after it said stop");
-        bytes = Some(progress.checkpoint().to_bytes());
+        bytes = Some(progress.checkpoint().unwrap().to_bytes());
         ControlFlow::Break(())
     });
     Checkpoint::from_bytes(&bytes.unwrap_or_else(|| panic!("call {call} never came"))).unwrap()
@@ -122,7 +122,7 @@ fn threads_do_not_matter_and_seeds_do() {
         assert_eq!(one.model.to_json(), two.model.to_json(), "{options:?}");
         assert_eq!(one.evaluations, two.evaluations);
         let other = whole(&FitOptions { seed: 7, ..options }).0;
-        assert_ne!(one.model.network(), other.model.network());
+        assert_ne!(one.model.network().unwrap(), other.model.network().unwrap());
     }
 }
 

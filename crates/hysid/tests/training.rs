@@ -60,7 +60,7 @@ fn nrmse(fit: &Fit, data: &Dataset) -> f64 {
 
 /// Parameters and output weights, to the last bit.
 fn bits(fit: &Fit) -> Vec<u64> {
-    let network = fit.model.network();
+    let network = fit.model.network().unwrap();
     network.parameters().iter().chain(network.output()).map(|value| value.to_bits()).collect()
 }
 
@@ -101,7 +101,7 @@ fn a_network_of_the_family_is_found_and_carries_on() {
     assert!(trained < 1.0 && continued < 3.0, "{trained} %, {continued} %");
     // Stops that never wear out cannot follow.
     let eternal = quietly(&train, &FitOptions { no_deterioration: true, ..options });
-    assert!(!eternal.model.network().architecture().deterioration);
+    assert!(!eternal.model.network().unwrap().architecture().deterioration);
     assert!(nrmse(&eternal, &held_out) > 3.0, "{} %", nrmse(&eternal, &held_out));
 }
 
@@ -357,7 +357,7 @@ fn data_that_tell_nothing_are_refused() {
 #[test]
 fn every_start_begins_within_the_bounds_of_the_search() {
     let fitted = quietly(&bank_data(100), &FitOptions { epochs: 0, ..small(Family::XpnnPlus, 4, 2) });
-    let network = fitted.model.network();
+    let network = fitted.model.network().unwrap();
     Layout::new(*network.architecture()).check(network.parameters()).unwrap();
     assert!(fitted.model.provenance().runs.iter().all(|run| run.history.len() == 1));
 }

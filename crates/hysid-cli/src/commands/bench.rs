@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use hysid::network::{Family, Sizes};
+use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
@@ -194,7 +194,7 @@ struct PaperTrainer {
 fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fit) -> Result<PaperTrainer> {
     let scaling = Scaling::of(data, options.rate)?;
     let objective = Objective::new(data, &scaling, options.architecture(data)?, options)?;
-    let parameters = fitted.model.network().parameters();
+    let parameters = network(fitted)?.parameters();
     let value = objective.value(parameters);
     let evaluation_us = 1e-3
         * median(|| {
@@ -233,12 +233,16 @@ fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fit) -> Result<P
     })
 }
 
+fn network(fitted: &Fit) -> Result<&Network> {
+    fitted.model.network().context("a network was fitted")
+}
+
 /// The network alone: scaled inputs and rates in, scaled outputs out.
 fn network_ns(fitted: &Fit) -> Result<f64> {
     let x = record(SAMPLES)?.inputs()[0].clone();
     let rate: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
     let mut y = vec![0.0; SAMPLES];
-    let mut simulator = fitted.model.network().simulator();
+    let mut simulator = network(fitted)?.simulator();
     median(|| {
         simulator.reset();
         simulator.run(black_box(&[&x, &rate]), &[], &mut y);

@@ -48,8 +48,8 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
 
     let data = read(&train)?;
     let unseen = read(&test)?;
-    let options = fit_as_typed(&train).training.fit_options(None);
-    let identified = identify(&data, Work::new(&options))?;
+    let request = fit_as_typed(&train).training.request(None);
+    let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     let mut written = vec![("data", train.clone()), ("data", test.clone())];
     written.extend(identified.save(&out, Some(vec![("training", &data.set), ("unseen", &unseen.set)]))?);

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use hysid::identification::{ModelName, Request};
 use hysid::metrics::Errors;
-use hysid::network::{Architecture, Family};
+use hysid::network::Architecture;
 use hysid::rate::RateMethod;
 use hysid::training::{Checkpoint, FitOptions, Termination};
 
@@ -29,20 +30,24 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
-    let options = match &begun {
-        Some(begun) => options_of(begun, &arguments.columns.rate)?,
+    let request = match &begun {
+        Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
         None => {
             let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
                 .with_context(|| tables[0].file.clone())?;
-            arguments.training.fit_options(rate)
+            arguments.training.request(rate)
         }
     };
+    if arguments.checkpoint.is_some() && matches!(request, Request::Classical(_)) {
+        let model = request.model().name();
+        return Err(Usage(format!("{model} has no checkpoints: only networks have")).into());
+    }
     let data = Data::new(tables, roles, true)?;
     for option in arguments.training.useless() {
-        warning(format_args!("{} has no use for {option}", options.training.name()));
+        warning(format_args!("{} has no use for {option}", arguments.training.trained_by()));
     }
     let work = Work {
-        options: &options,
+        request: &request,
         begun,
         checkpoint: checkpoint.map(PathBuf::as_path),
         threads: arguments.threads,
@@ -112,10 +117,10 @@ fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
     Ok(options)
 }
 
-/// The rate that `--rate` means for these columns and this family.
-fn rate_method(option: &RateOption, roles: &Roles, family: Family) -> Result<Option<RateMethod>> {
+/// The rate that `--rate` means for these columns and this model.
+pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
     Ok(match option {
-        RateOption::Auto => (roles.time.is_some() && family.uses_rate()).then_some(RateMethod::Central),
+        RateOption::Auto => (roles.time.is_some() && model.uses_rate()).then_some(RateMethod::Central),
         RateOption::None => None,
         RateOption::Column(_) => Some(RateMethod::Given),
         RateOption::Method(_) if roles.time.is_none() => {
@@ -145,18 +150,20 @@ struct Printed<'a> {
 
 #[derive(serde::Serialize)]
 struct PrintedArchitecture {
-    family: Family,
+    family: ModelName,
     #[serde(flatten)]
-    parts: Architecture,
+    parts: Option<Architecture>,
 }
 
 fn json(identified: &Identified, out: &Path) -> Result<String> {
     let (model, provenance) = (&identified.model, identified.model.provenance());
-    let architecture = *model.network().architecture();
     let printed = Printed {
         model: out.display().to_string(),
-        architecture: PrintedArchitecture { family: model.family(), parts: architecture },
-        parameters: architecture.parameters(),
+        architecture: PrintedArchitecture {
+            family: model.name(),
+            parts: model.network().map(|network| *network.architecture()),
+        },
+        parameters: model.parameters(),
         train: &provenance.train,
         validation: provenance.validation.as_ref(),
         seconds: identified.seconds,

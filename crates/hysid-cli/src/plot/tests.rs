@@ -2,6 +2,7 @@ use super::*;
 
 fn chart(points: Vec<Point>) -> Chart {
     Chart {
+        labels: Vec::new(),
         description: "a \"test\" & more".into(),
         title: "<script>alert(1)</script>".into(),
         size: (520.0, 360.0),

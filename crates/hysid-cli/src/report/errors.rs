@@ -27,7 +27,7 @@ pub fn verdict(report: &Report) -> String {
         Some(errors) => {
             format!("{} on data held out from it, before it was trained on everything", judged(errors))
         }
-        None if provenance.options.starts == 1 => "unknown on new data, since none were held out".into(),
+        None if provenance.options.starts() == 1 => "unknown on new data, since none were held out".into(),
         None => "unknown on new data, since there were too few to hold any out".into(),
     });
     let unseen = report.sets.iter().filter(|set| set.name != "training");

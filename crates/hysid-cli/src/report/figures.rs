@@ -53,6 +53,13 @@ pub fn loops(set: &ReportSet) -> String {
     loop_chart(set, &shown, (560.0, 400.0), String::new(), LOOP_POINTS)
 }
 
+/// All records of a set in one small chart.
+pub fn small_loops(set: &ReportSet, title: String) -> String {
+    let every = set.data.records().len().div_ceil(MOST_RECORDS).max(1);
+    let shown: Vec<usize> = (0..set.data.records().len()).step_by(every).collect();
+    loop_chart(set, &shown, (400.0, 290.0), title, LOOP_POINTS / 2)
+}
+
 /// Points of a colour in the chart of a single record.
 fn record_points(set: &ReportSet) -> usize {
     (3 * LOOP_POINTS / 2 / set.data.records().len()).min(LOOP_POINTS)
@@ -73,6 +80,7 @@ fn loop_chart(set: &ReportSet, shown: &[usize], size: (f64, f64), title: String,
     let legend = [(Colour::Measured, "measured"), (Colour::Simulated, "model")];
     let of = if title.is_empty() { format!("{} data", set.name) } else { title.clone() };
     Chart {
+        labels: Vec::new(),
         description: format!("Loops of {y} over {x}, measured and simulated: {of}"),
         legend: if title.is_empty() {
             legend.map(|(colour, name)| (colour, name.to_string())).into()
@@ -110,9 +118,13 @@ fn scored_rows(record: &Record) -> std::ops::Range<usize> {
     first.zip(last).map_or(0..record.len(), |(first, last)| first..last + 1)
 }
 
-/// Error against epoch of every start and of what was trained on all data.
+/// Error against epoch of every start and of what was trained on all data; empty for a model that was not
+/// searched for.
 pub fn convergence_section(model: &Model) -> String {
     let provenance = model.provenance();
+    if provenance.runs.is_empty() {
+        return String::new();
+    }
     let is_chosen = |run: &Run| run.phase == Phase::Starts && run.start == provenance.chosen_start;
     let of_chosen = provenance.runs.iter().filter(|run| is_chosen(run));
     let offset = of_chosen.flat_map(|run| run.history.last()).map(|point| point.epoch).max().unwrap_or(0);
@@ -135,6 +147,7 @@ pub fn convergence_section(model: &Model) -> String {
     }
     curves.sort_by_key(|curve| curve.colour != Colour::Faint);
     let chart = Chart {
+        labels: Vec::new(),
         description: "Training error against epoch".into(),
         title: String::new(),
         size: (860.0, 300.0),
@@ -144,7 +157,7 @@ pub fn convergence_section(model: &Model) -> String {
             curves.iter().flat_map(|curve| &curve.points).map(|point| point.1),
         ),
         curves,
-        legend: convergence_legend(&provenance.runs, provenance.options.starts),
+        legend: convergence_legend(&provenance.runs, provenance.options.starts()),
     };
     section("Convergence", &(figure(&chart.svg(), true) + &note(&convergence_words(provenance))))
 }
@@ -160,7 +173,7 @@ fn convergence_legend(runs: &[Run], starts: usize) -> Vec<(Colour, String)> {
         legend.push(match run.method {
             Method::Genetic => (Colour::Input, format!("{after}: genetic algorithm")),
             Method::Subgradient => (Colour::Error, "sub-gradient method".to_string()),
-            Method::LevenbergMarquardt => (Colour::Error, after.to_string()),
+            Method::LevenbergMarquardt | Method::LeastSquares => (Colour::Error, after.to_string()),
         });
     }
     legend
@@ -170,7 +183,7 @@ fn convergence_words(provenance: &Provenance) -> String {
     let best = if provenance.validation.is_some() { "on what was held out" } else { "there" };
     let on_all_data = provenance.runs.iter().filter(|run| run.phase == Phase::AllData);
     let refitted = on_all_data.clone().next().is_some();
-    let mut words = match provenance.options.starts {
+    let mut words = match provenance.options.starts() {
         1 => String::new(),
         starts => format!(
             "{} on the training part; number {} did best {best}{}. ",
@@ -181,7 +194,7 @@ fn convergence_words(provenance: &Provenance) -> String {
     };
     for run in on_all_data {
         let what = match run.method {
-            Method::LevenbergMarquardt => continue,
+            Method::LevenbergMarquardt | Method::LeastSquares => continue,
             Method::Genetic => "Genetic algorithm",
             Method::Subgradient => "Sub-gradient method with space dilatation",
         };

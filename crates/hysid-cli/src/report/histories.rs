@@ -112,6 +112,7 @@ impl Panel<'_> {
         let curves: Vec<Curve> = lines.iter().map(curve).collect();
         let ordinates = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
         let chart = Chart {
+            labels: Vec::new(),
             description: format!("{label} over {}, record {}", self.time_label, self.record),
             title: String::new(),
             size: (860.0, height),

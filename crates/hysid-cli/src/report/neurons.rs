@@ -1,8 +1,9 @@
 //! The neurons: thresholds, capacities, relaxation times, output weights.
 
-use hysid::network::Layout;
+use hysid::network::{Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid::record::Record;
+use hysid::scaling::Scaling;
 
 use super::{Report, unit};
 use crate::page::{count, figure, note, number, section as section_of, table};
@@ -39,10 +40,13 @@ impl Stop {
     }
 }
 
-/// The section on the neurons.
+/// The section on the neurons; empty for a model that has none.
 pub fn section(report: &Report) -> String {
+    if report.model.network().is_none() {
+        return String::new();
+    }
     let stops = stops(report);
-    let a = report.model.network().architecture();
+    let a = network(report).architecture();
     let kinds = [(a.stops, "stop"), (a.relaxation_neurons(), "relaxation neuron"), (a.hidden, "tanh neuron")];
     let kinds: Vec<String> =
         kinds.into_iter().filter(|&(n, _)| n > 0).map(|(n, kind)| count(n, kind)).collect();
@@ -58,9 +62,17 @@ pub fn section(report: &Report) -> String {
     section_of("The neurons", &content.concat())
 }
 
+fn network<'a>(report: &'a Report) -> &'a Network {
+    report.model.network().expect("the section is on networks")
+}
+
+fn scaling<'a>(report: &'a Report) -> &'a Scaling {
+    report.model.scaling().expect("a network has a scaling")
+}
+
 /// All stops, the smallest threshold first.
 fn stops(report: &Report) -> Vec<Stop> {
-    let network = report.model.network();
+    let network = network(report);
     let (a, parameters) = (network.architecture(), network.parameters());
     let layout = Layout::new(*a);
     let betas = &parameters[layout.ln_beta.clone()];
@@ -69,7 +81,7 @@ fn stops(report: &Report) -> Vec<Stop> {
         .enumerate()
         .map(|(j, weights)| Stop {
             number: j + 1,
-            threshold: report.model.scaling().inputs[0] / weights[0].abs(),
+            threshold: scaling(report).inputs[0] / weights[0].abs(),
             weights: weights.to_vec(),
             beta: betas.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp()),
         })
@@ -80,7 +92,7 @@ fn stops(report: &Report) -> Vec<Stop> {
 
 fn stop_table(report: &Report, stops: &[Stop]) -> String {
     let names = report.model.names();
-    let a = report.model.network().architecture();
+    let a = network(report).architecture();
     let channels = a.channels().min(MOST_CHANNELS);
     let mut headings = vec!["stop".to_string(), format!("threshold of {}", unit::label(&names.inputs[0]))];
     headings.extend((0..channels).map(|channel| format!("weight of {}", channel_name(report, channel))));
@@ -115,10 +127,10 @@ fn stop_note(report: &Report, stops: &[Stop]) -> String {
          (twice that after a reversal). Weights are of inputs scaled to 1 at their largest. A stop that never \
          slips within the trained range has no memory of its own.",
     );
-    if report.model.network().architecture().rate {
+    if network(report).architecture().rate {
         text += " The rate pushes it too, by its weight; the threshold is that of a slow input.";
     }
-    if report.model.network().architecture().deterioration {
+    if network(report).architecture().deterioration {
         text += " Having slid β times its threshold, a stop has lost its strength; ∞ stands for never. Strength \
                  left is that at the end of the longest record of the first set.";
     }
@@ -130,7 +142,7 @@ fn stop_note(report: &Report, stops: &[Stop]) -> String {
 
 fn channel_name(report: &Report, channel: usize) -> String {
     let names = report.model.names();
-    match (channel, report.model.network().architecture().rate) {
+    match (channel, network(report).architecture().rate) {
         (1, true) => "the rate".into(),
         (channel, rate) => unit::split(&names.inputs[channel - usize::from(rate && channel > 0)]).0,
     }
@@ -140,7 +152,7 @@ fn channel_name(report: &Report, channel: usize) -> String {
 fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
     let longest: &Record = report.sets.first()?.data.records().iter().max_by_key(|record| record.len())?;
     let model = report.model;
-    let drive = model.scaling().drive(longest, model.network().architecture(), model.rate()).ok()?;
+    let drive = scaling(report).drive(longest, network(report).architecture(), model.rate()).ok()?;
     let left = |stop: &Stop| {
         let mut element = DeterioratingStop::new(1.0, stop.beta).ok()?;
         for row in 0..longest.len() {
@@ -155,7 +167,7 @@ fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
 /// Thresholds on a logarithmic axis, beside the range of the input.
 fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
     let input = &report.model.names().inputs[0];
-    let largest = report.model.scaling().inputs[0];
+    let largest = scaling(report).inputs[0];
     let shown = |stop: &Stop| stop.threshold.clamp(1e-4 * largest, 1e4 * largest);
     let top = stops.len() as f64 + 0.5;
     let mut curves =
@@ -167,6 +179,7 @@ fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
     }));
     let thresholds = stops.iter().map(shown).chain([largest]);
     let chart = Chart {
+        labels: Vec::new(),
         description: format!("Thresholds of the {} stops", stops.len()),
         title: String::new(),
         size: (860.0, 240.0),
@@ -183,7 +196,7 @@ fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
 }
 
 fn relaxation_table(report: &Report) -> String {
-    let network = report.model.network();
+    let network = network(report);
     let a = network.architecture();
     if a.relaxation == 0 {
         return String::new();
@@ -207,8 +220,8 @@ fn relaxation_table(report: &Report) -> String {
 
 /// The output weights that count most.
 fn output_table(report: &Report) -> String {
-    let network = report.model.network();
-    let deviation = report.model.scaling().output_deviation;
+    let network = network(report);
+    let deviation = scaling(report).output_deviation;
     let names = output_names(report);
     let mut weights: Vec<(String, f64)> =
         names.into_iter().zip(network.output().iter().map(|weight| weight * deviation)).collect();
@@ -229,7 +242,7 @@ fn output_table(report: &Report) -> String {
 
 /// What each output weight multiplies, in order.
 fn output_names(report: &Report) -> Vec<String> {
-    let a = report.model.network().architecture();
+    let a = network(report).architecture();
     let mut names: Vec<String> = a.constant.then(|| "constant".to_string()).into_iter().collect();
     names.extend((1..=a.hidden).map(|i| format!("tanh neuron {i}")));
     if a.output_weights() > names.len() {

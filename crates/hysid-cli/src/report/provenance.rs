@@ -1,6 +1,9 @@
 //! What was understood of the data, warnings, and how the model came about.
 
+use hysid::classical::identification::ClassicalOptions;
+use hysid::identification::Request;
 use hysid::rate::RateMethod;
+use hysid::training::FitOptions;
 
 use super::Report;
 use crate::page::{count, definitions, number, section as section_of};
@@ -27,8 +30,6 @@ pub fn warnings(report: &Report) -> String {
 /// Options and provenance.
 pub fn section(report: &Report) -> String {
     let provenance = report.model.provenance();
-    let options = &provenance.options;
-    let a = report.model.network().architecture();
     let rate = match report.model.rate() {
         None => "none",
         Some(RateMethod::Given) => "a column",
@@ -36,6 +37,29 @@ pub fn section(report: &Report) -> String {
         Some(RateMethod::Backward) => "backward differences",
         Some(RateMethod::SavitzkyGolay) => "Savitzky-Golay",
     };
+    let mut pairs = match &provenance.options {
+        Request::Network(options) => of_network(report, options),
+        Request::Classical(options) => of_rival(options),
+    };
+    let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
+    say("Rate", rate.into());
+    say(
+        "Trained on",
+        format!("{} in {}", count(provenance.samples, "sample"), count(provenance.records, "record")),
+    );
+    say("Ended", provenance.termination.to_string());
+    say("Time taken", format!("{} s", number(report.seconds, 3)));
+    say("Model file", report.model_file.clone());
+    say("Version", format!("hysid {}", env!("CARGO_PKG_VERSION")));
+    section_of("Options and provenance", &definitions(&pairs))
+}
+
+fn pair(name: &str, value: impl Into<String>) -> (String, String) {
+    (name.to_string(), value.into())
+}
+
+fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
+    let provenance = report.model.provenance();
     let held_out = match &provenance.validation {
         Some(errors) => format!(
             "{} % asked for: {}",
@@ -45,13 +69,6 @@ pub fn section(report: &Report) -> String {
         None if options.starts == 1 => "nothing: there was but one start".into(),
         None => "nothing: too few data".into(),
     };
-    let mut sizes = count(a.stops, "stop");
-    if a.hidden > 0 {
-        sizes += &format!(", {}", count(a.hidden, "tanh neuron"));
-    }
-    if a.relaxation > 0 {
-        sizes += &format!(", {} of each input", count(a.relaxation, "relaxation neuron"));
-    }
     let (starts, epochs) = match options.starts {
         1 => ("1".into(), format!("at most {}", options.epochs)),
         starts => (
@@ -59,27 +76,35 @@ pub fn section(report: &Report) -> String {
             format!("at most {} of each start, and again on all data", options.epochs),
         ),
     };
-    let pair = |name: &str, value: String| (name.to_string(), value);
-    let mut pairs = vec![
-        pair("Model", format!("{} ({sizes})", report.model.family().name())),
-        pair("Deterioration", if a.deterioration { "yes".into() } else { "no".into() }),
-        pair("Rate", rate.into()),
-        pair("Training", options.training.name().into()),
-        pair("Starts", starts),
-        pair("Epochs", epochs),
-        pair("Seed", options.seed.to_string()),
-        pair("Held out", held_out),
-        pair(
-            "Trained on",
-            format!("{} in {}", count(provenance.samples, "sample"), count(provenance.records, "record")),
-        ),
-        pair("Ended", provenance.termination.to_string()),
-        pair("Time taken", format!("{} s", number(report.seconds, 3))),
-        pair("Model file", report.model_file.clone()),
-        pair("Version", format!("hysid {}", env!("CARGO_PKG_VERSION"))),
-    ];
-    if options.training.is_genetic() {
-        pairs.insert(6, pair("Population", options.population.to_string()));
+    let mut pairs = Vec::new();
+    if let Some(network) = report.model.network() {
+        let a = network.architecture();
+        let mut sizes = count(a.stops, "stop");
+        if a.hidden > 0 {
+            sizes += &format!(", {}", count(a.hidden, "tanh neuron"));
+        }
+        if a.relaxation > 0 {
+            sizes += &format!(", {} of each input", count(a.relaxation, "relaxation neuron"));
+        }
+        pairs.push(pair("Model", format!("{} ({sizes})", options.model.name())));
+        pairs.push(pair("Deterioration", if a.deterioration { "yes" } else { "no" }));
     }
-    section_of("Options and provenance", &definitions(&pairs))
+    pairs.push(pair("Training", options.training.name()));
+    pairs.push(pair("Starts", starts));
+    pairs.push(pair("Epochs", epochs));
+    if options.training.is_genetic() {
+        pairs.push(pair("Population", options.population.to_string()));
+    }
+    pairs.push(pair("Seed", options.seed.to_string()));
+    pairs.push(pair("Held out", held_out));
+    pairs
+}
+
+fn of_rival(options: &ClassicalOptions) -> Vec<(String, String)> {
+    let training = if options.model.is_searched() { "multi-start search" } else { "linear least squares" };
+    vec![
+        pair("Model", options.model.name()),
+        pair("Training", training),
+        pair("Seed", options.seed.to_string()),
+    ]
 }

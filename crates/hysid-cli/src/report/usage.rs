@@ -50,7 +50,7 @@ fn limits(report: &Report) -> String {
             "It knows no time: the same input path gives the same output, however fast it is run.".into(),
         );
     }
-    if report.model.network().architecture().deterioration {
+    if report.model.network().is_some_and(|network| network.architecture().deterioration) {
         items.push(
             "It wears out by sliding: a history longer or harsher than the training records wears it further \
              than anything measured vouches for."

@@ -6,9 +6,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::classical::Classical;
 use crate::error::{Error, Result};
-use crate::model::{Model, Provenance, TrainedRanges};
-use crate::network::{Architecture, Family, Layout, Network};
+use crate::identification::ModelName;
+use crate::model::{Body, Model, Provenance, TrainedRanges};
+use crate::network::{Architecture, Layout, Network};
 use crate::rate::RateMethod;
 use crate::record::ColumnNames;
 use crate::scaling::Scaling;
@@ -26,17 +28,27 @@ struct File {
     format: String,
     version: u64,
     written_by: String,
-    model: Family,
+    model: ModelName,
     columns: ColumnNames,
     units: Units,
     rate: Option<RateMethod>,
     trained_ranges: TrainedRanges,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    network: Option<NetworkParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<Classical>,
+    training: Provenance,
+    checksum: String,
+}
+
+/// A network and its scaling.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NetworkParts {
     scaling: Scaling,
     architecture: Architecture,
     memory: Memory,
     readout: Readout,
-    training: Provenance,
-    checksum: String,
 }
 
 /// Units, as far as the names of the columns tell them: for the reader, the names decide.
@@ -93,38 +105,69 @@ fn checksum(text: &str) -> Option<u32> {
     Some(crc32fast::hash(&content))
 }
 
+impl NetworkParts {
+    fn of(network: &Network, scaling: &Scaling) -> Self {
+        let architecture = *network.architecture();
+        let layout = Layout::new(architecture);
+        let parameters = network.parameters();
+        let ln_beta = &parameters[layout.ln_beta];
+        let stop = |(j, weights): (usize, &[f64])| Stop {
+            weights: weights.to_vec(),
+            ln_beta: ln_beta.get(j).copied(),
+        };
+        let stops = parameters[layout.stop_weights].chunks_exact(architecture.channels());
+        let run = 1 + architecture.memory_neurons();
+        Self {
+            scaling: scaling.clone(),
+            architecture,
+            memory: Memory {
+                stops: stops.enumerate().map(stop).collect(),
+                linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
+                relaxation_ln_tau: parameters[layout.ln_tau].to_vec(),
+            },
+            readout: Readout {
+                hidden: parameters[layout.hidden].chunks_exact(run).map(<[f64]>::to_vec).collect(),
+                output: network.output().to_vec(),
+            },
+        }
+    }
+
+    /// The network, if its parts agree with each other.
+    fn network(&self) -> Result<Network> {
+        self.architecture.check()?;
+        let (channels, run) = (self.architecture.channels(), 1 + self.architecture.memory_neurons());
+        if self.memory.stops.iter().any(|stop| stop.weights.len() != channels) {
+            return Err(Error::Option(format!("not every stop has {channels} weights")));
+        }
+        if self.readout.hidden.iter().any(|neuron| neuron.len() != run) {
+            return Err(Error::Option(format!("not every hidden neuron has {run} weights")));
+        }
+        let mut parameters = Vec::with_capacity(Layout::new(self.architecture).len());
+        parameters.extend(self.memory.stops.iter().flat_map(|stop| &stop.weights));
+        parameters.extend(self.memory.stops.iter().filter_map(|stop| stop.ln_beta));
+        parameters.extend(self.memory.linear.iter().flatten());
+        parameters.extend(&self.memory.relaxation_ln_tau);
+        parameters.extend(self.readout.hidden.iter().flatten());
+        Network::new(self.architecture, parameters, self.readout.output.clone())
+    }
+}
+
 pub(super) fn write(model: &Model) -> String {
-    let architecture = *model.network.architecture();
-    let layout = Layout::new(architecture);
-    let parameters = model.network.parameters();
-    let ln_beta = &parameters[layout.ln_beta];
-    let stop =
-        |(j, weights): (usize, &[f64])| Stop { weights: weights.to_vec(), ln_beta: ln_beta.get(j).copied() };
-    let run = 1 + architecture.memory_neurons();
+    let (network, law) = match &model.body {
+        Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None),
+        Body::Law(law) => (None, Some(law.clone())),
+    };
     let file = File {
         format: FORMAT.into(),
         version: FORMAT_VERSION,
         written_by: format!("hysid {}", env!("CARGO_PKG_VERSION")),
-        model: model.family,
+        model: model.name(),
         columns: model.names.clone(),
         units: Units::of(&model.names),
         rate: model.rate,
         trained_ranges: model.trained.clone(),
-        scaling: model.scaling.clone(),
-        architecture,
-        memory: Memory {
-            stops: parameters[layout.stop_weights]
-                .chunks_exact(architecture.channels())
-                .enumerate()
-                .map(stop)
-                .collect(),
-            linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
-            relaxation_ln_tau: parameters[layout.ln_tau].to_vec(),
-        },
-        readout: Readout {
-            hidden: parameters[layout.hidden].chunks_exact(run).map(<[f64]>::to_vec).collect(),
-            output: model.network.output().to_vec(),
-        },
+        network,
+        law,
         training: model.provenance.clone(),
         checksum: "00000000".into(),
     };
@@ -189,43 +232,46 @@ pub(super) fn read(text: &str) -> Result<Model> {
 
 /// A file of any earlier version in the layout of the present one.
 fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
-    // Version 1 named the trainer beside the options and had but one.
     if value["version"] == 1
-        && let Some(training) = value["training"].as_object_mut()
+        && let Some(file) = value.as_object_mut()
     {
-        training.remove("trainer");
+        // Version 1 knew networks only, and had their parts side by side.
+        let parts = ["scaling", "architecture", "memory", "readout"];
+        let parts: serde_json::Map<_, _> =
+            parts.into_iter().filter_map(|part| Some((part.to_string(), file.remove(part)?))).collect();
+        file.insert("network".into(), parts.into());
+        // It named the trainer beside the options and had but one.
+        if let Some(training) = file.get_mut("training").and_then(serde_json::Value::as_object_mut) {
+            training.remove("trainer");
+        }
     }
     value
 }
 
 fn assemble(file: File) -> Result<Model> {
-    file.architecture.check()?;
-    let (channels, run) = (file.architecture.channels(), 1 + file.architecture.memory_neurons());
-    if file.memory.stops.iter().any(|stop| stop.weights.len() != channels) {
-        return Err(Error::Option(format!("not every stop has {channels} weights")));
-    }
-    if file.readout.hidden.iter().any(|neuron| neuron.len() != run) {
-        return Err(Error::Option(format!("not every hidden neuron has {run} weights")));
-    }
-    let layout = Layout::new(file.architecture);
-    let mut parameters = Vec::with_capacity(layout.len());
-    parameters.extend(file.memory.stops.iter().flat_map(|stop| &stop.weights));
-    parameters.extend(file.memory.stops.iter().filter_map(|stop| stop.ln_beta));
-    parameters.extend(file.memory.linear.iter().flatten());
-    parameters.extend(&file.memory.relaxation_ln_tau);
-    parameters.extend(file.readout.hidden.iter().flatten());
-    let inputs = file.architecture.inputs;
-    if [file.scaling.inputs.len(), file.columns.inputs.len(), file.trained_ranges.inputs.len()] != [inputs; 3]
-    {
+    let body = match (file.network, file.law) {
+        (Some(parts), None) => Body::Network { network: parts.network()?, scaling: parts.scaling },
+        (None, Some(law)) => Body::Law(law),
+        _ => return Err(Error::Option("it must have either a network or a law".into())),
+    };
+    let inputs = match &body {
+        Body::Network { network, .. } => network.architecture().inputs,
+        Body::Law(_) => 1,
+    };
+    if [body.inputs(), file.columns.inputs.len(), file.trained_ranges.inputs.len()] != [inputs; 3] {
         return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
     }
-    if file.architecture.rate != file.rate.is_some() || file.rate.is_some() != file.scaling.rate.is_some() {
+    if let Body::Network { network, scaling } = &body
+        && (network.architecture().rate != file.rate.is_some()
+            || file.rate.is_some() != scaling.rate.is_some())
+    {
         return Err(Error::Option("it has a rate in some places only".into()));
     }
+    if file.model != file.training.options.model() {
+        return Err(Error::Option("it names two different models".into()));
+    }
     Ok(Model {
-        family: file.model,
-        network: Network::new(file.architecture, parameters, file.readout.output)?,
-        scaling: file.scaling,
+        body,
         rate: file.rate,
         names: file.columns,
         trained: file.trained_ranges,

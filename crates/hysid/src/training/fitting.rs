@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::free_run::FreeRun;
+use crate::identification::Request;
 use crate::metrics::Errors;
-use crate::model::{Model, Provenance};
+use crate::model::{Body, Model, Provenance};
 use crate::network::{Architecture, Network};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
@@ -120,9 +121,10 @@ impl<'a> Fitting<'a> {
             runs: outcome.runs,
             train: FreeRun::new(&outcome.network, &scaling, options.rate).errors(data)?,
             validation: outcome.validation,
-            options: options.clone(),
+            options: Request::Network(options.clone()),
         };
-        let model = Model::new(options.model, outcome.network, scaling, options.rate, data, provenance)?;
+        let body = Body::Network { network: outcome.network, scaling };
+        let model = Model::new(body, options.rate, data, provenance)?;
         Ok(Fit { model, evaluations })
     }
 
@@ -278,7 +280,7 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            snapshot: Snapshot { options: &self.options, data: self.checksum, state: &self.state },
+            snapshot: Some(Snapshot { options: &self.options, data: self.checksum, state: &self.state }),
         };
         self.stopped = observer(&progress).is_break();
     }

@@ -34,6 +34,8 @@ pub enum Method {
     Genetic,
     /// The sub-gradient method with space dilatation; an epoch is an outer iteration.
     Subgradient,
+    /// Multi-start least squares of a classical model; an epoch is a round of all its starts.
+    LeastSquares,
 }
 
 impl Trainer {

@@ -221,6 +221,7 @@ fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> String {
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let label = if abscissa == Abscissa::Epochs { "epoch" } else { "time (s)" };
     Chart {
+        labels: Vec::new(),
         description: format!("Training error against {label}, one line for each trainer and seed"),
         title: String::new(),
         size: (860.0, 360.0),

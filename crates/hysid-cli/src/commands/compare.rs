@@ -1,0 +1,73 @@
+//! `hysid compare`: every model on the same data.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use hysid::identification::{ModelName, Request};
+
+use crate::Outcome;
+use crate::arguments::Compare;
+use crate::columns::Roles;
+use crate::commands::fit::rate_method;
+use crate::comparison::{self, Data as Compared};
+use crate::data::{Data, read_tables};
+use crate::identification::check_outputs;
+use crate::messages::{note, results};
+use crate::{files, interrupt};
+
+/// Runs the command.
+pub fn run(arguments: &Compare) -> Result<Outcome> {
+    let page = (!arguments.no_report).then(|| page_path(arguments));
+    let tables = read_tables(&arguments.train)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let test = match &arguments.test {
+        Some(test) => {
+            let unseen = read_tables(std::slice::from_ref(test))?;
+            roles.check_against(&unseen[0], &tables[0])?;
+            Some(Data::new(unseen, roles.clone(), true)?)
+        }
+        None => None,
+    };
+    let inputs: Vec<&Path> = arguments.train.iter().chain(&arguments.test).map(PathBuf::as_path).collect();
+    let outputs: Vec<&Path> = page.iter().map(PathBuf::as_path).collect();
+    check_outputs(&outputs, &inputs)?;
+    let models: Vec<ModelName> =
+        if arguments.models.is_empty() { ModelName::all().collect() } else { arguments.models.clone() };
+    let requests: Result<Vec<Request>> = models
+        .iter()
+        .map(|&model| {
+            let rate = rate_method(&arguments.columns.rate, &roles, model)
+                .with_context(|| tables[0].file.clone())?;
+            Ok(Request::of(model, rate, arguments.seed))
+        })
+        .collect();
+    let requests = requests?;
+    let train = Data::new(tables, roles, true)?;
+
+    interrupt::listen("stopping; what is finished is compared")?;
+    let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
+    if let Some(page) = &page {
+        let title = format!("Models compared: {}", train.source.tables[0].file);
+        files::write(
+            page,
+            comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?.as_bytes(),
+        )?;
+    }
+    results(&match arguments.json {
+        true => comparison::json(&rows)?,
+        false => comparison::table(&rows, test.is_some()),
+    })?;
+    if let Some(page) = &page {
+        note(format_args!("page    {}", files::shown(page)));
+    }
+    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// The page: as asked, or the first table's name in the present folder.
+fn page_path(arguments: &Compare) -> PathBuf {
+    arguments.out.clone().unwrap_or_else(|| {
+        let mut name = arguments.train[0].file_stem().unwrap_or("data".as_ref()).to_os_string();
+        name.push("-compared.html");
+        PathBuf::from(name)
+    })
+}

@@ -1,0 +1,245 @@
+//! Models side by side: each is fitted to the same data, and judged on data that none has seen.
+
+mod page;
+
+use std::collections::VecDeque;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use hysid::identification::{ModelName, Request, identify};
+use hysid::metrics::Errors;
+use hysid::model::Model;
+use hysid::record::Dataset;
+use hysid::training::Termination;
+use hysid::warning::Significant;
+
+use crate::arguments::Compare;
+use crate::data::Data as Read;
+use crate::interrupt;
+use crate::messages::note;
+pub use page::page;
+
+/// A simulation is timed over at least this time.
+const TIMED: Duration = Duration::from_millis(30);
+
+/// The data of a comparison.
+pub struct Data<'a> {
+    /// What all are fitted to.
+    pub train: &'a Read,
+    /// What none has seen.
+    pub test: Option<&'a Read>,
+}
+
+/// A model and what became of it.
+pub struct Row {
+    /// Which model.
+    pub model: ModelName,
+    /// The model, or why there is none.
+    pub outcome: Result<Fitted, String>,
+}
+
+/// A fitted model and its errors.
+pub struct Fitted {
+    /// The model.
+    pub model: Model,
+    /// Errors on the training data.
+    pub train: Errors,
+    /// Errors on the test data, if there are any.
+    pub test: Option<Errors>,
+    /// Seconds on one thread.
+    pub fit_seconds: f64,
+    /// Nanoseconds for a sample of a free run, on one thread.
+    pub simulate_ns_per_sample: f64,
+}
+
+impl Fitted {
+    /// Error on unseen data; on the training data if there are no others.
+    fn judged(&self) -> &Errors {
+        self.test.as_ref().unwrap_or(&self.train)
+    }
+}
+
+/// Fits every model, several at a time, each on one thread and under its time limit; the lowest error on
+/// unseen data comes first.
+pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec<Row>> {
+    let workers = match arguments.threads {
+        Some(threads) => threads.into(),
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    };
+    let queue: Mutex<VecDeque<&Request>> = Mutex::new(requests.iter().collect());
+    let finished: Mutex<Vec<Row>> = Mutex::new(Vec::new());
+    std::thread::scope(|scope| -> Result<()> {
+        let work = || -> Result<()> {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let pool = pool.context("cannot start a thread")?;
+            loop {
+                let next = queue.lock().expect("no thread panics with the lock").pop_front();
+                let Some(request) = next else { return Ok(()) };
+                let row = pool.install(|| row(data, request, arguments.time_limit));
+                let mut finished = finished.lock().expect("no thread panics with the lock");
+                finished.push(row);
+                say(finished.last().expect("one was added"), finished.len(), requests.len());
+            }
+        };
+        let workers: Vec<_> = (0..workers.min(requests.len()).max(1)).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().expect("a worker does not panic"))
+    })?;
+    let mut rows = finished.into_inner().expect("all threads are done");
+    for row in &mut rows {
+        if let Ok(fitted) = &mut row.outcome {
+            fitted.simulate_ns_per_sample = simulate_ns(&fitted.model, &data.train.set)?;
+        }
+    }
+    rows.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    Ok(rows)
+}
+
+/// What rows are sorted by; those without a model come last.
+fn error(row: &Row) -> f64 {
+    let fitted = row.outcome.as_ref().ok();
+    fitted.and_then(|fitted| fitted.judged().nrmse_std_percent).unwrap_or(f64::INFINITY)
+}
+
+fn row(data: &Data, request: &Request, time_limit: f64) -> Row {
+    let model = request.model();
+    if interrupt::requested() {
+        return Row { model, outcome: Err("interrupted".into()) };
+    }
+    if let Some(hindrance) = model.hindrance(&data.train.set, request.rate()) {
+        return Row { model, outcome: Err(hindrance) };
+    }
+    let outcome = fitted(data, request, time_limit).map_err(|error| format!("{error:#}"));
+    Row { model, outcome }
+}
+
+fn fitted(data: &Data, request: &Request, time_limit: f64) -> Result<Fitted> {
+    let began = Instant::now();
+    let fit = identify(&data.train.set, request, &mut |_| {
+        let over = began.elapsed().as_secs_f64() >= time_limit || interrupt::requested();
+        if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    let fit = fit.map_err(|error| data.train.explain(error))?;
+    let fit_seconds = began.elapsed().as_secs_f64();
+    let test = data.test.map(|test| fit.model.evaluate(&test.set).map_err(|error| test.explain(error)));
+    Ok(Fitted {
+        train: fit.model.provenance().train.clone(),
+        test: test.transpose()?,
+        model: fit.model,
+        fit_seconds,
+        simulate_ns_per_sample: f64::NAN,
+    })
+}
+
+fn say(row: &Row, done: usize, all: usize) {
+    let name = row.model.name();
+    match &row.outcome {
+        Ok(fitted) => {
+            let stopped = match fitted.model.provenance().termination {
+                Termination::Stopped => " (stopped)",
+                _ => "",
+            };
+            let error = percent(fitted.judged());
+            note(format_args!(
+                "{done:>2}/{all} {name:<33} {error:>9} % {:7.1} s{stopped}",
+                fitted.fit_seconds
+            ));
+        }
+        Err(why) => note(format_args!("{done:>2}/{all} {name:<33} {why}")),
+    }
+}
+
+/// Nanoseconds for a sample, over whole free runs.
+fn simulate_ns(model: &Model, data: &Dataset) -> Result<f64> {
+    let began = Instant::now();
+    let mut samples = 0usize;
+    while began.elapsed() < TIMED {
+        for record in data.records() {
+            black_box(model.simulate(black_box(record))?);
+            samples += record.len();
+        }
+    }
+    Ok(1e9 * began.elapsed().as_secs_f64() / samples.max(1) as f64)
+}
+
+fn percent(errors: &Errors) -> String {
+    errors.nrmse_std_percent.map_or_else(|| "-".into(), |percent| format!("{:.3}", Significant(percent)))
+}
+
+/// The cells of a fitted model, in the order of [`HEADINGS`].
+fn cells(fitted: &Fitted) -> [String; 5] {
+    [
+        fitted.test.as_ref().map_or_else(String::new, percent),
+        percent(&fitted.train),
+        fitted.model.parameters().to_string(),
+        format!("{:.2}", Significant(fitted.fit_seconds)),
+        format!("{:.2}", Significant(fitted.simulate_ns_per_sample)),
+    ]
+}
+
+const HEADINGS: [&str; 6] = ["model", "unseen %", "train %", "parameters", "fit s", "ns/sample"];
+
+/// The comparison as plain text in 80 columns.
+pub fn table(rows: &[Row], tested: bool) -> String {
+    let line = |cells: [&str; 6]| {
+        let [model, test, train, parameters, fit, simulate] = cells;
+        let test = if tested { format!("{test:>9}") } else { String::new() };
+        format!("{model:<33}{test}{train:>8}{parameters:>11}{fit:>7}{simulate:>10}\n")
+    };
+    let mut text = line(HEADINGS);
+    for row in rows {
+        match &row.outcome {
+            Ok(fitted) => {
+                let [test, train, parameters, fit, simulate] = cells(fitted);
+                text += &line([row.model.name(), &test, &train, &parameters, &fit, &simulate]);
+            }
+            Err(why) => text += &format!("{:<33} {why}\n", row.model.name()),
+        }
+    }
+    let data =
+        if tested { "data that no model has seen" } else { "the training data: name others with --test" };
+    text + &format!(
+        "\nErrors are NRMSE in % of the output's standard deviation, of free runs;\nsorted by that on {data}.\nFits ran on one thread each.\n"
+    )
+}
+
+/// A row of `--json`.
+#[derive(serde::Serialize)]
+#[serde(untagged)]
+enum Printed<'a> {
+    Fitted {
+        model: &'static str,
+        parameters: usize,
+        train: &'a Errors,
+        test: Option<&'a Errors>,
+        fit_seconds: f64,
+        simulate_ns_per_sample: f64,
+        termination: Termination,
+    },
+    Failed {
+        model: &'static str,
+        error: &'a str,
+    },
+}
+
+/// The comparison as a list of JSON objects.
+pub fn json(rows: &[Row]) -> Result<String> {
+    let printed: Vec<Printed> = rows
+        .iter()
+        .map(|row| match &row.outcome {
+            Ok(fitted) => Printed::Fitted {
+                model: row.model.name(),
+                parameters: fitted.model.parameters(),
+                train: &fitted.train,
+                test: fitted.test.as_ref(),
+                fit_seconds: fitted.fit_seconds,
+                simulate_ns_per_sample: fitted.simulate_ns_per_sample,
+                termination: fitted.model.provenance().termination,
+            },
+            Err(error) => Printed::Failed { model: row.model.name(), error },
+        })
+        .collect();
+    Ok(serde_json::to_string_pretty(&printed)? + "\n")
+}

@@ -1,0 +1,46 @@
+//! The parameters of a classical law, in the field's symbols and the user's units.
+
+use hysid::classical::Law;
+use hysid::model::Body;
+use hysid::unit::of_column;
+
+use super::Report;
+use crate::page::{count, note, number, section as section_of, table};
+
+/// Most rows of the table.
+const MOST_ROWS: usize = 60;
+
+/// The section on the parameters; empty for a network, whose neurons are shown.
+pub fn section(report: &Report) -> String {
+    let Body::Law(law) = report.model.body() else { return String::new() };
+    let names = report.model.names();
+    let input = of_column(&names.inputs[0]);
+    let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
+    let parameters = law.parameters();
+    let bound = |value: f64| match value.abs() >= 1e50 {
+        true if value < 0.0 => "−∞".to_string(),
+        true => "∞".to_string(),
+        false => number(value, 3),
+    };
+    let rows: Vec<Vec<String>> = parameters
+        .iter()
+        .take(MOST_ROWS)
+        .map(|parameter| {
+            let (low, high) = parameter.bounds;
+            vec![
+                parameter.symbol.clone(),
+                number(parameter.value, 5),
+                parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref()),
+                parameter.meaning.to_string(),
+                format!("{} to {}", bound(low), bound(high)),
+            ]
+        })
+        .collect();
+    let headings = ["parameter", "value", "unit", "meaning", "bounds"].map(String::from);
+    let mut content = table(&headings, &rows);
+    if parameters.len() > rows.len() {
+        let more = count(parameters.len() - rows.len(), "more parameter");
+        content += &note(&format!("{more} are in the model file."));
+    }
+    section_of("Parameters", &content)
+}

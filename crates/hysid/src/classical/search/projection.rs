@@ -1,0 +1,158 @@
+//! Weights of features by least squares, some of them not negative: theory.md (8.1).
+
+use crate::linear_algebra::{Symmetric, dot};
+
+/// Ridge, as a share of each feature's own square: it only makes collinear features solvable.
+const RIDGE: f64 = 1e-10;
+
+/// Features of all scored rows, by columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Columns {
+    columns: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    pub fn new(count: usize, rows: usize) -> Self {
+        Self { columns: vec![Vec::with_capacity(rows); count] }
+    }
+
+    /// Appends the features of one more row.
+    pub fn push(&mut self, row: &[f64]) {
+        debug_assert_eq!(row.len(), self.columns.len());
+        for (column, &value) in self.columns.iter_mut().zip(row) {
+            column.push(value);
+        }
+    }
+
+    /// The weights that come closest to `target`.
+    pub fn project(&self, target: &[f64], non_negative: &[bool]) -> Projection {
+        let n = self.columns.len();
+        debug_assert!(self.columns.iter().all(|column| column.len() == target.len()));
+        // Every column to length 1: features in different units are alike to the ridge.
+        let scale: Vec<f64> = self
+            .columns
+            .iter()
+            .map(|column| dot(column, column).sqrt())
+            .map(|length| if length.is_finite() && length > 1e-150 { 1.0 / length } else { 0.0 })
+            .collect();
+        let gram = Symmetric::from_fn(n, |i, j| {
+            let product = scale[i] * scale[j] * dot(&self.columns[i], &self.columns[j]);
+            product + if i == j { RIDGE } else { 0.0 }
+        });
+        let right: Vec<f64> = (0..n).map(|i| scale[i] * dot(&self.columns[i], target)).collect();
+        let mut weights = non_negative_least_squares(&gram, &right, non_negative);
+        for (weight, scale) in weights.iter_mut().zip(&scale) {
+            *weight *= scale;
+        }
+        let mut residual: Vec<f64> = target.iter().map(|y| -y).collect();
+        for (column, &weight) in self.columns.iter().zip(&weights) {
+            if weight != 0.0 {
+                for (residual, feature) in residual.iter_mut().zip(column) {
+                    *residual += weight * feature;
+                }
+            }
+        }
+        let square_residual = dot(&residual, &residual);
+        // A point at which something overflows is worse than any other.
+        let square_residual = if square_residual.is_finite() { square_residual } else { f64::MAX };
+        Projection { weights, residual, square_residual }
+    }
+}
+
+/// Features with their best weights.
+#[derive(Debug, Clone)]
+pub(crate) struct Projection {
+    pub weights: Vec<f64>,
+    /// Model less target.
+    pub residual: Vec<f64>,
+    pub square_residual: f64,
+}
+
+/// Minimises `wᵀG w - 2 bᵀw` with `w_i ≥ 0` where asked for, by the active-set method of Lawson and
+/// Hanson on the normal equations; weights without a sign are in the set from the beginning.
+fn non_negative_least_squares(gram: &Symmetric, right: &[f64], non_negative: &[bool]) -> Vec<f64> {
+    let n = right.len();
+    let mut free: Vec<bool> = non_negative.iter().map(|sign| !sign).collect();
+    let mut weights = solve(gram, right, &free);
+    let tolerance = 1e-12 * right.iter().fold(0.0, |largest: f64, b| largest.max(b.abs()));
+    // Each round frees one weight; more rounds than this are circles of rounding.
+    for _ in 0..3 * n {
+        let slope = |i: usize| right[i] - (0..n).map(|j| gram.at(i, j) * weights[j]).sum::<f64>();
+        let steepest = (0..n)
+            .filter(|&i| !free[i])
+            .map(|i| (i, slope(i)))
+            .filter(|(_, slope)| *slope > tolerance)
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((entering, _)) = steepest else { break };
+        free[entering] = true;
+        loop {
+            let wanted = solve(gram, right, &free);
+            // As far as possible towards what is wanted before a sign changes.
+            let blocking = (0..n)
+                .filter(|&i| free[i] && non_negative[i] && wanted[i] <= 0.0)
+                .map(|i| (i, weights[i] / (weights[i] - wanted[i])))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((leaving, share)) = blocking else {
+                weights = wanted;
+                break;
+            };
+            let share = if share.is_finite() { share } else { 0.0 };
+            for (weight, wanted) in weights.iter_mut().zip(&wanted) {
+                *weight += share * (wanted - *weight);
+            }
+            free[leaving] = false;
+            weights[leaving] = 0.0;
+        }
+    }
+    weights
+}
+
+/// The weights of the free features, the others being 0.
+fn solve(gram: &Symmetric, right: &[f64], free: &[bool]) -> Vec<f64> {
+    let chosen: Vec<usize> = (0..right.len()).filter(|&i| free[i]).collect();
+    let mut weights = vec![0.0; right.len()];
+    let part = Symmetric::from_fn(chosen.len(), |a, b| gram.at(chosen[a], chosen[b]));
+    let mut solution: Vec<f64> = chosen.iter().map(|&i| right[i]).collect();
+    if let Some(factor) = part.cholesky() {
+        factor.solve(&mut solution);
+        for (&i, weight) in chosen.iter().zip(solution) {
+            weights[i] = weight;
+        }
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns(rows: &[[f64; 3]]) -> Columns {
+        let mut columns = Columns::new(3, rows.len());
+        rows.iter().for_each(|row| columns.push(row));
+        columns
+    }
+
+    #[test]
+    fn weights_are_exact_where_they_can_be() {
+        let rows = [[1.0, 0.0, 2.0], [1.0, 1.0, -1.0], [1.0, 4.0, 0.5], [1.0, -2.0, 3.0]];
+        let target: Vec<f64> = rows.iter().map(|row| 2.0 * row[0] + 0.5 * row[1] + 3.0 * row[2]).collect();
+        let found = columns(&rows).project(&target, &[false, true, true]);
+        for (found, expected) in found.weights.iter().zip([2.0, 0.5, 3.0]) {
+            approx::assert_relative_eq!(*found, expected, epsilon = 1e-6);
+        }
+        assert!(found.square_residual < 1e-12);
+    }
+
+    #[test]
+    fn a_weight_that_would_be_negative_is_nought_and_the_others_are_best_without_it() {
+        let rows = [[1.0, 0.0, 2.0], [1.0, 1.0, -1.0], [1.0, 4.0, 0.5], [1.0, -2.0, 3.0]];
+        let target: Vec<f64> = rows.iter().map(|row| 2.0 - 0.5 * row[1] + 3.0 * row[2]).collect();
+        let found = columns(&rows).project(&target, &[false, true, true]);
+        let without = columns(&rows.map(|row| [row[0], 0.0, row[2]])).project(&target, &[false; 3]);
+        assert_eq!(found.weights[1], 0.0);
+        approx::assert_relative_eq!(found.square_residual, without.square_residual, max_relative = 1e-9);
+        // Kuhn and Tucker: the residual falls only if the weight becomes negative.
+        let slope: f64 = rows.iter().zip(&found.residual).map(|(row, r)| row[1] * r).sum();
+        assert!(slope > 0.0);
+    }
+}

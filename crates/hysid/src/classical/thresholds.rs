@@ -1,0 +1,50 @@
+//! Thresholds of banks of operators, and what is asked of parameters in general.
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+
+/// Most operators of a bank.
+const MOST_OPERATORS: usize = 1000;
+
+/// Largest magnitude of a weight, which keeps a free run finite.
+const LARGEST_WEIGHT: f64 = 1e100;
+
+/// `count` thresholds spread over the range of the input, theory.md (7.5): `r_i = X (i/(n+1))^e` for
+/// the largest magnitude `X` of the input.
+///
+/// # Errors
+/// No operator, or more than 1000.
+pub(crate) fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
+    if !(1..=MOST_OPERATORS).contains(&count) {
+        return Err(Error::Option(format!("{count} operators: choose 1 to {MOST_OPERATORS}")));
+    }
+    Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
+}
+
+/// Refuses thresholds that are not positive, finite and rising.
+pub(crate) fn check_thresholds(thresholds: &[f64]) -> Result<()> {
+    let sound = |r: f64| r.is_finite() && r > 0.0;
+    if let Some(r) = thresholds.iter().find(|&&r| !sound(r)) {
+        return Err(Error::Option(format!("threshold {r}: it must be finite and greater than 0")));
+    }
+    match thresholds.windows(2).find(|pair| pair[1] <= pair[0]) {
+        Some(pair) => {
+            Err(Error::Option(format!("threshold {} after {}: thresholds must rise", pair[1], pair[0])))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses weights that are not finite, or so large that an output could overflow.
+pub(crate) fn check_weights(weights: &[f64]) -> Result<()> {
+    match weights.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_WEIGHT) {
+        Some(weight) => Err(Error::Option(format!("weight {weight} is not a usable number"))),
+        None => Ok(()),
+    }
+}
+
+/// An input as a law takes it: one beyond [`LARGEST_VALUE`] is taken as that, so that nothing
+/// overflows.
+#[inline(always)]
+pub(crate) fn limited(x: f64) -> f64 {
+    x.clamp(-LARGEST_VALUE, LARGEST_VALUE)
+}

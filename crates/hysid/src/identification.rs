@@ -1,0 +1,202 @@
+//! Identification of any model by its name: a network of the family, or one of its rivals.
+
+use serde::{Deserialize, Serialize};
+
+use crate::classical::identification::{self as classical, ClassicalOptions, Rival};
+use crate::error::{Error, Result};
+use crate::model::{Body, Model, Provenance};
+use crate::network::Family;
+use crate::rate::RateMethod;
+use crate::record::Dataset;
+use crate::training::random_stops::{RandomStopsOptions, fit_random_stops};
+use crate::training::{
+    self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
+};
+
+/// A model by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ModelName {
+    /// A network of the family.
+    Network(Family),
+    /// Another model.
+    Rival(Rival),
+}
+
+impl ModelName {
+    /// All models, the networks first.
+    pub fn all() -> impl Iterator<Item = ModelName> {
+        Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.into_iter().map(Self::Rival))
+    }
+
+    /// The name on the command line and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Network(family) => family.name(),
+            Self::Rival(rival) => rival.name(),
+        }
+    }
+
+    /// True if the model can make use of the rate of the input.
+    pub fn uses_rate(self) -> bool {
+        match self {
+            Self::Network(family) => family.uses_rate(),
+            Self::Rival(rival) => rival.uses_rate(),
+        }
+    }
+
+    /// True if it takes more than one input.
+    pub fn takes_further_inputs(self) -> bool {
+        match self {
+            Self::Network(family) => family.takes_further_inputs(),
+            Self::Rival(rival) => rival.takes_further_inputs(),
+        }
+    }
+
+    /// Why the model cannot be fitted to data like these, in words; `None` if it can.
+    pub fn hindrance(self, data: &Dataset, rate: Option<RateMethod>) -> Option<String> {
+        let inputs = data.names().inputs.len();
+        if inputs > 1 && !self.takes_further_inputs() {
+            return Some(format!("takes one input, not {inputs}"));
+        }
+        match self {
+            Self::Rival(rival) if rival.needs_rate() && rate.is_none() => {
+                Some("needs the rate of the input: there is no time".into())
+            }
+            _ => None,
+        }
+    }
+}
+
+impl std::str::FromStr for ModelName {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        let known = if name == "epnn" { "xpnn" } else { name };
+        Self::all().find(|model| model.name() == known).ok_or_else(|| {
+            let names: Vec<&str> = Self::all().map(Self::name).collect();
+            Error::Option(format!("model `{name}` is unknown: choose one of {}", names.join(", ")))
+        })
+    }
+}
+
+/// What is to be identified, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Request {
+    /// A network.
+    Network(FitOptions),
+    /// Another model.
+    Classical(ClassicalOptions),
+}
+
+impl Request {
+    /// A model with its defaults, and this rate if it has a use for one.
+    pub fn of(model: ModelName, rate: Option<RateMethod>, seed: u64) -> Self {
+        let rate = rate.filter(|_| model.uses_rate());
+        match model {
+            ModelName::Network(model) => {
+                Self::Network(FitOptions { model, rate, seed, ..FitOptions::default() })
+            }
+            ModelName::Rival(model) => {
+                Self::Classical(ClassicalOptions { rate, seed, ..ClassicalOptions::of(model) })
+            }
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> ModelName {
+        match self {
+            Self::Network(options) => ModelName::Network(options.model),
+            Self::Classical(options) => ModelName::Rival(options.model),
+        }
+    }
+
+    /// How the rate is found.
+    pub fn rate(&self) -> Option<RateMethod> {
+        match self {
+            Self::Network(options) => options.rate,
+            Self::Classical(options) => options.rate,
+        }
+    }
+
+    /// Starts of the search that was asked for; 1 where the model's own default is taken.
+    pub fn starts(&self) -> usize {
+        match self {
+            Self::Network(options) => options.starts,
+            Self::Classical(options) => options.starts.unwrap_or(1),
+        }
+    }
+}
+
+/// Identifies a model. The observer is as in [`training::fit`]; of a classical model it hears after every
+/// round of its search, if there is one, and there is no checkpoint.
+///
+/// # Errors
+/// Data that nothing can be identified from, or options outside their meaning.
+pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) -> Result<Fit> {
+    match request {
+        Request::Network(options) => training::fit(data, options, observer),
+        Request::Classical(options) if options.model == Rival::RandomStops => random_stops(data, options),
+        Request::Classical(options) => law(data, options, observer),
+    }
+}
+
+fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
+    let defaults = RandomStopsOptions::default();
+    let wanted = RandomStopsOptions {
+        stops: options.operators.unwrap_or(defaults.stops),
+        hidden: options.hidden.unwrap_or(defaults.hidden),
+        rate: options.rate,
+        seed: options.seed,
+        ..defaults
+    };
+    let found = fit_random_stops(data, &wanted)?;
+    let body = Body::Network { network: found.network, scaling: found.scaling };
+    finished(data, options, body, 1, Termination::Converged, Vec::new())
+}
+
+fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+    let mut history = Vec::new();
+    let found = classical::fit(data, options, &mut |progress| {
+        history.push(HistoryPoint {
+            epoch: progress.round,
+            evaluations: progress.evaluations,
+            train_nrmse_percent: progress.train_nrmse_percent,
+        });
+        observer(&Progress::of_search(&progress))
+    })?;
+    let run = Run {
+        phase: Phase::AllData,
+        start: 0,
+        method: Method::LeastSquares,
+        history,
+        termination: found.termination,
+        validation_nrmse_percent: None,
+    };
+    let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
+    finished(data, options, Body::Law(found.law), found.evaluations, found.termination, runs)
+}
+
+fn finished(
+    data: &Dataset,
+    options: &ClassicalOptions,
+    body: Body,
+    evaluations: usize,
+    termination: Termination,
+    runs: Vec<Run>,
+) -> Result<Fit> {
+    let request = Request::Classical(options.clone());
+    let train = body.errors(options.rate, data)?;
+    let provenance = Provenance {
+        options: request,
+        samples: data.scored(),
+        records: data.records().len(),
+        chosen_start: 0,
+        termination,
+        train,
+        validation: None,
+        runs,
+    };
+    Ok(Fit { model: Model::new(body, options.rate, data, provenance)?, evaluations })
+}

@@ -1,0 +1,123 @@
+//! Cholesky factor of a matrix of hundreds to thousands of rows.
+//!
+//! ```text
+//! L_ij = (A_ij - Σ_{k<j} L_ik L_jk) / L_jj,      L_ii² = A_ii - Σ_{k<i} L_ik²
+//! ```
+//!
+//! The sums of four rows with four others are formed together, so that every number loaded serves four
+//! products, and for a group of rows at a time, which stays in the second-level cache.
+
+use pulp::{Simd, WithSimd};
+
+use super::dot;
+use crate::simd;
+
+/// Rows from which on blocks pay.
+pub(super) const WORTH_BLOCKS: usize = 256;
+
+/// Rows of a group, a multiple of [`TILE`].
+const GROUP: usize = 64;
+
+/// Edge of a tile of sums, all of which fit into registers.
+const TILE: usize = 4;
+
+/// The factor in place of the lower triangle of `data`, `n` rows of `n` numbers; `None` unless
+/// positive definite to rounding.
+pub(super) fn factorise(mut data: Vec<f64>, n: usize) -> Option<Vec<f64>> {
+    simd::run(Factorise { data: &mut data, n }).then_some(data)
+}
+
+struct Factorise<'a> {
+    data: &'a mut [f64],
+    n: usize,
+}
+
+impl WithSimd for Factorise<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let n = self.n;
+        for first in (0..n).step_by(GROUP) {
+            let (done, rest) = self.data.split_at_mut(first * n);
+            let rows = GROUP.min(n - first);
+            let group = &mut rest[..rows * n];
+            for column in (0..first).step_by(TILE) {
+                let others: [&[f64]; TILE] =
+                    std::array::from_fn(|k| &done[(column + k) * n..(column + k) * n + column + TILE]);
+                let mut tiles = group.chunks_exact_mut(TILE * n);
+                for tile in &mut tiles {
+                    divide_tile(simd, tile, n, column, others);
+                }
+                for row in tiles.into_remainder().chunks_exact_mut(n) {
+                    divide_row(row, column, others);
+                }
+            }
+            if !factorise_group(group, n, first) {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// Columns `column` to `column + 3` of four rows, from the finished rows of the same numbers.
+#[inline(always)]
+fn divide_tile<S: Simd>(simd: S, tile: &mut [f64], n: usize, column: usize, others: [&[f64]; TILE]) {
+    let mut sums = [[0.0; TILE]; TILE];
+    {
+        let left: [(&[S::f64s], &[f64]); TILE] =
+            std::array::from_fn(|k| S::as_simd_f64s(&tile[k * n..k * n + column]));
+        let right = others.map(|row| S::as_simd_f64s(&row[..column]));
+        let length = left[0].0.len();
+        let (a, b) = (left.map(|row| &row.0[..length]), right.map(|row| &row.0[..length]));
+        let mut lanes = [[simd.splat_f64s(0.0); TILE]; TILE];
+        for k in 0..length {
+            let b: [S::f64s; TILE] = std::array::from_fn(|j| b[j][k]);
+            for (lanes, a) in lanes.iter_mut().zip(a) {
+                for j in 0..TILE {
+                    lanes[j] = simd.mul_add_e_f64s(a[k], b[j], lanes[j]);
+                }
+            }
+        }
+        for i in 0..TILE {
+            for j in 0..TILE {
+                let ends = left[i].1.iter().zip(right[j].1).map(|(a, b)| a * b).sum::<f64>();
+                sums[i][j] = simd.reduce_sum_f64s(lanes[i][j]) + ends;
+            }
+        }
+    }
+    for (row, sums) in tile.chunks_exact_mut(n).zip(sums) {
+        for j in 0..TILE {
+            let within: f64 = (0..j).map(|k| row[column + k] * others[j][column + k]).sum();
+            row[column + j] = (row[column + j] - sums[j] - within) / others[j][column + j];
+        }
+    }
+}
+
+/// The same for a single row.
+fn divide_row(row: &mut [f64], column: usize, others: [&[f64]; TILE]) {
+    for (j, other) in others.into_iter().enumerate() {
+        let end = column + j;
+        row[end] = (row[end] - dot(&row[..end], &other[..end])) / other[end];
+    }
+}
+
+/// The columns of a group's own rows; false where a pivot is not positive.
+fn factorise_group(group: &mut [f64], n: usize, first: usize) -> bool {
+    for i in 0..group.len() / n {
+        let (done, rest) = group.split_at_mut(i * n);
+        let row = &mut rest[..n];
+        for (j, other) in done.chunks_exact(n).enumerate() {
+            let end = first + j;
+            row[end] = (row[end] - dot(&row[..end], &other[..end])) / other[end];
+        }
+        let end = first + i;
+        let pivot = row[end] - dot(&row[..end], &row[..end]);
+        if pivot.is_nan() || pivot <= row[end].abs() * 1e-15 {
+            return false;
+        }
+        row[end] = pivot.sqrt();
+    }
+    true
+}

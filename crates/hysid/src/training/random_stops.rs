@@ -1,0 +1,197 @@
+//! Random deteriorating stops with a ridge readout: no search at all.
+//!
+//! ```text
+//! y = c_0 + d_0 a·u + Σ_j d_j DS_{1,β_j}[w_j·u] (+ Σ_i c_i h_i),    w, β (and the tanh layer) random
+//! d = argmin ‖Φd - y‖²/N + λ‖d‖²                                            theory.md (7.1), (7.14)
+//! ```
+//!
+//! The result is a [`Network`] like any other. One Gram matrix for each fold serves all penalties `λ`.
+//! Source: an extreme learning machine of deteriorating stops, after Farrokh, Ghasemi, Noori, Wang and
+//! Sarhosis (2022), with a ridge in place of their support vector machine.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use serde::{Deserialize, Serialize};
+
+use crate::classical::linear_fit::{FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
+use crate::error::Result;
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network};
+use crate::rate::RateMethod;
+use crate::record::Dataset;
+use crate::scaling::Scaling;
+use crate::training::FEWEST_ROWS;
+use crate::training::start::normal;
+
+/// How random stops are fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RandomStopsOptions {
+    /// Stops, 1 to 1000.
+    pub stops: usize,
+    /// Random tanh neurons beside the direct path from the stops to the output, 0 to 1000.
+    pub hidden: usize,
+    /// How the rate of the first input is found; `None` for stops that do not see it.
+    pub rate: Option<RateMethod>,
+    /// Whether the stops deteriorate; chosen by cross-validation if `None`.
+    pub deterioration: Option<bool>,
+    /// Seed of the random stops.
+    pub seed: u64,
+}
+
+impl Default for RandomStopsOptions {
+    fn default() -> Self {
+        Self { stops: 300, hidden: 100, rate: None, deterioration: None, seed: 1 }
+    }
+}
+
+/// A fitted network of random stops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RandomStops {
+    /// The network, in scaled units.
+    pub network: Network,
+    /// Factors between the user's units and the network's.
+    pub scaling: Scaling,
+    /// The penalty `λ` that cross-validation chose.
+    pub ridge: f64,
+    /// Root mean square error on rows held out, in percent of the output's standard deviation; the
+    /// geometric mean over the folds.
+    pub validation_nrmse_percent: f64,
+}
+
+/// Thresholds lie between this share of the largest input and the whole of it, evenly in their logarithm.
+/// Designed.
+const SMALLEST_THRESHOLD: f64 = 0.01;
+
+/// Capacities are this, spread by [`BETA_SPREAD`]. Designed.
+const TYPICAL_BETA: f64 = 300.0;
+
+/// Standard deviation of ln β: from stops that are soon dead to such as hardly wear. Designed.
+const BETA_SPREAD: f64 = 2.0;
+
+/// Spread of the rate's weight, next to 1 for the input. Designed.
+const RATE_WEIGHT: f64 = 0.3;
+
+/// Fits random stops.
+///
+/// # Errors
+/// Data that nothing can be identified from, options outside their meaning, a rate that cannot be
+/// computed.
+pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    let scaling = Scaling::of(data, options.rate)?;
+    let mut best: Option<RandomStops> = None;
+    for deterioration in options.deterioration.map_or(vec![false, true], |one| vec![one]) {
+        let architecture = Architecture {
+            inputs: data.names().inputs.len(),
+            rate: options.rate.is_some(),
+            stops: options.stops,
+            deterioration,
+            linear: true,
+            relaxation: 0,
+            hidden: options.hidden,
+            direct: true,
+            constant: true,
+        };
+        architecture.check()?;
+        let candidate = fit_readout(data, options, &scaling, architecture)?;
+        let is_better =
+            |best: &RandomStops| candidate.validation_nrmse_percent < best.validation_nrmse_percent;
+        if best.as_ref().is_none_or(is_better) {
+            best = Some(candidate);
+        }
+    }
+    Ok(best.expect("at least one candidate"))
+}
+
+/// Draws the stops, and finds the output weights.
+fn fit_readout(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    scaling: &Scaling,
+    architecture: Architecture,
+) -> Result<RandomStops> {
+    let used = || data.records().iter().filter(|record| record.scored() > 0);
+    let drives: Vec<Drive> =
+        used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
+    let inputs: Vec<(Vec<f64>, &[f64])> =
+        used().map(|record| (record.inputs()[0].clone(), record.output())).collect();
+    let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+    let parameters = random_parameters(architecture, options.seed);
+    let sums = fold_sums(
+        &Columns { architecture: &architecture, parameters: &parameters, output: None },
+        &drives,
+        &targets,
+        &Folds::of(&inputs),
+    );
+
+    let features = architecture.output_weights();
+    let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
+    let ridges = logarithmic(1e-9, 1e-1, 17);
+    let solve = |sums: &Quadratic, ridge: f64| {
+        let mut penalised = sums.clone();
+        penalised.penalise(&penalty, ridge);
+        penalised.minimum()
+    };
+    let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect());
+    let chosen = lowest(&scores);
+    let output = solve(&sums.total().quadratic(), ridges[chosen]);
+    Ok(RandomStops {
+        network: Network::new(architecture, parameters, output)?,
+        scaling: scaling.clone(),
+        ridge: ridges[chosen],
+        validation_nrmse_percent: 100.0 * (0.5 * scores[chosen]).exp(),
+    })
+}
+
+/// Sums of the output layer's features, fold by fold. The memory runs through every row of every record;
+/// rows of other folds have no target.
+fn fold_sums(columns: &Columns, drives: &[Drive], targets: &[Vec<f64>], folds: &Folds) -> FoldSums {
+    let of_fold = |fold: usize| {
+        let mut rows = 0;
+        let masked: Vec<Vec<f64>> = targets
+            .iter()
+            .zip(&folds.of_rows)
+            .map(|(targets, of_rows)| {
+                let mask = |(&target, &other): (&f64, &usize)| if other == fold { target } else { f64::NAN };
+                targets.iter().zip(of_rows).map(mask).collect()
+            })
+            .inspect(|masked: &Vec<f64>| rows += masked.iter().filter(|y| !y.is_nan()).count())
+            .collect();
+        let gram = GramOverRecords { columns: *columns, drives, targets: &masked }.gram();
+        Sums::new(gram, columns.count() - 1, rows)
+    };
+    FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone())
+}
+
+/// Random parameters found by no search: log-even thresholds, rates, capacities.
+fn random_parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
+    let layout = Layout::new(architecture);
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut values = vec![0.0; layout.len()];
+    let channels = architecture.channels();
+    let first_further_input = 1 + usize::from(architecture.rate);
+    for (j, weights) in values[layout.stop_weights.clone()].chunks_exact_mut(channels).enumerate() {
+        let place = (j as f64 + generator.random::<f64>()) / architecture.stops as f64;
+        let threshold = SMALLEST_THRESHOLD.powf(1.0 - place);
+        weights[0] = 1.0 / threshold;
+        if architecture.rate {
+            weights[1] = RATE_WEIGHT * normal(&mut generator) / threshold;
+        }
+        for weight in &mut weights[first_further_input..] {
+            *weight = normal(&mut generator) / threshold;
+        }
+    }
+    for ln_beta in &mut values[layout.ln_beta.clone()] {
+        *ln_beta = TYPICAL_BETA.ln() + BETA_SPREAD * normal(&mut generator);
+    }
+    for (c, weight) in values[layout.linear.clone()].iter_mut().enumerate() {
+        *weight = if c == 0 { 1.0 } else { RATE_WEIGHT * normal(&mut generator) };
+    }
+    let run = 1 + architecture.memory_neurons();
+    let spread = 1.0 / (run as f64).sqrt();
+    for neuron in values[layout.hidden.clone()].chunks_exact_mut(run) {
+        neuron.iter_mut().for_each(|weight| *weight = spread * normal(&mut generator));
+    }
+    layout.clamp(&mut values);
+    values
+}

@@ -1,0 +1,189 @@
+//! What every model promises, whatever it is: it is found by its name, its file holds it to the last bit,
+//! stepping and simulating agree, its parameters are named, a wild input leaves it finite.
+
+use std::ops::ControlFlow;
+
+use hysid::classical::identification::{ClassicalOptions, Rival};
+use hysid::classical::{Dimension, Law};
+use hysid::error::Error;
+use hysid::identification::{ModelName, Request, identify};
+use hysid::model::{Body, Model};
+use hysid::network::{Family, Sizes};
+use hysid::operator::{Operator, Stop};
+use hysid::rate::RateMethod;
+use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::training::{Fit, FitOptions};
+
+/// A play-like output that lags behind its input, so that every model has something to find.
+fn record(rows: usize, name: &str) -> Record {
+    let x: Vec<f64> =
+        (0..rows).map(|k| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
+    let mut stop = Stop::new(0.25).unwrap();
+    let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
+    let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+    Record::new(name, vec![x], y).unwrap().with_time(time).unwrap()
+}
+
+fn data() -> Dataset {
+    let names = ColumnNames {
+        time: Some("t_s".into()),
+        inputs: vec!["current_A".into()],
+        rate: None,
+        output: "displacement_um".into(),
+    };
+    Dataset::new(names, vec![record(180, "a"), record(120, "b")]).unwrap()
+}
+
+/// Small, so that all of them are quick.
+fn small(model: ModelName) -> Request {
+    let rate = Some(RateMethod::Central);
+    match Request::of(model, rate, 3) {
+        Request::Network(options) => Request::Network(FitOptions {
+            sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
+            starts: 1,
+            epochs: 4,
+            ..options
+        }),
+        Request::Classical(options) => Request::Classical(ClassicalOptions {
+            operators: Some(8),
+            starts: options.model.is_searched().then_some(2),
+            epochs: options.model.is_searched().then_some(6),
+            ..options
+        }),
+    }
+}
+
+fn quietly(request: &Request) -> Fit {
+    identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+#[test]
+fn names_are_found_and_are_different() {
+    let mut names: Vec<&str> = ModelName::all().map(ModelName::name).collect();
+    for name in &names {
+        assert_eq!(name.parse::<ModelName>().unwrap().name(), *name);
+        assert_eq!(
+            serde_json::to_string(&name.parse::<ModelName>().unwrap()).unwrap(),
+            format!("\"{name}\"")
+        );
+    }
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), Family::ALL.len() + Rival::ALL.len());
+    let error = "presach".parse::<ModelName>().unwrap_err().to_string();
+    assert!(error.contains("preisach") && error.contains("xpnn+"), "{error}");
+}
+
+#[test]
+fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
+    for name in ModelName::all() {
+        let fitted = quietly(&small(name));
+        let model = &fitted.model;
+        assert_eq!(model.name(), name);
+        let text = model.to_json();
+        let again = Model::from_json(&text).unwrap_or_else(|error| panic!("{name:?}: {error}"));
+        assert_eq!((&again, again.to_json()), (model, text));
+        let data = data();
+        let record = &data.records()[1];
+        let whole = again.simulate(record).unwrap();
+        let rates = RateMethod::Central.rate(record).unwrap();
+        let mut stepper = again.stepper();
+        for _ in 0..2 {
+            for (row, y) in whole.iter().enumerate() {
+                let (x, time) = (record.inputs()[0][row], record.time().unwrap()[row]);
+                let stepped = stepper.step(&[x], time, Some(rates[row])).unwrap();
+                assert_eq!(stepped.to_bits(), y.to_bits(), "{name:?}, row {row}: {stepped}, not {y}");
+            }
+            stepper.reset();
+        }
+        // Better than the mean, or it has learnt nothing.
+        let error = model.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
+        assert!(error < 60.0, "{name:?}: {error} %");
+        assert_eq!(error, model.provenance().train.nrmse_std_percent.unwrap());
+    }
+}
+
+#[test]
+fn wild_inputs_leave_every_model_finite() {
+    let rows = 400;
+    let x: Vec<f64> = (0..rows)
+        .map(|k| match k % 7 {
+            0 => 1e90,
+            1 => -1e90,
+            2 => 1e-90,
+            3 => 0.0,
+            _ => 1e3 * (k as f64).sin(),
+        })
+        .collect();
+    let time = (0..rows).map(|k| 1e-3 * k as f64).collect();
+    let wild = Record::new("wild", vec![x], vec![f64::NAN; rows]).unwrap().with_time(time).unwrap();
+    for name in ModelName::all() {
+        let model = quietly(&small(name)).model;
+        let y = model.simulate(&wild).unwrap();
+        assert!(y.iter().all(|y| y.is_finite()), "{name:?}: {:?}", y.iter().find(|y| !y.is_finite()));
+    }
+}
+
+#[test]
+fn parameters_of_laws_are_named_within_bounds_and_in_units() {
+    for rival in Rival::ALL {
+        let model = quietly(&small(ModelName::Rival(rival))).model;
+        let Body::Law(law) = model.body() else {
+            assert_eq!(rival, Rival::RandomStops);
+            continue;
+        };
+        let parameters = law.parameters();
+        assert_eq!(parameters.len(), model.parameters());
+        let mut symbols: Vec<&str> = parameters.iter().map(|parameter| parameter.symbol.as_str()).collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        assert_eq!(symbols.len(), parameters.len(), "{rival:?}: two parameters share a symbol");
+        for parameter in &parameters {
+            let (low, high) = parameter.bounds;
+            assert!((low..=high).contains(&parameter.value), "{rival:?}: {parameter:?}");
+            assert!(!parameter.meaning.is_empty());
+        }
+        // The weights of a neural network are pure numbers.
+        let has_units = parameters.iter().any(|parameter| parameter.unit != Dimension::NONE);
+        assert_eq!(has_units, rival != Rival::NeuroMadelung, "{rival:?}");
+    }
+}
+
+#[test]
+fn units_are_products_of_powers() {
+    let unit = |input, output, time| {
+        let dimension = Dimension { input, output, time };
+        dimension.unit(Some("mm"), Some("kN"), Some("s"))
+    };
+    assert_eq!(unit(0, 0, 0), "");
+    assert_eq!(unit(-1, 1, 0), "kN/mm");
+    assert_eq!(unit(-1, 1, 1), "kN s/mm");
+    assert_eq!(unit(2, 0, -1), "mm^2/s");
+    assert_eq!(unit(-1, 0, 0), "1/mm");
+    assert_eq!(Dimension::SLOPE.unit(Some("A/m"), Some("T"), None), "T/(A/m)");
+    assert_eq!(Dimension::SLOPE.unit(None, Some("T"), None), "");
+}
+
+#[test]
+fn what_a_model_cannot_be_fitted_to_is_said() {
+    let rival = ModelName::Rival(Rival::RateDependentPrandtlIshlinskii);
+    assert!(rival.hindrance(&data(), None).unwrap().contains("rate"));
+    assert_eq!(rival.hindrance(&data(), Some(RateMethod::Central)), None);
+    let two = Record::new("r", vec![vec![0.0, 1.0], vec![1.0, 0.0]], vec![0.0, 1.0]).unwrap();
+    let two = Dataset::new(ColumnNames::plain(2), vec![two]).unwrap();
+    for name in ModelName::all() {
+        let hindered = name.hindrance(&two, Some(RateMethod::Central)).is_some();
+        assert_eq!(hindered, !name.takes_further_inputs(), "{name:?}");
+    }
+    let refused = |request: &Request| match identify(&data(), request, &mut |_| ControlFlow::Continue(())) {
+        Err(Error::Option(text)) => text,
+        other => panic!("{request:?}: {other:?}"),
+    };
+    assert!(refused(&Request::of(rival, None, 1)).contains("rate"));
+    for (model, operators) in
+        [(Rival::Preisach, 0), (Rival::PrandtlIshlinskii, 0), (Rival::GeneralizedPrandtlIshlinskii, 0)]
+    {
+        let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
+        assert!(!refused(&Request::Classical(options)).is_empty());
+    }
+}
