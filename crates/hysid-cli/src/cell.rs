@@ -59,6 +59,14 @@ impl CellReader {
     }
 }
 
+/// The shortest text that reads back as the same number.
+pub fn shortest(value: f64) -> String {
+    // Rust prints as many digits as it takes, in either form.
+    let plain = value.to_string();
+    let scientific = format!("{value:e}");
+    if plain.len() <= scientific.len().max(12) { plain } else { scientific }
+}
+
 /// True if every cell is a number, as in a file without a header.
 pub fn all_numbers<'a>(mut cells: impl Iterator<Item = &'a str>) -> bool {
     cells.all(|cell| finite(&cell.trim().replace(',', "."), cell).is_ok())

@@ -9,6 +9,7 @@ mod checkpoint;
 mod columns;
 mod commands;
 mod comparison;
+mod csv_text;
 mod data;
 mod errors_table;
 mod files;

@@ -6,6 +6,7 @@ use anyhow::{Result, ensure};
 
 use crate::Outcome;
 use crate::arguments::Simulate;
+use crate::cell::shortest;
 use crate::columns::Roles;
 use crate::commands::read_model;
 use crate::data::{Data, Source};
@@ -49,7 +50,6 @@ fn with_column(source: &Source, name: &str, values: &[f64]) -> Result<Vec<u8>> {
     let mut writer = csv::WriterBuilder::new().delimiter(table.delimiter).from_writer(Vec::new());
     writer.write_record(table.header.iter().map(String::as_str).chain([name]))?;
     for (row, value) in values.iter().enumerate() {
-        // Rust prints the shortest text that reads back as the same number.
         let mut text = shortest(*value);
         if commas {
             text = text.replace('.', ",");
@@ -57,10 +57,4 @@ fn with_column(source: &Source, name: &str, values: &[f64]) -> Result<Vec<u8>> {
         writer.write_record(table.cells(row).chain([text.as_str()]))?;
     }
     Ok(writer.into_inner()?)
-}
-
-fn shortest(value: f64) -> String {
-    let plain = value.to_string();
-    let scientific = format!("{value:e}");
-    if plain.len() <= scientific.len().max(12) { plain } else { scientific }
 }

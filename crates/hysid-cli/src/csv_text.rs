@@ -1,0 +1,109 @@
+//! A data set as CSV: what `hysid fit` reads as the same records, without any option.
+
+use anyhow::Result;
+use hysid::record::{Dataset, Record};
+
+use crate::cell::shortest;
+
+/// The data with a header line. Column `record` tells several records apart, a blank output is an empty
+/// cell, and every number reads back as the same number.
+pub fn csv_text(data: &Dataset) -> Result<String> {
+    let names = data.names();
+    let several = data.records().len() > 1;
+    let time = data.has_time().then(|| names.time.as_deref().unwrap_or("t"));
+    let rate = data.has_given_rate().then(|| names.rate.as_deref().unwrap_or("rate"));
+    let inputs = names.inputs.iter().map(String::as_str);
+    let header = several.then_some("record").into_iter().chain(time).chain(inputs).chain(rate);
+
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.chain([names.output.as_str()]))?;
+    for record in data.records() {
+        for row in 0..record.len() {
+            let name = several.then(|| record.name().to_string());
+            writer.write_record(name.into_iter().chain(numbers(record, row)))?;
+        }
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// The numbers of a row in the order of the columns.
+fn numbers(record: &Record, row: usize) -> impl Iterator<Item = String> {
+    let inputs = record.inputs().iter().map(Vec::as_slice);
+    let columns = record.time().into_iter().chain(inputs).chain(record.given_rate());
+    let output = record.output()[row];
+    let output = if output.is_nan() { String::new() } else { shortest(output) };
+    columns.map(move |column| shortest(column[row])).chain([output])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use clap::Parser;
+    use hysid::plant::{Specimen, with_noise};
+    use hysid::record::ColumnNames;
+
+    use super::*;
+    use crate::arguments::{Arguments, Command};
+    use crate::columns::Roles;
+    use crate::data::Data;
+    use crate::files;
+    use crate::table::Table;
+
+    /// The data as `hysid fit FILE OPTION...` reads them.
+    fn read_back(data: &Dataset, options: &[&str]) -> Dataset {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("only.csv");
+        files::write(&path, csv_text(data).unwrap().as_bytes()).unwrap();
+        let typed = [&["hysid", "fit", "only.csv"], options].concat();
+        let Command::Fit(fit) = Arguments::parse_from(typed).command else { panic!("fit was typed") };
+        let table = Table::read(Path::new(&path)).unwrap();
+        let roles = Roles::detect(&table, &fit.columns).unwrap();
+        Data::new(vec![table], roles, true).unwrap().set
+    }
+
+    fn bits(record: &Record) -> Vec<Vec<u64>> {
+        let columns =
+            record.inputs().iter().map(Vec::as_slice).chain(record.time()).chain(record.given_rate());
+        columns.chain([record.output()]).map(|column| column.iter().map(|v| v.to_bits()).collect()).collect()
+    }
+
+    fn check(data: &Dataset, read: &Dataset) {
+        assert_eq!(read.names(), data.names());
+        assert_eq!(read.records().len(), data.records().len());
+        for (read, record) in read.records().iter().zip(data.records()) {
+            // Alone in its file a record is named after the file.
+            let name = if data.records().len() > 1 { record.name() } else { "only" };
+            assert_eq!(read.name(), name);
+            assert!(bits(read) == bits(record), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_specimen_reads_back_to_the_last_bit() {
+        for specimen in Specimen::all() {
+            let noisy = with_noise(&specimen.train(), 3.0, 5).unwrap();
+            for data in [specimen.train(), specimen.test(), noisy] {
+                check(&data, &read_back(&data, &[]));
+            }
+        }
+    }
+
+    #[test]
+    fn awkward_names_and_numbers_read_back_too() {
+        let names = ColumnNames {
+            time: Some("Time, since start (s)".into()),
+            inputs: vec!["x; \"left\"".into(), "temperature".into()],
+            rate: Some("v_mm_s".into()),
+            output: "F_N".into(),
+        };
+        let record = |name: &str, sign: f64| {
+            let inputs = vec![vec![0.1 + 0.2, -0.0, 5e-324], vec![sign, 1e99, 1.0 / 3.0]];
+            let record = Record::new(name, inputs, vec![f64::NAN, -1e-300, 12345678.9]).unwrap();
+            record.with_time(vec![-0.5, 1e-9, 1e15]).unwrap().with_given_rate(vec![sign, 0.0, 2e-17]).unwrap()
+        };
+        let data = Dataset::new(names, vec![record("first, \"quoted\"", 1.0), record("2", -1.0)]).unwrap();
+        let time = ["--time", "Time, since start (s)", "--rate", "v_mm_s"];
+        check(&data, &read_back(&data, &time));
+    }
+}
