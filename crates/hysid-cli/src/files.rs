@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::{self, Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use tempfile::NamedTempFile;
@@ -68,7 +68,11 @@ pub fn check_writable(path: &Path) -> Result<()> {
 pub fn same(a: &Path, b: &Path) -> bool {
     match (fs::canonicalize(a), fs::canonicalize(b)) {
         (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
+        // At least one is not there yet.
+        _ => match (path::absolute(a), path::absolute(b)) {
+            (Ok(a), Ok(b)) => a == b,
+            _ => a == b,
+        },
     }
 }
 
@@ -151,6 +155,18 @@ mod tests {
         assert!(error.ends_with("cannot be written: no such file or directory"), "{error}");
         let error = check_writable(folder.path()).unwrap_err().to_string();
         assert!(error.ends_with("is a directory"), "{error}");
+    }
+
+    #[test]
+    fn a_file_is_the_same_under_any_name_even_before_it_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        let detour = folder.path().join("./a.csv");
+        assert!(same(&path, &detour));
+        write(&path, b"x").unwrap();
+        assert!(same(&path, &detour));
+        assert!(!same(&path, &folder.path().join("b.csv")));
+        assert!(same(Path::new("./new.csv"), Path::new("new.csv")));
     }
 
     #[test]
