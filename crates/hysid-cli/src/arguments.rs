@@ -8,6 +8,7 @@ use hysid::classical::identification::{ClassicalOptions, Rival};
 use hysid::classical::linear_fit::Sign;
 use hysid::identification::{ModelName, Request};
 use hysid::network::{Family, Sizes};
+use hysid::plant::Specimen;
 use hysid::rate::RateMethod;
 use hysid::training::genetic::POPULATIONS;
 use hysid::training::{FitOptions, Trainer};
@@ -36,6 +37,8 @@ pub enum Command {
     Compare(Compare),
     /// Run the paper's experiments and set our figures beside its own
     Reproduce(Reproduce),
+    /// Write the data of a synthetic specimen, to train and to test on
+    Generate(Generate),
     /// Measure the speed on this machine
     Bench(Bench),
 }
@@ -438,6 +441,42 @@ pub struct Reproduce {
     /// Seed of the first repetition
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+}
+
+/// Arguments of `generate`.
+#[derive(Debug, Args)]
+pub struct Generate {
+    /// Which specimen; --list describes them
+    #[arg(value_name = "SPECIMEN", value_parser = specimen())]
+    pub specimen: Option<&'static Specimen>,
+    /// Where to write the training data [default: stdout, as with `-`; not written if only --test is given]
+    #[arg(short, long, value_name = "TRAIN.csv")]
+    pub out: Option<PathBuf>,
+    /// Where to write the test data [default: not written; `-` is stdout]
+    #[arg(long, value_name = "TEST.csv")]
+    pub test: Option<PathBuf>,
+    /// Deviation of Gaussian noise on the output, in percent of the output's own standard deviation
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = noise, allow_negative_numbers = true)]
+    pub noise: f64,
+    /// Seed of the noise; training and test data get different noise from the same seed
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Describe all specimens
+    #[arg(long, conflicts_with_all = ["specimen", "out", "test", "noise", "seed"])]
+    pub list: bool,
+    /// With --list: print a list of JSON objects
+    #[arg(long, requires = "list")]
+    pub json: bool,
+}
+
+fn specimen() -> impl TypedValueParser<Value = &'static Specimen> {
+    let names = Specimen::all().iter().map(|specimen| specimen.name);
+    PossibleValuesParser::new(names).map(|name| Specimen::named(&name).expect("one of the possible values"))
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let percent = text.parse().ok().filter(|percent: &f64| (0.0..1e9).contains(percent));
+    percent.ok_or_else(|| "a number of percent, 0 or more, is needed".into())
 }
 
 /// Arguments of `bench`.

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod demo;
 pub mod evaluate;
 pub mod fit;
+pub mod generate;
 pub mod reproduce;
 pub mod simulate;
 
