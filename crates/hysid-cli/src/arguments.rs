@@ -109,9 +109,12 @@ pub struct Fit {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// The network and its training.
+    /// The model and its training.
     #[command(flatten)]
     pub training: TrainingOptions,
+    /// What can be chosen of models that are no networks.
+    #[command(flatten)]
+    pub rival: RivalOptions,
     /// Stop after this time and keep the best model so far
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
@@ -176,9 +179,6 @@ pub struct TrainingOptions {
     /// Share of the data held out to choose among the starts
     #[arg(long, value_name = "FRACTION", default_value_t = FitOptions::default().validation, value_parser = fraction)]
     pub validation: f64,
-    /// What can be chosen of the other models.
-    #[command(flatten)]
-    pub rival: RivalOptions,
 }
 
 /// What can be chosen of the models that are no networks.
@@ -213,18 +213,18 @@ pub struct RivalOptions {
 
 impl TrainingOptions {
     /// What the library is asked for, with the rate decided.
-    pub fn request(&self, rate: Option<RateMethod>) -> Request {
+    pub fn request(&self, rival: &RivalOptions, rate: Option<RateMethod>) -> Request {
         match self.model {
             ModelName::Network(model) => Request::Network(self.fit_options(model, rate)),
             ModelName::Rival(model) => Request::Classical(ClassicalOptions {
-                operators: self.rival.operators,
-                thresholds: self.rival.thresholds.clone(),
-                sign: self.rival.sign,
-                dead_zones: self.rival.dead_zones,
-                free_weights: self.rival.free_weights,
-                logarithmic_thresholds: self.rival.logarithmic_thresholds,
-                degradation: self.rival.degradation,
-                differential_form: self.rival.differential_form,
+                operators: rival.operators,
+                thresholds: rival.thresholds.clone(),
+                sign: rival.sign,
+                dead_zones: rival.dead_zones,
+                free_weights: rival.free_weights,
+                logarithmic_thresholds: rival.logarithmic_thresholds,
+                degradation: rival.degradation,
+                differential_form: rival.differential_form,
                 hidden: self.hidden,
                 rate,
                 starts: self.starts,
@@ -266,7 +266,7 @@ impl TrainingOptions {
     }
 
     /// Options that were asked for and that the model or its trainer has no use for.
-    pub fn useless(&self) -> Vec<&'static str> {
+    pub fn useless(&self, other: &RivalOptions) -> Vec<&'static str> {
         let is_rival = matches!(self.model, ModelName::Rival(_));
         let is = |rival: Rival| self.model == ModelName::Rival(rival);
         let given_thresholds =
@@ -274,7 +274,6 @@ impl TrainingOptions {
         let exponential =
             is(Rival::GeneralizedPrandtlIshlinskii) || is(Rival::RateDependentPrandtlIshlinskii);
         let has = self.training;
-        let other = &self.rival;
         let searched = match self.model {
             ModelName::Network(_) => true,
             ModelName::Rival(rival) => rival.is_searched(),

@@ -171,7 +171,7 @@ fn command_lines() {
             (
                 "fit data.csv --model nn",
                 2,
-                "invalid value 'nn' for '--model <MODEL>': model `nn` is unknown: choose one of pnn, gpnn, preisach-nn, xpnn, xpnn+ (see `hysid --help`)",
+                "invalid value 'nn' for '--model <MODEL>': model `nn` is unknown: choose one of pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, jiles-atherton, random-stops (see `hysid --help`)",
             ),
             (
                 "fit data.csv --stops 0",

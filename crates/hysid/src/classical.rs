@@ -137,6 +137,27 @@ impl Dimension {
     }
 }
 
+impl Classical {
+    /// The law, if its parameters are what they may be. Laws that are linear in their weights are checked
+    /// when they are read.
+    ///
+    /// # Errors
+    /// A parameter that is not finite or out of bounds.
+    pub(crate) fn validated(self) -> Result<Self> {
+        Ok(match self {
+            Self::GeneralizedPrandtlIshlinskii(law) => law.validated()?.into(),
+            Self::RateDependentPrandtlIshlinskii(law) => law.validated()?.into(),
+            Self::NeuroMadelung(law) => law.validated()?.into(),
+            Self::BoucWen(law) => law.validated()?.into(),
+            Self::JilesAtherton(law) => law.validated()?.into(),
+            checked @ (Self::Masing(_)
+            | Self::PrandtlIshlinskii(_)
+            | Self::ModifiedPrandtlIshlinskii(_)
+            | Self::Preisach(_)) => checked,
+        })
+    }
+}
+
 /// Makes of the laws one type that is any of them.
 macro_rules! any_of {
     ($($law:ident),* $(,)?) => {

@@ -33,7 +33,8 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
 
     let data = read(&train)?;
     let unseen = read(&test)?;
-    let request = fit_as_typed(&train).training.request(None);
+    let typed = fit_as_typed(&train);
+    let request = typed.training.request(&typed.rival, None);
     let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     let mut written = vec![("data", train.clone()), ("data", test.clone())];

@@ -35,7 +35,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
         None => {
             let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
                 .with_context(|| tables[0].file.clone())?;
-            arguments.training.request(rate)
+            arguments.training.request(&arguments.rival, rate)
         }
     };
     if arguments.checkpoint.is_some() && matches!(request, Request::Classical(_)) {
@@ -43,7 +43,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
         return Err(Usage(format!("{model} has no checkpoints: only networks have")).into());
     }
     let data = Data::new(tables, roles, true)?;
-    for option in arguments.training.useless() {
+    for option in arguments.training.useless(&arguments.rival) {
         warning(format_args!("{} has no use for {option}", arguments.training.trained_by()));
     }
     let work = Work {

@@ -160,11 +160,17 @@ impl BoucWen {
             return inner;
         }
         let travel = by.min(SATURATED);
-        let part = LONGEST_PART / self.quickness(inner.e).max(1.0);
+        let narrowness = self.degradation.map_or(1.0, |degradation| degradation.narrowness());
+        let part = LONGEST_PART / self.quickness(inner).max(narrowness);
         let parts = (travel / part).ceil().clamp(1.0, MOST_PARTS);
         let part = travel / parts;
         let mut inner = inner;
-        for _ in 0..parts as usize {
+        for index in 0..parts as usize {
+            if let Some(degradation) = &self.degradation
+                && degradation.is_at_rest(self.n, inner.z, inner.e)
+            {
+                return degradation.yielding(self.n, inner, by - part * index as f64);
+            }
             inner = self.part(inner, part);
         }
         if self.degradation.is_some() {
@@ -189,9 +195,9 @@ impl BoucWen {
     }
 
     /// How much faster than `x/z_u` the element comes to rest at its yield force.
-    fn quickness(&self, e: f64) -> f64 {
-        let bend = 0.5 * self.n;
-        self.degradation.map_or(bend, |degradation| bend * degradation.quickness(self.n, e))
+    fn quickness(&self, Inner { z, e }: Inner) -> f64 {
+        let bend = 0.5 * self.n.max((2.0 * self.b - 1.0).abs());
+        self.degradation.map_or(bend, |degradation| bend * degradation.quickness(self.n, z, e))
     }
 
     /// Moves up by a small part; the kink at `z = 0` is stepped onto, so that no step straddles it.
@@ -227,16 +233,17 @@ impl BoucWen {
             let softening = z.abs().powf(self.n) * share;
             properties.as_ref().map_or(1.0 - softening, |properties| properties.slope(z, softening))
         };
+        // (8.5) and (8.6) keep |z| ≤ 1; this keeps the numbers there as well, whatever the part.
+        let within = |z: f64| z.clamp(-1.0, 1.0);
         let k1 = slope(start.z);
-        let z2 = start.z + 0.5 * by * k1;
+        let z2 = within(start.z + 0.5 * by * k1);
         let k2 = slope(z2);
-        let z3 = start.z + 0.5 * by * k2;
+        let z3 = within(start.z + 0.5 * by * k2);
         let k3 = slope(z3);
-        let z4 = start.z + by * k3;
+        let z4 = within(start.z + by * k3);
         let end = start.z + by * (k1 + 2.0 * (k2 + k3) + slope(z4)) / 6.0;
         let work = if properties.is_some() { by * (start.z + 2.0 * (z2 + z3) + z4) / 6.0 } else { 0.0 };
-        // (8.5) and (8.6) keep |z| ≤ 1; this keeps the numbers there as well, whatever the part.
-        Inner { z: end.clamp(-1.0, 1.0), e: degradation::limited(start.e + work) }
+        Inner { z: within(end), e: degradation::limited(start.e + work) }
     }
 }
 

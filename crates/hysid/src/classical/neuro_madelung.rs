@@ -28,7 +28,7 @@ pub use turning_point_memory::TurningPointMemory;
 /// The output may leave the range that was trained on by so many of these ranges. A chain of wrong
 /// branches, each beginning at the end of the one before, can otherwise grow beyond all bounds; a
 /// hysteresis that is extrapolated sensibly stays well within.
-const BEYOND: f64 = 2.0;
+const BEYOND: f64 = 1.0;
 
 /// Scaled inputs of the network are limited to this: far outside of the data it is saturated anyway.
 const LARGEST_INPUT: f64 = 1e6;
@@ -60,6 +60,7 @@ pub struct NeuroMadelung {
 struct Branch<'a> {
     hidden: &'a [f64],
     output: &'a [f64],
+    /// Range of the output in training.
     low: f64,
     high: f64,
 }
@@ -72,11 +73,26 @@ impl Branch<'_> {
 
     /// The output on the branch that began at `(x_t, y_t)`; `inputs` is `x, x_t, y_t[, x']`.
     fn value(&self, inputs: &[f64]) -> f64 {
+        let seen = self.seen(inputs);
+        let seen = &seen[..inputs.len()];
         let mut slope = self.output[0];
         for (neuron, c) in self.hidden.chunks_exact(self.run()).zip(&self.output[1..]) {
-            slope += c * argument(neuron, inputs).tanh();
+            slope += c * argument(neuron, seen).tanh();
         }
-        (inputs[2] + (inputs[0] - inputs[1]) * slope).clamp(self.low, self.high)
+        self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
+    }
+
+    /// What the network sees: inputs within the ranges that it was trained on. Beyond them a branch goes
+    /// on with the slope that its chord has at the edge.
+    fn seen(&self, inputs: &[f64]) -> [f64; 4] {
+        let rate = inputs.get(3).copied().unwrap_or(0.0);
+        let unit = |value: f64| value.clamp(-1.0, 1.0);
+        [unit(inputs[0]), unit(inputs[1]), inputs[2].clamp(self.low, self.high), unit(rate)]
+    }
+
+    fn limited(&self, y: f64) -> f64 {
+        let beyond = BEYOND * (self.high - self.low);
+        y.clamp(self.low - beyond, self.high + beyond)
     }
 }
 
@@ -100,7 +116,7 @@ impl NeuroMadelung {
         }
         let (low, high) = self.output_range;
         let is_range = low <= high && low.abs() <= LARGEST_VALUE && high.abs() <= LARGEST_VALUE;
-        if !is_range || !(self.output_mean.abs() <= LARGEST_VALUE) {
+        if !is_range || self.output_mean.is_nan() || self.output_mean.abs() > LARGEST_VALUE {
             return refuse("the range of the output is none");
         }
         let neurons = self.output.len().saturating_sub(1);
@@ -121,8 +137,7 @@ impl NeuroMadelung {
     fn branch(&self) -> Branch<'_> {
         let scaled = |y: f64| (y - self.output_mean) / self.output_scale;
         let (low, high) = (scaled(self.output_range.0), scaled(self.output_range.1));
-        let beyond = BEYOND * (high - low);
-        Branch { hidden: &self.hidden, output: &self.output, low: low - beyond, high: high + beyond }
+        Branch { hidden: &self.hidden, output: &self.output, low, high }
     }
 
     /// The scaled input and rate.

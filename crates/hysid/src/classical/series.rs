@@ -48,3 +48,34 @@ pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
     let mut state = law.virgin();
     samples.iter().map(|sample| law.step(&mut state, *sample)).collect()
 }
+
+/// The work of all loops, `∮ y dx`: negative where the output lags behind a growing input as that of a
+/// play does, positive for friction, whose loops are passed the other way round.
+pub(crate) fn work(series: &[Series]) -> f64 {
+    let slope = slope(series);
+    let of_one = |series: &Series| -> f64 {
+        let rows = || series.samples.iter().zip(&series.output).map(|(sample, &y)| (sample.x, y));
+        let mut measured = rows().filter(|(_, y)| !y.is_nan());
+        // Without a straight line through the first row, which has no loop but leaves an area where the
+        // ends of the record lie apart.
+        let Some((x_first, y_first)) = measured.next() else { return 0.0 };
+        let bent = |(x, y): (f64, f64)| y - y_first - slope * (x - x_first);
+        let areas = rows().zip(rows().skip(1)).map(|(a, b)| 0.5 * (bent(a) + bent(b)) * (b.0 - a.0));
+        areas.filter(|area| !area.is_nan()).sum()
+    };
+    series.iter().map(of_one).sum()
+}
+
+/// Slope of the straight line that fits the rows with an output best.
+pub(crate) fn slope(series: &[Series]) -> f64 {
+    let rows = || {
+        let all = series.iter().flat_map(|series| series.samples.iter().zip(&series.output));
+        all.filter(|(_, y)| !y.is_nan()).map(|(sample, &y)| (sample.x, y))
+    };
+    let n = rows().count().max(1) as f64;
+    let x_mean = rows().map(|(x, _)| x).sum::<f64>() / n;
+    let y_mean = rows().map(|(_, y)| y).sum::<f64>() / n;
+    let product = rows().map(|(x, y)| (x - x_mean) * (y - y_mean)).sum::<f64>();
+    let square = rows().map(|(x, _)| (x - x_mean) * (x - x_mean)).sum::<f64>();
+    if square > 0.0 { product / square } else { 0.0 }
+}

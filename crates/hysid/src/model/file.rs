@@ -251,7 +251,7 @@ fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
 fn assemble(file: File) -> Result<Model> {
     let body = match (file.network, file.law) {
         (Some(parts), None) => Body::Network { network: parts.network()?, scaling: parts.scaling },
-        (None, Some(law)) => Body::Law(law),
+        (None, Some(law)) => Body::Law(law.validated()?),
         _ => return Err(Error::Option("it must have either a network or a law".into())),
     };
     let inputs = match &body {

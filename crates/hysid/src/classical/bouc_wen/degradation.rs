@@ -11,8 +11,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::classical::{Dimension, Parameter};
 
+use super::Inner;
+
 /// Largest energy counted: what has taken up so much is long without strength.
 const LARGEST_ENERGY: f64 = 1e9;
+
+/// An element so much quicker than when untouched follows its yield force, which sinks slowly, closely.
+const QUICK: f64 = 4.0;
+
+/// How near to the yield force that is, as a share of it.
+const AT_REST: f64 = 1e-3;
 
 /// The energy within its limits; it is not negative, whatever `b`.
 pub(super) fn limited(e: f64) -> f64 {
@@ -98,10 +106,35 @@ impl Degradation {
         }
     }
 
+    /// `z` at which the element yields on the way up.
+    fn ultimate(&self, n: f64, e: f64) -> f64 {
+        ((1.0 - self.delta_a * e).max(0.0) / (1.0 + self.delta_nu * e)).powf(1.0 / n)
+    }
+
+    /// True if the element is so quick that it has come to its yield force and will only follow it.
+    pub(super) fn is_at_rest(&self, n: f64, z: f64, e: f64) -> bool {
+        z >= 0.0 && self.quickness(n, z, e) > QUICK && {
+            let ultimate = self.ultimate(n, e);
+            (z - ultimate).abs() <= AT_REST * ultimate + 1e-9
+        }
+    }
+
+    /// The element after it has yielded upwards by `by`; the energy to second order.
+    pub(super) fn yielding(&self, n: f64, Inner { z, e }: Inner, by: f64) -> Inner {
+        let middle = self.ultimate(n, limited(e + 0.5 * by * z));
+        let e = limited(e + by * middle);
+        Inner { z: self.ultimate(n, e), e }
+    }
+
     /// How much faster the degraded element comes to rest at its yield force than the untouched one.
-    pub(super) fn quickness(&self, n: f64, e: f64) -> f64 {
-        let pinched = 1.0 / (self.psi_0 * (self.lambda + self.zeta_s)).min(1.0);
-        ((1.0 + self.delta_nu * e).powf(1.0 / n) / (1.0 + self.delta_eta * e)).max(pinched.min(4.0) / n)
+    pub(super) fn quickness(&self, n: f64, z: f64, e: f64) -> f64 {
+        let largest = z.abs().max(self.ultimate(n, e));
+        (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e) * largest.powf(n - 1.0)
+    }
+
+    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range asks for.
+    pub(super) fn narrowness(&self) -> f64 {
+        (0.5 / (self.psi_0 * (self.lambda + self.zeta_s))).clamp(1.0, 2.0)
     }
 
     pub(super) fn parameters(&self) -> Vec<Parameter> {

@@ -8,7 +8,7 @@
 use crate::classical::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
-use crate::classical::series::Series;
+use crate::classical::series::{Series, slope, work};
 use crate::error::{Error, Result};
 use crate::record::Dataset;
 use crate::training::FEWEST_ROWS;
@@ -19,7 +19,7 @@ use super::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
 
 /// An envelope rises by at least this share of its full height over the range of the input: otherwise
 /// it would leap where the input leaves the range.
-const SMALLEST_SHARE: f64 = 0.01;
+const SMALLEST_SHARE: f64 = 0.1;
 
 /// How a generalized Prandtl-Ishlinskii model is identified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub struct GeneralizedPrandtlIshlinskiiOptions {
 
 impl Default for GeneralizedPrandtlIshlinskiiOptions {
     fn default() -> Self {
-        Self { operators: 10, free_weights: false, starts: 8, epochs: 40, seed: 0 }
+        Self { operators: 10, free_weights: true, starts: 32, epochs: 60, seed: 0 }
     }
 }
 
@@ -57,7 +57,9 @@ impl GeneralizedPrandtlIshlinskii {
             return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
         }
         let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-        let family = Plays::new(data.input_range(0), rising(&series), options);
+        let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
+        let lags = sign * work(&series) < 0.0;
+        let family = Plays::new(data.input_range(0), sign, lags, options);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
         let found = search(&family, &series, effort, observer)?;
         let mut law = family.law(&found.parameters);
@@ -74,18 +76,6 @@ impl GeneralizedPrandtlIshlinskii {
     }
 }
 
-/// 1 if the output mostly rises with the input, else -1.
-fn rising(series: &[Series]) -> f64 {
-    let work = |series: &Series| -> f64 {
-        let rows = || series.samples.iter().zip(&series.output).filter(|(_, y)| !y.is_nan());
-        let n = rows().count().max(1) as f64;
-        let (x_mean, y_mean) =
-            (rows().map(|(s, _)| s.x).sum::<f64>() / n, rows().map(|(_, y)| y).sum::<f64>() / n);
-        rows().map(|(s, y)| (s.x - x_mean) * (y - y_mean)).sum()
-    };
-    if series.iter().map(work).sum::<f64>() < 0.0 { -1.0 } else { 1.0 }
-}
-
 /// Generalized plays as the search sees them.
 struct Plays {
     low: f64,
@@ -99,7 +89,12 @@ struct Plays {
 }
 
 impl Plays {
-    fn new((low, high): (f64, f64), sign: f64, options: &GeneralizedPrandtlIshlinskiiOptions) -> Self {
+    fn new(
+        (low, high): (f64, f64),
+        sign: f64,
+        lags: bool,
+        options: &GeneralizedPrandtlIshlinskiiOptions,
+    ) -> Self {
         let range = high - low;
         let centre = Variable::linear(low - 0.5 * range, high + 0.5 * range);
         let width = Variable::logarithmic(0.02 * range, 5.0 * range);
@@ -110,7 +105,7 @@ impl Plays {
             width,
             // γ_r at the lower end of the range, and its rise from there to the upper end.
             Variable::linear(-0.1, 1.0),
-            Variable::logarithmic(0.3, 30.0),
+            Variable::logarithmic(0.3, 10.0),
             // The largest threshold.
             Variable::logarithmic(0.02, 3.0),
             // Where the plays are at first: 0 is virgin, 1 is as after a large input that has been
@@ -119,7 +114,8 @@ impl Plays {
         ];
         let mut non_negative = vec![false];
         if options.free_weights {
-            non_negative.extend(vec![true; options.operators]);
+            // Plays alone lag; a loop the other way round needs weights of both signs.
+            non_negative.extend(vec![lags; options.operators]);
         } else {
             // τ times the largest threshold.
             variables.push(Variable::linear(-2.0, 12.0));

@@ -62,8 +62,8 @@ struct Materials {
 impl Materials {
     fn new(largest: f64, form: JilesAthertonForm) -> Self {
         let variables = [
-            Variable::logarithmic(0.01 * largest, 3.0 * largest),
-            Variable::logarithmic(0.01 * largest, 3.0 * largest),
+            Variable::logarithmic(0.02 * largest, 3.0 * largest),
+            Variable::logarithmic(0.02 * largest, 3.0 * largest),
             // α M_s as a share of 3a.
             Variable::linear(0.0, 0.98),
             Variable::linear(C_BOUNDS.0, C_BOUNDS.1),

@@ -1,6 +1,7 @@
 //! Training of a neuro-Madelung model: from random networks, first with the measured output at every
 //! turning point (teacher forcing), then in free run, where the model's own errors at the turning points
-//! go on into the branches.
+//! go on into the branches. A free run of data held out judges the starts, since a network that fits well
+//! may still let those errors grow; the best is trained on everything for a few epochs more.
 //!
 //! ```text
 //! dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ                 theory.md (8.21)
@@ -26,6 +27,8 @@ use super::{Branch, NeuroMadelung, TurningPointMemory, argument};
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
+/// Share of the data that judges the starts.
+const HELD_OUT: f64 = 0.25;
 const FIRST_DAMPING: f64 = 1e-2;
 const LARGEST_DAMPING: f64 = 1e8;
 /// Relative fall of the objective that counts as none, and how many in a row end a phase.
@@ -53,7 +56,7 @@ pub struct NeuroMadelungOptions {
 
 impl Default for NeuroMadelungOptions {
     fn default() -> Self {
-        Self { hidden: 8, rate: None, starts: 8, epochs: 60, seed: 0 }
+        Self { hidden: 8, rate: None, starts: 16, epochs: 60, seed: 0 }
     }
 }
 
@@ -73,68 +76,133 @@ impl NeuroMadelung {
             return Err(Error::Option(format!("hidden must be from 1 to {MOST_NEURONS}")));
         }
         Effort { starts, epochs, seed }.validated()?;
-        // The rate is an input of the network and no part of the memory.
-        let mut series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
-        let empty = frame(data, &series, options);
-        for series in &mut series {
-            for sample in &mut series.samples {
-                (sample.x, sample.rate) = empty.scaled(*sample);
-            }
-            for y in &mut series.output {
-                *y = (*y - empty.output_mean) / empty.output_scale;
-            }
-        }
-        let task = Task { frame: &empty, series: &series, hidden };
+        let frame = frame(data, options)?;
+        let whole = Task::new(&frame, data, options)?;
+        let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
+            return Training::new(&whole, &whole, options).run(&whole, observer);
+        };
+        let (kept, held) = (Task::new(&frame, &kept, options)?, Task::new(&frame, &held, options)?);
+        Training::new(&kept, &held, options).run(&whole, observer)
+    }
+}
 
-        let mut walks: Vec<Walk> =
-            (0..starts).into_par_iter().map(|start| Walk::new(&task, seed, start)).collect();
-        let mut given_up = 0;
+/// All starts on their way.
+struct Training<'a> {
+    /// What they are trained on, and what judges them.
+    kept: &'a Task<'a>,
+    held: &'a Task<'a>,
+    walks: Vec<Walk>,
+    epochs: usize,
+    given_up: usize,
+}
+
+impl<'a> Training<'a> {
+    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &NeuroMadelungOptions) -> Self {
+        let walks =
+            (0..options.starts).into_par_iter().map(|start| Walk::new(kept, options.seed, start)).collect();
+        Self { kept, held, walks, epochs: options.epochs, given_up: 0 }
+    }
+
+    fn run(
+        mut self,
+        whole: &Task<'_>,
+        observer: &mut SearchObserver<'_>,
+    ) -> Result<Identified<NeuroMadelung>> {
+        let forced = self.epochs / 2;
+        let last = (self.epochs / 6).max(1);
         let mut termination = Termination::EpochsUsed;
-        let forced = epochs / 2;
-        for epoch in 1..=epochs {
-            if epoch == forced + 1 {
-                walks.par_iter_mut().for_each(|walk| walk.set_free(&task));
-            }
-            walks.par_iter_mut().for_each(|walk| walk.advance(&task));
-            walks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-            if epoch > forced && (epoch - forced) % EPOCHS_TO_PROVE_ITSELF == 0 {
-                let keep = walks.len().div_ceil(2);
-                given_up += walks.drain(keep..).map(|walk| walk.evaluations).sum::<usize>();
-            }
-            let progress = SearchProgress {
-                round: epoch,
-                rounds: epochs,
-                evaluations: given_up + walks.iter().map(|walk| walk.evaluations).sum::<usize>(),
-                train_nrmse_percent: 100.0 * walks[0].mean_square.sqrt(),
-            };
-            if observer(progress) == ControlFlow::Break(()) {
+        for epoch in 1..=self.epochs {
+            self.epoch(epoch, forced);
+            if observer(self.progress(epoch, self.epochs + last)).is_break() {
                 termination = Termination::Stopped;
                 break;
             }
-            if epoch > forced && walks.iter().all(|walk| walk.ended.is_some()) {
-                termination = walks[0].ended.unwrap_or(Termination::Converged);
+            if epoch > forced && self.walks.iter().all(|walk| walk.ended.is_some()) {
                 break;
             }
         }
-        // Whatever phase they were in, the free run decides.
-        walks.par_iter_mut().for_each(|walk| walk.set_free(&task));
-        walks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-        let evaluations = given_up + walks.iter().map(|walk| walk.evaluations).sum::<usize>();
-        let train_nrmse_percent = 100.0 * walks[0].mean_square.sqrt();
-        let law = task.law(&walks[0].parameters).validated()?;
+        // A training that was stopped early has not judged any free run.
+        for walk in self.walks.iter_mut().filter(|walk| walk.best.is_none()) {
+            walk.set_free(self.kept);
+            walk.judge(self.held);
+        }
+        self.sort();
+        let best = &self.walks[0];
+        let parameters = best.best.as_ref().map_or(&best.parameters, |(_, parameters)| parameters);
+        // What was held out is learnt from where it was judged best, in few epochs.
+        let mut walk = Walk::at(whole, parameters.clone());
+        for epoch in 1..=last {
+            if termination == Termination::Stopped {
+                break;
+            }
+            walk.advance(whole);
+            let told = SearchProgress {
+                train_nrmse_percent: 100.0 * walk.mean_square.sqrt(),
+                ..self.progress(self.epochs + epoch, self.epochs + last)
+            };
+            if observer(told) == ControlFlow::Break(()) {
+                termination = Termination::Stopped;
+            }
+            if let Some(ended) = walk.ended {
+                termination = ended;
+                break;
+            }
+        }
+        let law = whole.law(&walk.parameters).validated()?;
+        let evaluations = self.evaluations() + walk.evaluations;
+        let train_nrmse_percent = 100.0 * walk.mean_square.sqrt();
         Ok(Identified { law, train_nrmse_percent, evaluations, termination })
+    }
+
+    fn epoch(&mut self, epoch: usize, forced: usize) {
+        let (kept, held) = (self.kept, self.held);
+        self.walks.par_iter_mut().for_each(|walk| {
+            if epoch == forced + 1 {
+                walk.set_free(kept);
+            }
+            walk.advance(kept);
+            if epoch > forced {
+                walk.judge(held);
+            }
+        });
+        self.sort();
+        if epoch > forced && (epoch - forced).is_multiple_of(EPOCHS_TO_PROVE_ITSELF) {
+            let keep = self.walks.len().div_ceil(2);
+            self.given_up += self.walks.drain(keep..).map(|walk| walk.evaluations).sum::<usize>();
+        }
+    }
+
+    /// The best first, by what was held out once that has been judged. Stable: of equals the earlier
+    /// start stays before the later.
+    fn sort(&mut self) {
+        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.objective, |(error, _)| *error);
+        self.walks.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
+    }
+
+    fn evaluations(&self) -> usize {
+        self.given_up + self.walks.iter().map(|walk| walk.evaluations).sum::<usize>()
+    }
+
+    fn progress(&self, round: usize, rounds: usize) -> SearchProgress {
+        SearchProgress {
+            round,
+            rounds,
+            evaluations: self.evaluations(),
+            train_nrmse_percent: 100.0 * self.walks[0].mean_square.sqrt(),
+        }
     }
 }
 
 /// A model with its scales and without a network.
-fn frame(data: &Dataset, series: &[Series], options: &NeuroMadelungOptions) -> NeuroMadelung {
+fn frame(data: &Dataset, options: &NeuroMadelungOptions) -> Result<NeuroMadelung> {
     let (low, high) = data.input_range(0);
+    let series = Series::all(data, options.rate)?;
     let measured: Vec<f64> =
         series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
     let (output_mean, output_scale) = spread(&measured);
-    let samples = || series.iter().flat_map(|series| &series.samples);
-    let rate = samples().map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
-    NeuroMadelung {
+    let samples = series.iter().flat_map(|series| &series.samples);
+    let rate = samples.map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
+    Ok(NeuroMadelung {
         input_scale: low.abs().max(high.abs()),
         rate_scale: options.rate.map(|_| rate),
         output_mean,
@@ -143,13 +211,13 @@ fn frame(data: &Dataset, series: &[Series], options: &NeuroMadelungOptions) -> N
         hidden: Vec::new(),
         output: Vec::new(),
         virgin_output: 0.0,
-    }
+    })
 }
 
-/// What all starts are trained on: scaled records.
+/// What a start is trained on or judged by: scaled records.
 struct Task<'a> {
     frame: &'a NeuroMadelung,
-    series: &'a [Series],
+    series: Vec<Series>,
     hidden: usize,
 }
 
@@ -166,7 +234,21 @@ struct Sweep {
     jacobian: Vec<Vec<f64>>,
 }
 
-impl Task<'_> {
+impl<'a> Task<'a> {
+    fn new(frame: &'a NeuroMadelung, data: &Dataset, options: &NeuroMadelungOptions) -> Result<Self> {
+        // The rate is an input of the network and no part of the memory.
+        let mut series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        for series in &mut series {
+            for sample in &mut series.samples {
+                (sample.x, sample.rate) = frame.scaled(*sample);
+            }
+            for y in &mut series.output {
+                *y = (*y - frame.output_mean) / frame.output_scale;
+            }
+        }
+        Ok(Self { frame, series, hidden: options.hidden })
+    }
+
     fn inputs(&self) -> usize {
         self.frame.inputs()
     }
@@ -213,7 +295,7 @@ impl Task<'_> {
         let mut sweep =
             Sweep { residual: Vec::new(), jacobian: vec![Vec::new(); if slopes { n } else { 0 }] };
         let width = if slopes { n } else { 0 };
-        for series in self.series {
+        for series in &self.series {
             let mut by_parameters = vec![0.0; width];
             if let Some(last) = by_parameters.last_mut() {
                 *last = 1.0; // of y_0 itself
@@ -253,10 +335,12 @@ fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> 
     let mut all = vec![0.0; at_turning_point.len()];
     let (hidden, rest) = all.split_at_mut(neurons * run);
     let mut slope = branch.output[0];
+    let seen = branch.seen(inputs);
+    let seen = &seen[..inputs.len()];
     let mut by_y_t = 0.0;
     rest[0] = along;
     for (index, neuron) in branch.hidden.chunks_exact(run).enumerate() {
-        let h = argument(neuron, inputs).tanh();
+        let h = argument(neuron, seen).tanh();
         let c = branch.output[1 + index];
         slope += c * h;
         rest[1 + index] = along * h;
@@ -264,16 +348,17 @@ fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> 
         by_y_t += back * neuron[3];
         let weights = &mut hidden[index * run..(index + 1) * run];
         weights[0] = along * back;
-        for (weight, input) in weights[1..].iter_mut().zip(inputs) {
+        for (weight, input) in weights[1..].iter_mut().zip(seen) {
             *weight = along * back * input;
         }
     }
     let free = inputs[2] + along * slope;
-    let y = free.clamp(branch.low, branch.high);
+    let y = branch.limited(free);
     if y != free {
         all.fill(0.0);
         return Reached { y, by_parameters: all };
     }
+    let by_y_t = if seen[2] == inputs[2] { by_y_t } else { 0.0 };
     let carried = 1.0 + along * by_y_t;
     for (slope, before) in all.iter_mut().zip(at_turning_point) {
         *slope += carried * before;
@@ -292,20 +377,32 @@ struct Walk {
     stalled: usize,
     evaluations: usize,
     ended: Option<Termination>,
+    /// Smallest error of a free run on what was held out, and where it was.
+    best: Option<(f64, Vec<f64>)>,
 }
 
 impl Walk {
     fn new(task: &Task<'_>, seed: u64, start: usize) -> Self {
+        Self::from(task, task.random(seed, start), true)
+    }
+
+    /// In free run from the beginning.
+    fn at(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+        Self::from(task, parameters, false)
+    }
+
+    fn from(task: &Task<'_>, parameters: Vec<f64>, forced: bool) -> Self {
         let mut walk = Self {
-            parameters: task.random(seed, start),
+            parameters,
             objective: 0.0,
             mean_square: 0.0,
-            forced: true,
+            forced,
             damping: FIRST_DAMPING,
             growth: 2.0,
             stalled: 0,
             evaluations: 0,
             ended: None,
+            best: None,
         };
         (walk.objective, walk.mean_square) = walk.value(task, &walk.parameters);
         walk
@@ -318,6 +415,16 @@ impl Walk {
             (self.damping, self.growth, self.stalled, self.ended) = (FIRST_DAMPING, 2.0, 0, None);
             (self.objective, self.mean_square) = self.value(task, &self.parameters);
             self.evaluations += 1;
+        }
+    }
+
+    /// Remembers the parameters if they do better than any before on what was held out.
+    fn judge(&mut self, held: &Task<'_>) {
+        let residual = held.sweep(&self.parameters, false, false).residual;
+        let error = dot(&residual, &residual) / residual.len() as f64;
+        self.evaluations += 1;
+        if self.best.as_ref().is_none_or(|(best, _)| error < *best) {
+            self.best = Some((error, self.parameters.clone()));
         }
     }
 

@@ -5,7 +5,7 @@ use crate::classical::play_weights::MOST_PLAYS;
 use crate::classical::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
-use crate::classical::series::Series;
+use crate::classical::series::{Series, work};
 use crate::error::{Error, Result};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
@@ -49,7 +49,7 @@ impl Default for RateDependentPrandtlIshlinskiiOptions {
             form: ThresholdForm::Linear,
             free_weights: true,
             rate: RateMethod::Central,
-            starts: 8,
+            starts: 16,
             epochs: 40,
             seed: 0,
         }
@@ -117,8 +117,8 @@ impl Plays {
         }
         let mut non_negative = vec![false, false];
         if options.free_weights {
-            // With a free sign the model covers plays that oppose the spring as well.
-            non_negative.extend(vec![true; options.operators]);
+            // Plays alone lag; a loop the other way round needs weights of both signs.
+            non_negative.extend(vec![work(series) < 0.0; options.operators]);
         } else {
             // τ times the largest threshold.
             variables.push(Variable::linear(-3.0, 12.0));
