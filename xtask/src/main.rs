@@ -1,10 +1,12 @@
-//! Developer commands: `cargo xtask check | test | bench | tidy`.
+//! Developer commands: `cargo xtask check | test | bench | cases | tidy`.
 
 mod bench;
+mod cases;
 mod check;
 mod test;
 mod tidy;
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -18,7 +20,35 @@ Commands:
   test           every test of the workspace
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
+  cases DIR [--models LIST] [--out FILE.md] [--time-limit SECONDS] [--program HYSID] [-- ARG..]
+                 `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
+                 training errors, seconds. LIST and ARG are passed on to it; a case that takes longer than
+                 SECONDS is given up; HYSID takes the place of the release build
 ";
+
+/// A command line that cannot be obeyed; the exit status is 2.
+#[derive(Debug)]
+struct Usage(String);
+
+impl fmt::Display for Usage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} (`cargo xtask` alone lists the commands)", self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Ctrl-C ended a command that has told so; the exit status is 130.
+#[derive(Debug)]
+struct Interrupted;
+
+impl fmt::Display for Interrupted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("interrupted")
+    }
+}
+
+impl std::error::Error for Interrupted {}
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -28,6 +58,7 @@ fn main() -> ExitCode {
         ["test"] => test::run(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
+        ["cases", rest @ ..] => cases::Request::parse(rest).and_then(|request| cases::run(&request)),
         _ => {
             eprint!("{USAGE}");
             return ExitCode::from(2);
@@ -35,9 +66,10 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Interrupted>() => ExitCode::from(130),
         Err(error) => {
             eprintln!("xtask: {error:#}");
-            ExitCode::FAILURE
+            ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
         }
     }
 }

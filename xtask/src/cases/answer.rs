@@ -1,0 +1,82 @@
+//! What `hysid compare --json` answers: a list with an object for each model. Fields that are not needed here may
+//! come and go.
+
+use serde_json::Value;
+
+/// A case and what came of it: answers, or why there are none.
+pub struct Case {
+    pub name: String,
+    pub outcome: Result<Vec<Answer>, String>,
+}
+
+/// What came of one model on one case.
+#[derive(Debug, PartialEq)]
+pub struct Answer {
+    pub model: String,
+    /// The figures, or why there are none.
+    pub figures: Result<Figures, String>,
+}
+
+/// How good and how fast a model was. What was not said, or has no value, is `None`.
+#[derive(Debug, Default, PartialEq)]
+pub struct Figures {
+    /// NRMSE of the test data in percent of the output's standard deviation.
+    pub test: Option<f64>,
+    /// The same of the training data.
+    pub train: Option<f64>,
+    /// Seconds it took to fit.
+    pub seconds: Option<f64>,
+}
+
+/// Reads the list.
+pub fn parse(text: &str) -> Result<Vec<Answer>, String> {
+    let value: Value =
+        serde_json::from_str(text).map_err(|error| format!("the answer is not JSON: {error}"))?;
+    let objects = value.as_array().ok_or("the answer is not a list")?;
+    objects.iter().map(answer).collect()
+}
+
+fn answer(object: &Value) -> Result<Answer, String> {
+    let model = object["model"].as_str().ok_or("the answer has an object without a model")?;
+    let nrmse = |set: &str| object[set]["nrmse_std_percent"].as_f64();
+    let figures = match &object["error"] {
+        Value::Null => Ok(Figures {
+            test: nrmse("test"),
+            train: nrmse("train"),
+            seconds: object["fit_seconds"].as_f64(),
+        }),
+        Value::String(error) => Err(error.clone()),
+        error => Err(error.to_string()),
+    };
+    Ok(Answer { model: model.into(), figures })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_errors_and_unknown_fields() {
+        let text = r#"[
+            {"model": "pnn", "parameters": 20, "error": null, "fit_seconds": 0.5, "later": [1],
+             "train": {"samples": 9, "nrmse_std_percent": 1.5}, "test": {"nrmse_std_percent": 2.5}},
+            {"model": "xpnn", "train": {"nrmse_std_percent": 1}, "test": {"nrmse_std_percent": null}},
+            {"model": "bouc-wen", "error": "takes one input, not 2"}
+        ]"#;
+        let answer = |model: &str, figures| Answer { model: model.into(), figures };
+        let expected = [
+            answer("pnn", Ok(Figures { test: Some(2.5), train: Some(1.5), seconds: Some(0.5) })),
+            answer("xpnn", Ok(Figures { test: None, train: Some(1.0), seconds: None })),
+            answer("bouc-wen", Err("takes one input, not 2".into())),
+        ];
+        assert_eq!(parse(text).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_is_no_such_list_is_refused() {
+        assert!(parse("a table").unwrap_err().starts_with("the answer is not JSON: "));
+        assert_eq!(parse("{}").unwrap_err(), "the answer is not a list");
+        assert_eq!(parse("[{}]").unwrap_err(), "the answer has an object without a model");
+        assert_eq!(parse("[]").unwrap(), []);
+    }
+}

@@ -1,0 +1,119 @@
+//! What is asked for on the command line of `cargo xtask cases`.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::Result;
+
+use crate::Usage;
+
+/// What is asked for.
+#[derive(Debug, Default, PartialEq)]
+pub struct Request {
+    /// The folder of the cases.
+    pub folder: PathBuf,
+    /// The models to compare, as `hysid compare` takes them; its own choice without.
+    pub models: Option<String>,
+    /// Where to write the tables.
+    pub out: Option<PathBuf>,
+    /// Time after which a case is given up.
+    pub time_limit: Option<Duration>,
+    /// The program in the place of the one that is built.
+    pub program: Option<PathBuf>,
+    /// Further arguments for `hysid compare`.
+    pub passed_on: Vec<String>,
+    /// The arguments as they were typed.
+    pub typed: Vec<String>,
+}
+
+impl Request {
+    /// Reads the arguments behind `cases`.
+    pub fn parse(arguments: &[&str]) -> Result<Self> {
+        let mut request =
+            Self { typed: arguments.iter().map(ToString::to_string).collect(), ..Self::default() };
+        let mut folder = None;
+        let mut rest = arguments.iter().copied();
+        while let Some(argument) = rest.next() {
+            if argument == "--" {
+                request.passed_on = rest.by_ref().map(str::to_owned).collect();
+            } else if argument.starts_with('-') {
+                let (option, value) = match argument.split_once('=') {
+                    Some((option, value)) => (option, Some(value)),
+                    None => (argument, rest.next()),
+                };
+                request.set(option, value)?;
+            } else if folder.replace(PathBuf::from(argument)).is_some() {
+                return usage(format!("one folder is enough: what is `{argument}`?"));
+            }
+        }
+        match folder {
+            Some(folder) => Ok(Self { folder, ..request }),
+            None => usage("name the folder of the cases".into()),
+        }
+    }
+
+    fn set(&mut self, option: &str, value: Option<&str>) -> Result<()> {
+        if !["--models", "--out", "--time-limit", "--program"].contains(&option) {
+            return usage(format!("option `{option}` is unknown"));
+        }
+        let Some(value) = value.filter(|value| !value.is_empty()) else {
+            return usage(format!("{option} needs a value"));
+        };
+        match option {
+            "--models" => self.models = Some(value.into()),
+            "--out" => self.out = Some(value.into()),
+            "--program" => self.program = Some(value.into()),
+            _ => {
+                let seconds = value.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds < 1e9);
+                let Some(seconds) = seconds else {
+                    return usage(format!("--time-limit needs a number of seconds above 0, not `{value}`"));
+                };
+                self.time_limit = Some(Duration::from_secs_f64(seconds));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn usage<T>(what: String) -> Result<T> {
+    Err(Usage(what).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_stand_anywhere_and_the_rest_is_passed_on() {
+        let typed =
+            ["--models=pnn,xpnn", "data", "--time-limit", "1.5", "--out", "a.md", "--", "--seed", "2"];
+        let request = Request::parse(&typed).unwrap();
+        let expected = Request {
+            folder: "data".into(),
+            models: Some("pnn,xpnn".into()),
+            out: Some("a.md".into()),
+            time_limit: Some(Duration::from_millis(1500)),
+            program: None,
+            passed_on: vec!["--seed".into(), "2".into()],
+            typed: typed.map(str::to_owned).to_vec(),
+        };
+        assert_eq!(request, expected);
+    }
+
+    #[test]
+    fn what_cannot_be_understood_is_said() {
+        let refusal = |typed: &[&str]| {
+            let error = Request::parse(typed).unwrap_err();
+            assert!(error.is::<Usage>());
+            error.to_string().replace(" (`cargo xtask` alone lists the commands)", "")
+        };
+        assert_eq!(refusal(&[]), "name the folder of the cases");
+        assert_eq!(refusal(&["a", "b"]), "one folder is enough: what is `b`?");
+        assert_eq!(refusal(&["a", "--seed", "2"]), "option `--seed` is unknown");
+        assert_eq!(refusal(&["a", "--out"]), "--out needs a value");
+        for value in ["0", "-1", "soon", "NaN", "inf"] {
+            let expected = format!("--time-limit needs a number of seconds above 0, not `{value}`");
+            assert_eq!(refusal(&["a", "--time-limit", value]), expected);
+        }
+    }
+}

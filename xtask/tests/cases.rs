@@ -1,0 +1,186 @@
+//! `cargo xtask cases` with a stub in the place of `hysid`: a shell script that answers by the name of the case.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+
+/// `hysid compare CASE/train.csv --test CASE/test.csv ...`
+const STUB: &str = r#"#!/bin/sh
+if [ "$1" = --version ]; then echo "hysid 1.2.3"; exit; fi
+echo "$@" >> "${0%/*}/asked"
+[ -f "$2" ] && [ -f "$4" ] || exit 1
+case "$2" in
+*/fine/*) echo '[{"model": "pnn", "train": {"nrmse_std_percent": 1.0}, "test": {"nrmse_std_percent": 2.0}, "fit_seconds": 0.1},
+    {"model": "xpnn", "train": {"nrmse_std_percent": 0.5}, "test": {"nrmse_std_percent": 3.0}, "fit_seconds": 2}]';;
+*/half/*) echo '[{"model": "pnn", "error": "takes one input, not 2"},
+    {"model": "xpnn", "train": {"nrmse_std_percent": 2.0}, "test": {"nrmse_std_percent": 12.0}, "fit_seconds": 8}]';;
+*/bad/*) echo "reading" >&2; echo "error: train.csv, line 3: is no number" >&2; exit 1;;
+*/slow/*) exec sleep 60;;
+esac
+"#;
+
+const TEST_TABLE: &str = "\
+| case           |      pnn |         xpnn |
+| -------------- | -------: | -----------: |
+| bad            |    – (1) |        – (1) |
+| fine           | **2.00** |         3.00 |
+| half           |    – (2) |     **12.0** |
+| geometric mean | 2.00 (1) | **6.00** (2) |
+";
+
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(cases: &[&str]) -> Self {
+        let bench = Self { folder: TempDir::new().unwrap() };
+        for case in cases {
+            let folder = bench.path().join("data").join(case);
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join("train.csv"), "").unwrap();
+            fs::write(folder.join("test.csv"), "").unwrap();
+        }
+        let stub = bench.path().join("stub");
+        fs::write(&stub, STUB).unwrap();
+        fs::set_permissions(stub, fs::Permissions::from_mode(0o755)).unwrap();
+        bench
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+        command.current_dir(self.path()).arg("cases").args(arguments.split_whitespace());
+        command
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.path().join(name)).unwrap()
+    }
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[test]
+fn every_case_is_asked_and_failures_are_cells() {
+    let bench = Bench::new(&["half", "fine", "bad"]);
+    fs::create_dir(bench.path().join("data/notes")).unwrap();
+    fs::create_dir(bench.path().join("data/trained-only")).unwrap();
+    fs::write(bench.path().join("data/trained-only/train.csv"), "").unwrap();
+    let ran = bench.run("data --models pnn,xpnn --out cases.md --program ./stub -- --seed 2");
+    assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
+    let asked: Vec<String> = ["bad", "fine", "half"]
+        .map(|case| {
+            format!(
+                "compare data/{case}/train.csv --test data/{case}/test.csv --models pnn,xpnn --json --seed 2"
+            )
+        })
+        .to_vec();
+    assert_eq!(bench.text("asked").lines().collect::<Vec<_>>(), asked);
+    assert!(stderr(&ran).contains("data/trained-only is left out: it has no test.csv"), "{}", stderr(&ran));
+    assert!(stderr(&ran).contains("3/3 half: 2 models, 1 failed, "), "{}", stderr(&ran));
+
+    let tables = stdout(&ran);
+    assert!(tables.contains(TEST_TABLE), "{tables}");
+    assert!(tables.contains("1. train.csv, line 3: is no number\n2. takes one input, not 2\n"), "{tables}");
+    let page = bench.text("cases.md");
+    assert!(page.ends_with(&tables), "{page}");
+    for said in [
+        "hysid 1.2.3:\n",
+        "cargo xtask cases data --models pnn,xpnn --out cases.md --program ./stub -- --seed 2\n",
+        "The data are not in this\nrepository.",
+    ] {
+        assert!(page.contains(said), "{said}: {page}");
+    }
+    assert_eq!(fs::read_dir(bench.path()).unwrap().count(), 4, "nothing else is left behind");
+}
+
+#[test]
+fn a_slow_case_is_given_up() {
+    let bench = Bench::new(&["fine", "slow"]);
+    let began = Instant::now();
+    let ran = bench.run("data --program ./stub --time-limit 0.5");
+    assert!(began.elapsed() < Duration::from_secs(30));
+    assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
+    assert!(stdout(&ran).contains("1. not done after 0.5 s\n"), "{}", stdout(&ran));
+}
+
+#[test]
+fn ctrl_c_leaves_what_is_there() {
+    let bench = Bench::new(&["fine", "slow", "then"]);
+    let out = bench.path().join("cases.md");
+    let mut command = bench.command("data --program ./stub --out cases.md");
+    let xtask =
+        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    // The slow case is running once it was asked for.
+    let asked = || fs::read_to_string(bench.path().join("asked")).unwrap_or_default().contains("slow");
+    let began = Instant::now();
+    while !asked() && began.elapsed() < Duration::from_secs(20) {
+        thread::sleep(Duration::from_millis(10));
+    }
+    let before = fs::read_to_string(&out).unwrap();
+    assert!(Command::new("kill").args(["-INT", &xtask.id().to_string()]).status().unwrap().success());
+    let ran = xtask.wait_with_output().unwrap();
+    assert!(began.elapsed() < Duration::from_secs(30));
+    assert_eq!(ran.status.code(), Some(130), "{}", stderr(&ran));
+    assert!(stderr(&ran).ends_with("interrupted: 1 of 3 cases are done\n"), "{}", stderr(&ran));
+    assert!(stdout(&ran).contains("| fine           | **2.00** | 3.00 |\n"), "{}", stdout(&ran));
+    assert_eq!(fs::read_to_string(&out).unwrap(), before);
+    assert!(before.contains("1 of 3 cases (not finished)"), "{before}");
+    assert!(!bench.text("asked").contains("then"));
+}
+
+#[test]
+fn a_program_without_the_command_is_a_failure_of_every_case() {
+    let bench = Bench::new(&["none"]);
+    let ran = bench.run("data --program ./stub");
+    assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
+    assert!(stdout(&ran).contains("| none           |     – (1) |\n"), "{}", stdout(&ran));
+    assert!(stdout(&ran).contains("1. the answer is not JSON: "), "{}", stdout(&ran));
+}
+
+#[test]
+fn what_cannot_be_done_is_said_before_any_work() {
+    let bench = Bench::new(&["fine"]);
+    fs::create_dir(bench.path().join("empty")).unwrap();
+    for (arguments, status, expected) in [
+        ("", 2, "name the folder of the cases (`cargo xtask` alone lists the commands)"),
+        ("data --seed 3", 2, "option `--seed` is unknown (`cargo xtask` alone lists the commands)"),
+        ("nowhere --program ./stub", 1, "nowhere cannot be read: No such file or directory (os error 2)"),
+        ("empty --program ./stub", 1, "empty: no subfolder has train.csv and test.csv"),
+        (
+            "data --program ./stub --out nowhere/a.md",
+            1,
+            "nowhere/a.md cannot be written: name a file in a folder that is there",
+        ),
+        (
+            "data --program ./no-stub",
+            1,
+            "./no-stub could not be started: No such file or directory (os error 2)",
+        ),
+    ] {
+        let ran = bench.run(arguments);
+        assert_eq!(stderr(&ran), format!("xtask: {expected}\n"), "{arguments}");
+        assert_eq!((ran.status.code(), stdout(&ran)), (Some(status), String::new()), "{arguments}");
+    }
+    assert!(!bench.path().join("asked").exists());
+}
