@@ -1,0 +1,48 @@
+//! The pages of `docs/how-to` as a reader follows them: every line of a `sh` block that begins with `hysid` is run, in
+//! order, in a folder of the page's own.
+#![cfg(unix)]
+
+mod workbench;
+
+use std::fs;
+use std::path::Path;
+
+use workbench::Workbench;
+
+/// The commands of a page.
+fn commands(page: &str) -> Vec<&str> {
+    let mut inside = false;
+    let mut commands = Vec::new();
+    for line in page.lines() {
+        if line.starts_with("```") {
+            inside = line == "```sh";
+        } else if inside && line.starts_with("hysid ") {
+            commands.push(line);
+        }
+    }
+    commands
+}
+
+#[test]
+fn every_command_of_every_page_works() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/how-to");
+    let pages = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let pages: Vec<_> = pages.filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
+    assert!(!pages.is_empty());
+    for path in pages {
+        let page = fs::read_to_string(&path).unwrap();
+        let commands = commands(&page);
+        assert!(!commands.is_empty(), "{} has no command", path.display());
+        let bench = Workbench::new();
+        for command in commands {
+            let ran = bench.shell(command);
+            assert_eq!(ran.status, Some(0), "{}: `{command}`: {}", path.display(), ran.stderr);
+        }
+    }
+}
+
+#[test]
+fn only_lines_of_shell_blocks_are_commands() {
+    let page = "hysid a\n```sh\nhysid b\ncargo c\n  hysid d\n```\nhysid e\n```json\nhysid f\n```\n```sh\nhysid g # h\n```\n";
+    assert_eq!(commands(page), ["hysid b", "hysid g # h"]);
+}
