@@ -11,6 +11,8 @@ import network as reference
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
+MODEL_VERSION = 2
+
 SPEEDS = {
     "simulate": ("simulate_ns_per_sample", 1e-9 * reference.SAMPLES),
     "evaluation": ("genetic_evaluation_us", 1e-6),
@@ -56,13 +58,18 @@ def speeds(program):
 
 
 def fitted_model(program, folder):
-    """A model of the record of `hysid bench`, as that command fits it."""
+    """The network of a model of the record of `hysid bench`, as that command fits it."""
     time, x = reference.bench_input(reference.POPULATION_SAMPLES)
     write_table(folder / "bench.csv", t=time, x=x, y=reference.bench_output(x))
     sizes = ["--stops", reference.STOPS, "--hidden", reference.HIDDEN]
     options = ["--model", "xpnn", *sizes, "--rate", "central", "--starts", 1, "--no-report"]
     ask(program, "fit", folder / "bench.csv", *options, "-o", folder / "model.json")
-    return json.loads((folder / "model.json").read_text())
+    model = json.loads((folder / "model.json").read_text())
+    if model.get("version") != MODEL_VERSION:
+        raise Failure(
+            f"model files of version {model.get('version')} are not known here, only {MODEL_VERSION}"
+        )
+    return model["network"]
 
 
 def difference(program, model, folder):

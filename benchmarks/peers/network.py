@@ -32,7 +32,7 @@ class Network(NamedTuple):
 
 
 def from_model_file(model):
-    """The network of a parsed `hysid fit` model file."""
+    """The network in a model file of `hysid fit`, parsed."""
     stops = model["memory"]["stops"]
     return Network(
         np.array([stop["weights"] for stop in stops]),

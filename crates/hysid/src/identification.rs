@@ -146,7 +146,7 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
     let defaults = RandomStopsOptions::default();
     let wanted = RandomStopsOptions {
         stops: options.operators.unwrap_or(defaults.stops),
-        hidden: options.hidden.unwrap_or(defaults.hidden),
+        hidden: options.hidden,
         rate: options.rate,
         seed: options.seed,
         ..defaults

@@ -5,6 +5,7 @@ mod file;
 
 use serde::{Deserialize, Serialize};
 
+use crate::classical::identification::Rival;
 use crate::classical::series::Series;
 use crate::classical::{Classical, ClassicalState, Law, Sample};
 use crate::error::{Channel, DataProblem, Error, Result};
@@ -207,7 +208,11 @@ impl Model {
 
     /// Number of parameters that were found from the data.
     pub fn parameters(&self) -> usize {
-        self.body.parameters()
+        match (&self.body, self.name()) {
+            // All others are random.
+            (Body::Network { network, .. }, ModelName::Rival(Rival::RandomStops)) => network.output().len(),
+            (body, _) => body.parameters(),
+        }
     }
 
     /// How the rate is found; `None` for a model without rate.

@@ -424,7 +424,7 @@ fn random_stops_are_a_network() {
     let y: Vec<f64> =
         wearing(0.4).iter().zip(wearing(1.1)).zip(&x).map(|((a, b), x)| 3.0 * a + b + 0.2 * x).collect();
     let data = dataset(x.clone(), y.clone());
-    let options = RandomStopsOptions { stops: 80, hidden: 10, ..Default::default() };
+    let options = RandomStopsOptions { stops: 80, hidden: Some(10), ..Default::default() };
     let fitted = fit_random_stops(&data, &options).unwrap();
     let drive = fitted.scaling.drive(&data.records()[0], fitted.network.architecture(), None).unwrap();
     let mut found = vec![0.0; x.len()];

@@ -28,8 +28,9 @@ use crate::training::start::normal;
 pub struct RandomStopsOptions {
     /// Stops, 1 to 1000.
     pub stops: usize,
-    /// Random tanh neurons beside the direct path from the stops to the output, 0 to 1000.
-    pub hidden: usize,
+    /// Random tanh neurons beside the direct path from the stops to the output, 0 to 1000; none or 100,
+    /// chosen by cross-validation, if `None`.
+    pub hidden: Option<usize>,
     /// How the rate of the first input is found; `None` for stops that do not see it.
     pub rate: Option<RateMethod>,
     /// Whether the stops deteriorate; chosen by cross-validation if `None`.
@@ -40,7 +41,7 @@ pub struct RandomStopsOptions {
 
 impl Default for RandomStopsOptions {
     fn default() -> Self {
-        Self { stops: 300, hidden: 100, rate: None, deterioration: None, seed: 1 }
+        Self { stops: 300, hidden: None, rate: None, deterioration: None, seed: 1 }
     }
 }
 
@@ -57,6 +58,9 @@ pub struct RandomStops {
     /// geometric mean over the folds.
     pub validation_nrmse_percent: f64,
 }
+
+/// Tanh neurons, where cross-validation finds them better than none. Designed.
+const HIDDEN: usize = 100;
 
 /// Thresholds lie between this share of the largest input and the whole of it, evenly in their logarithm.
 /// Designed.
@@ -80,7 +84,12 @@ pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<
     data.check_identifiable(FEWEST_ROWS)?;
     let scaling = Scaling::of(data, options.rate)?;
     let mut best: Option<RandomStops> = None;
-    for deterioration in options.deterioration.map_or(vec![false, true], |one| vec![one]) {
+    let deteriorations = options.deterioration.map_or(vec![false, true], |one| vec![one]);
+    let hidden = options.hidden.map_or(vec![0, HIDDEN], |one| vec![one]);
+    let candidates = deteriorations
+        .iter()
+        .flat_map(|&deterioration| hidden.iter().map(move |&hidden| (deterioration, hidden)));
+    for (deterioration, hidden) in candidates {
         let architecture = Architecture {
             inputs: data.names().inputs.len(),
             rate: options.rate.is_some(),
@@ -88,7 +97,7 @@ pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<
             deterioration,
             linear: true,
             relaxation: 0,
-            hidden: options.hidden,
+            hidden,
             direct: true,
             constant: true,
         };
