@@ -107,7 +107,7 @@ fn command(program: &Path, folder: &Path, request: &Request) -> Command {
     if let Some(models) = &request.models {
         command.args(["--models", models]);
     }
-    command.arg("--json").args(&request.passed_on);
+    command.args(["--json", "--no-report"]).args(&request.passed_on);
     command
 }
 

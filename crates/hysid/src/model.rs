@@ -270,7 +270,7 @@ impl Model {
     pub fn stepper(&self) -> Stepper<'_> {
         let memory = match &self.body {
             Body::Network { network, .. } => {
-                Memory::Network(network.simulator(), vec![0.0; network.architecture().channels()])
+                Memory::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
             }
             Body::Law(law) => Memory::Law(law.virgin()),
         };
@@ -325,7 +325,7 @@ pub struct Stepper<'m> {
 #[derive(Debug, Clone)]
 enum Memory {
     /// A network's simulator, and room for its channels.
-    Network(Simulator, Vec<f64>),
+    Network(Box<Simulator>, Vec<f64>),
     Law(ClassicalState),
 }
 
