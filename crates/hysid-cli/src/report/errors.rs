@@ -90,7 +90,7 @@ fn explanation(report: &Report) -> String {
             "“Validation” is the chosen start on the data held out from it, before it was trained on \
              everything; having won the choice among the starts there, it is a little flattered."
         }
-        None => "The data were too few to hold any out, so there is no validation.",
+        None => "Nothing was held out, so there is no validation.",
     };
     note(&text)
 }
