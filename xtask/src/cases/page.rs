@@ -64,7 +64,7 @@ impl Page {
         sections[0] += "\nBold: the best of its row. A mean is over the cases where the model worked, in brackets how many \
                         where not all; it is\nbold only if the model worked wherever any did.\n";
         if !reasons.is_empty() {
-            sections[0] += &format!("\nWithout a number:\n\n{reasons}");
+            sections[0] += &format!("\nWhy cells are empty:\n\n{reasons}");
         }
         sections.join("\n")
     }
@@ -143,7 +143,7 @@ mod tests {
         assert!(text.contains("cargo xtask cases 'my data' --models pnn,xpnn --program hysid\n"), "{text}");
         assert!(text.contains("1 of 2 cases (not finished), "), "{text}");
         assert!(text.contains("The data are not in this\nrepository."), "{text}");
-        assert!(!text.contains("Without a number"), "{text}");
+        assert!(!text.contains("Why cells"), "{text}");
         let headings: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("## ")).collect();
         assert_eq!(headings, TABLES.map(|(heading, _)| heading));
 
