@@ -42,7 +42,7 @@ pub fn run(request: &Request) -> Result<()> {
     ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::SeqCst)).context("cannot listen for Ctrl-C")?;
     for (number, folder) in (1..).zip(&folders) {
         let began = Instant::now();
-        let Some(outcome) = compare::run(&mut command(&program, folder, request), request.time_limit) else {
+        let Some(outcome) = compare::run(&mut command(&program, folder, request), request.case_limit) else {
             break;
         };
         let case = Case { name: name(folder), outcome };
@@ -106,6 +106,9 @@ fn command(program: &Path, folder: &Path, request: &Request) -> Command {
     command.arg("compare").arg(folder.join("train.csv")).arg("--test").arg(folder.join("test.csv"));
     if let Some(models) = &request.models {
         command.args(["--models", models]);
+    }
+    if let Some(seconds) = request.time_limit {
+        command.args(["--time-limit", &seconds.to_string()]);
     }
     command.args(["--json", "--no-report"]).args(&request.passed_on);
     command

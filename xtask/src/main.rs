@@ -20,10 +20,11 @@ Commands:
   test           every test of the workspace
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
-  cases DIR [--models LIST] [--out FILE.md] [--time-limit SECONDS] [--program HYSID] [-- ARG..]
+  cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]
+            [-- ARG..]
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
-                 training errors, seconds. LIST and ARG are passed on to it; a case that takes longer than
-                 SECONDS is given up; HYSID takes the place of the release build
+                 training errors, seconds. LIST, time limit and ARG are passed on to it; a case that takes longer
+                 than its limit is given up; HYSID takes the place of the release build
 ";
 
 /// A command line that cannot be obeyed; the exit status is 2.

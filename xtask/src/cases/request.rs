@@ -16,8 +16,10 @@ pub struct Request {
     pub models: Option<String>,
     /// Where to write the tables.
     pub out: Option<PathBuf>,
+    /// Seconds for each model, as `hysid compare` takes them; its own choice without.
+    pub time_limit: Option<f64>,
     /// Time after which a case is given up.
-    pub time_limit: Option<Duration>,
+    pub case_limit: Option<Duration>,
     /// The program in the place of the one that is built.
     pub program: Option<PathBuf>,
     /// Further arguments for `hysid compare`.
@@ -53,7 +55,7 @@ impl Request {
     }
 
     fn set(&mut self, option: &str, value: Option<&str>) -> Result<()> {
-        if !["--models", "--out", "--time-limit", "--program"].contains(&option) {
+        if !["--models", "--out", "--time-limit", "--case-limit", "--program"].contains(&option) {
             return usage(format!("option `{option}` is unknown"));
         }
         let Some(value) = value.filter(|value| !value.is_empty()) else {
@@ -63,15 +65,17 @@ impl Request {
             "--models" => self.models = Some(value.into()),
             "--out" => self.out = Some(value.into()),
             "--program" => self.program = Some(value.into()),
-            _ => {
-                let seconds = value.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds < 1e9);
-                let Some(seconds) = seconds else {
-                    return usage(format!("--time-limit needs a number of seconds above 0, not `{value}`"));
-                };
-                self.time_limit = Some(Duration::from_secs_f64(seconds));
-            }
+            "--time-limit" => self.time_limit = Some(seconds(option, value)?),
+            _ => self.case_limit = Some(Duration::from_secs_f64(seconds(option, value)?)),
         }
         Ok(())
+    }
+}
+
+fn seconds(option: &str, value: &str) -> Result<f64> {
+    match value.parse() {
+        Ok(seconds) if seconds > 0.0 && seconds < 1e9 => Ok(seconds),
+        _ => usage(format!("{option} needs a number of seconds above 0, not `{value}`")),
     }
 }
 
@@ -85,17 +89,18 @@ mod tests {
 
     #[test]
     fn options_stand_anywhere_and_the_rest_is_passed_on() {
-        let typed =
-            ["--models=pnn,xpnn", "data", "--time-limit", "1.5", "--out", "a.md", "--", "--seed", "2"];
+        let typed = "--models=pnn,xpnn data --time-limit 5 --case-limit 1.5 --out a.md -- --seed 2";
+        let typed: Vec<&str> = typed.split(' ').collect();
         let request = Request::parse(&typed).unwrap();
         let expected = Request {
             folder: "data".into(),
             models: Some("pnn,xpnn".into()),
             out: Some("a.md".into()),
-            time_limit: Some(Duration::from_millis(1500)),
+            time_limit: Some(5.0),
+            case_limit: Some(Duration::from_millis(1500)),
             program: None,
             passed_on: vec!["--seed".into(), "2".into()],
-            typed: typed.map(str::to_owned).to_vec(),
+            typed: typed.iter().map(ToString::to_string).collect(),
         };
         assert_eq!(request, expected);
     }
@@ -111,9 +116,9 @@ mod tests {
         assert_eq!(refusal(&["a", "b"]), "one folder is enough: what is `b`?");
         assert_eq!(refusal(&["a", "--seed", "2"]), "option `--seed` is unknown");
         assert_eq!(refusal(&["a", "--out"]), "--out needs a value");
-        for value in ["0", "-1", "soon", "NaN", "inf"] {
-            let expected = format!("--time-limit needs a number of seconds above 0, not `{value}`");
-            assert_eq!(refusal(&["a", "--time-limit", value]), expected);
+        for (option, value) in [("--time-limit", "0"), ("--time-limit", "soon"), ("--case-limit", "inf")] {
+            let expected = format!("{option} needs a number of seconds above 0, not `{value}`");
+            assert_eq!(refusal(&["a", option, value]), expected);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One table: a row for each case, a column for each model, the best of each row in bold, and the geometric means.
 
+use std::cmp::Reverse;
 use std::iter;
 
 use super::answer::{Case, Figures};
@@ -27,7 +28,8 @@ impl Reasons {
     }
 }
 
-/// The models that any case has an answer of, in the order in which they come.
+/// The models that any case has an answer of, the best on the left: those with the fewest failures, and of these those
+/// with the lowest mean error on test data.
 pub fn models(cases: &[Case]) -> Vec<&str> {
     let mut models = Vec::new();
     for answer in cases.iter().flat_map(|case| &case.outcome).flatten() {
@@ -35,6 +37,14 @@ pub fn models(cases: &[Case]) -> Vec<&str> {
             models.push(&answer.model);
         }
     }
+    let errors = |model: &str| -> Vec<f64> {
+        cases.iter().filter_map(|case| value(case, model, |figures| figures.test).ok()).collect()
+    };
+    let rank = |model: &str| (Reverse(errors(model).len()), geometric_mean(&errors(model)));
+    models.sort_by(|a, b| {
+        let ((a_worked, a_mean), (b_worked, b_mean)) = (rank(a), rank(b));
+        a_worked.cmp(&b_worked).then(a_mean.total_cmp(&b_mean))
+    });
     models
 }
 
@@ -74,16 +84,20 @@ fn value<'a>(case: &'a Case, model: &str, measure: Measure) -> Result<f64, &'a s
 fn geometric_means(rows: &[Vec<Result<f64, &str>>], columns: usize) -> Vec<String> {
     let columns: Vec<Vec<f64>> =
         (0..columns).map(|column| rows.iter().filter_map(|row| row[column].ok()).collect()).collect();
-    let mean = |column: &Vec<f64>| (column.iter().map(|v| v.ln()).sum::<f64>() / column.len() as f64).exp();
     let answered = rows.iter().filter(|row| row.iter().any(Result::is_ok)).count();
-    let best = least(columns.iter().filter(|column| column.len() == answered).map(mean));
+    let best =
+        least(columns.iter().filter(|column| column.len() == answered).map(|column| geometric_mean(column)));
     let cell = |column: &Vec<f64>| match column.len() {
         0 => "–".into(),
-        count if count == answered && count == rows.len() => marked(mean(column), &best),
-        count if count == answered => format!("{} ({count})", marked(mean(column), &best)),
-        count => format!("{} ({count})", shown(mean(column))),
+        count if count == answered && count == rows.len() => marked(geometric_mean(column), &best),
+        count if count == answered => format!("{} ({count})", marked(geometric_mean(column), &best)),
+        count => format!("{} ({count})", shown(geometric_mean(column))),
     };
     columns.iter().map(cell).collect()
+}
+
+fn geometric_mean(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
 /// The least of the values, as it is shown.

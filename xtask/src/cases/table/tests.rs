@@ -48,19 +48,19 @@ fn failures_are_cells_with_a_reason_told_once() {
         case("four", vec![answer("xpnn", Ok(Figures::default()))]),
     ];
     let expected = "\
-| case           |   pnn |         xpnn |
-| -------------- | ----: | -----------: |
-| one            | – (1) |     **4.00** |
-| two            | – (2) |        – (2) |
-| three          | – (1) |     **9.00** |
-| four           | – (3) |        – (4) |
-| geometric mean |     – | **6.00** (2) |
+| case           |         xpnn |   pnn |
+| -------------- | -----------: | ----: |
+| one            |     **4.00** | – (1) |
+| two            |        – (2) | – (2) |
+| three          |     **9.00** | – (1) |
+| four           |        – (3) | – (4) |
+| geometric mean | **6.00** (2) |     – |
 ";
     let reasons = "\
 1. takes one input, not 2
 2. train.csv, line 3: is no number
-3. not among the answers
-4. the answer has no such number
+3. the answer has no such number
+4. not among the answers
 ";
     assert_eq!(test_table(&cases), (expected.into(), reasons.into()));
 }
@@ -73,7 +73,7 @@ fn a_model_that_fails_where_it_is_hard_has_not_the_best_mean() {
     ];
     let (table, _) = test_table(&cases);
     let mean = table.lines().last().unwrap();
-    assert_eq!(mean, "| geometric mean | 1.00 (1) | **10.0** |");
+    assert_eq!(mean, "| geometric mean | **10.0** | 1.00 (1) |");
 }
 
 #[test]
@@ -88,6 +88,23 @@ fn without_any_answer_the_reasons_stay() {
 | geometric mean |         – |
 ";
     assert_eq!((table.as_str(), reasons.as_str()), (expected, "1. unrecognized subcommand 'compare'\n"));
+}
+
+#[test]
+fn the_best_model_is_on_the_left() {
+    let cases = [
+        case("one", vec![answer("middling", Ok(figures(2.0))), answer("best", Ok(figures(3.0)))]),
+        case(
+            "two",
+            vec![
+                answer("never", Err("diverged")),
+                answer("once", Ok(figures(0.1))),
+                answer("best", Ok(figures(1.0))),
+                answer("middling", Ok(figures(2.0))),
+            ],
+        ),
+    ];
+    assert_eq!(models(&cases), ["best", "middling", "once", "never"]);
 }
 
 #[test]
