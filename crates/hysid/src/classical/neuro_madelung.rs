@@ -16,14 +16,13 @@
 //! factor `x - x_t` and the training are ours.
 
 mod fitting;
-mod turning_point_memory;
 
 use serde::{Deserialize, Serialize};
 
+use crate::classical::turning_point_stack::TurningPointStack;
 use crate::classical::{Dimension, Law, Parameter, Sample};
 use crate::error::{Error, LARGEST_VALUE, Result};
 pub use fitting::NeuroMadelungOptions;
-pub use turning_point_memory::TurningPointMemory;
 
 /// The output may leave the range that was trained on by so many of these ranges. A chain of wrong
 /// branches, each beginning at the end of the one before, can otherwise grow beyond all bounds; a
@@ -150,17 +149,19 @@ impl NeuroMadelung {
 
 impl Law for NeuroMadelung {
     /// Turning points, scaled.
-    type State = TurningPointMemory<f64>;
+    type State = TurningPointStack<f64>;
 
-    fn virgin(&self) -> TurningPointMemory<f64> {
-        TurningPointMemory::new(self.virgin_output)
+    fn virgin(&self) -> TurningPointStack<f64> {
+        TurningPointStack::default()
     }
 
-    fn step(&self, state: &mut TurningPointMemory<f64>, sample: Sample) -> f64 {
+    fn step(&self, state: &mut TurningPointStack<f64>, sample: Sample) -> f64 {
         let (x, rate) = self.scaled(sample);
-        let &(x_t, y_t) = state.advance(x);
+        state.advance(x, 0.0);
+        let (x_t, y_t) =
+            state.points().last().map_or((0.0, self.virgin_output), |point| (point.x, point.value));
         let y = self.branch().value(&[x, x_t, y_t, rate][..self.inputs()]);
-        state.arrived(y);
+        state.set_value(y);
         self.output_mean + self.output_scale * y
     }
 

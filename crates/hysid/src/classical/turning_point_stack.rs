@@ -62,7 +62,7 @@ impl<T> Default for TurningPointStack<T> {
     }
 }
 
-impl<T: Copy> TurningPointStack<T> {
+impl<T: Clone> TurningPointStack<T> {
     /// Moves to the next input, which must be finite: the present point is put down as a turning point
     /// if the input turns there, and what the input passes is wiped out. `value` is what the model knows
     /// at the new point; where it follows from the branch, [`TurningPointStack::set_value`] sets it.
@@ -73,7 +73,7 @@ impl<T: Copy> TurningPointStack<T> {
     /// [`TurningPointStack::advance`], telling of every change of the points: `changed` sees each point
     /// just put down, and the stack just before points are wiped out.
     pub fn advance_with(&mut self, x: f64, value: T, mut changed: impl FnMut(Change<'_, T>)) {
-        if let Some(present) = self.present {
+        if let Some(present) = &self.present {
             if x == present.x {
                 self.present = Some(TurningPoint { x, value });
                 return;
@@ -85,12 +85,12 @@ impl<T: Copy> TurningPointStack<T> {
             // At rest at 0 the virgin curve goes both ways.
             let at_origin = self.points.is_empty() && present.x == 0.0;
             if heads_up != (x > present.x) && !at_origin {
-                self.points.push(present);
+                self.points.push(present.clone());
                 changed(Change::PutDown(&self.points));
             }
         }
         loop {
-            let wiped = match self.points[..] {
+            let wiped = match self.points.as_slice() {
                 [] => 0,
                 [first] => usize::from(x.abs() >= first.x.abs()),
                 [.., before, start] => {
@@ -116,10 +116,10 @@ impl<T: Copy> TurningPointStack<T> {
 
     /// The curve that the present point lies on.
     pub fn branch(&self) -> Branch<T> {
-        match self.points[..] {
+        match self.points.as_slice() {
             [] => Branch::Virgin,
-            [start] => Branch::From { start, before: None },
-            [.., before, start] => Branch::From { start, before: Some(before) },
+            [start] => Branch::From { start: start.clone(), before: None },
+            [.., before, start] => Branch::From { start: start.clone(), before: Some(before.clone()) },
         }
     }
 
@@ -130,8 +130,8 @@ impl<T: Copy> TurningPointStack<T> {
     }
 
     /// The present point; `None` before the first sample.
-    pub fn present(&self) -> Option<TurningPoint<T>> {
-        self.present
+    pub fn present(&self) -> Option<&TurningPoint<T>> {
+        self.present.as_ref()
     }
 }
 

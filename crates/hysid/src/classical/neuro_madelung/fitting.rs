@@ -17,13 +17,14 @@ use rayon::prelude::*;
 
 use crate::classical::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
 use crate::classical::series::Series;
+use crate::classical::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::error::{Error, Result};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::training::{FEWEST_ROWS, Termination, start::normal};
 
-use super::{Branch, NeuroMadelung, TurningPointMemory, argument};
+use super::{Branch, NeuroMadelung, argument};
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
@@ -300,9 +301,12 @@ impl<'a> Task<'a> {
             if let Some(last) = by_parameters.last_mut() {
                 *last = 1.0; // of y_0 itself
             }
-            let mut memory = TurningPointMemory::new(Reached { y: law.virgin_output, by_parameters });
+            let virgin = TurningPoint { x: 0.0, value: Reached { y: law.virgin_output, by_parameters } };
+            let mut memory = TurningPointStack::default();
             for (sample, &measured) in series.samples.iter().zip(&series.output) {
-                let (x_t, reached) = memory.advance(sample.x);
+                // What is reached there follows from the branch.
+                memory.advance(sample.x, Reached { y: 0.0, by_parameters: Vec::new() });
+                let TurningPoint { x: x_t, value: reached } = memory.points().last().unwrap_or(&virgin);
                 let inputs = [sample.x, *x_t, reached.y, sample.rate];
                 let inputs = &inputs[..self.inputs()];
                 let mut here = if slopes {
@@ -320,7 +324,7 @@ impl<'a> Task<'a> {
                         here.by_parameters.fill(0.0);
                     }
                 }
-                memory.arrived(here);
+                memory.set_value(here);
             }
         }
         sweep
