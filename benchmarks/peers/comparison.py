@@ -12,6 +12,7 @@ import case as cases
 import hysid_program
 import results
 from hysid_program import Failure
+from worker import ONE_CORE
 
 HERE = Path(__file__).resolve().parent
 
@@ -91,7 +92,7 @@ class Worker:
 def start_workers(case_path):
     """Each is the peer's best setting for its tasks; what fits one task may not fit another."""
     cores = os.cpu_count()
-    one_thread = {"XLA_FLAGS": XLA_FLAGS + " --xla_cpu_multi_thread_eigen=false", "NPROC": "1"}
+    one_thread = {"XLA_FLAGS": XLA_FLAGS + " --xla_cpu_multi_thread_eigen=false", ONE_CORE: "1"}
     devices = {"XLA_FLAGS": f"{XLA_FLAGS} --xla_force_host_platform_device_count={cores}"}
     settings = [
         ("numba", cases.ONE_THREAD + cases.ALL_CORES, WORK_STEALING),

@@ -123,6 +123,15 @@ def tanh(x):
     return float_of(bits_of(e / (e + 2.0)) | (bits_of(x) & SIGN))
 
 
+@njit
+def work_space():
+    """At the beginning of a cache line: 512-bit vectors across two of them are slow."""
+    numbers = 8
+    spare = np.empty(WORK_SPACE + numbers)
+    first = -(spare.ctypes.data // spare.itemsize) % numbers
+    return spare[first : first + WORK_SPACE]
+
+
 @njit(fastmath=FAST, error_model="numpy")
 def begin(stop_weights, beta, x, rate, work):
     work[:] = 0.0
@@ -186,7 +195,7 @@ def advance(linear, hidden, x, rate, first, rows, work):
 
 @njit(fastmath=REORDERED, error_model="numpy")
 def simulate(stop_weights, beta, linear, hidden, output, x, rate, y):
-    work = np.empty(WORK_SPACE)
+    work = work_space()
     begin(stop_weights, beta, x, rate, work)
     for first in range(0, len(x), BLOCK):
         rows = min(BLOCK, len(x) - first)
@@ -246,7 +255,7 @@ def solve(gram, samples, weights):
 
 @njit(fastmath=REORDERED, error_model="numpy")
 def fit_output(stop_weights, beta, linear, hidden, x, rate, target, weights):
-    work = np.empty(WORK_SPACE)
+    work = work_space()
     gram = np.zeros((FEATURES + 1, FEATURES + 1))
     gram[0, 0] = len(x)
     begin(stop_weights, beta, x, rate, work)

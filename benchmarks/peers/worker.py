@@ -7,11 +7,16 @@ stdin, runs these formulations and tells their times. Answers are lines of JSON.
 import importlib
 import json
 import math
+import os
 import statistics
 import sys
 import time
 
 import case as cases
+
+ONE_CORE = "PEERS_ONE_CORE"
+"""Environment variable that keeps the process on one core. XLA has at least two threads, its own and the
+caller's, and lets both compute."""
 
 BATCHES = 9
 """A time is the median of this many batches of runs, as in `hysid bench`."""
@@ -51,6 +56,8 @@ def formulations(peer, case):
 
 def main():
     peer, path, *tasks = sys.argv[1:]
+    if ONE_CORE in os.environ and hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     # Libraries may print: only answers go to the parent.
     answers, sys.stdout = sys.stdout, sys.stderr
     case = cases.load(path)
