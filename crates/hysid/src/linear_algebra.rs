@@ -32,9 +32,9 @@ impl Batch {
 
     /// Appends rows, given by columns; there must be room for them.
     #[inline(always)]
-    pub fn append<const N: usize>(&mut self, columns: &[[f64; N]], rows: usize) {
+    pub fn append(&mut self, columns: &[impl AsRef<[f64]>], rows: usize) {
         for (column, values) in self.data.chunks_exact_mut(BATCH).zip(columns) {
-            column[self.rows..self.rows + rows].copy_from_slice(&values[..rows]);
+            column[self.rows..self.rows + rows].copy_from_slice(&values.as_ref()[..rows]);
         }
         self.rows += rows;
     }

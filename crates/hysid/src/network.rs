@@ -88,9 +88,9 @@ impl Network {
             memory,
             readout: Readout::new(&self.architecture, &self.parameters),
             output: self.output.clone(),
-            u: vec![[0.0; BLOCK]; self.architecture.channels()],
-            z: vec![[0.0; BLOCK]; self.architecture.memory_neurons()],
-            h: vec![[0.0; BLOCK]; self.architecture.hidden],
+            u: vec![Row([0.0; BLOCK]); self.architecture.channels()],
+            z: vec![Row([0.0; BLOCK]); self.architecture.memory_neurons()],
+            h: vec![Row([0.0; BLOCK]); self.architecture.hidden],
         }
     }
 }
@@ -173,8 +173,8 @@ impl WithSimd for Run<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let mut steps = [0.0; BLOCK];
-        let mut output = [0.0; BLOCK];
+        let mut steps = Row([0.0; BLOCK]);
+        let mut output = Row([0.0; BLOCK]);
         for (index, y) in self.y.chunks_mut(BLOCK).enumerate() {
             let (start, rows) = (index * BLOCK, y.len());
             for (block, u) in self.simulator.u.iter_mut().zip(self.u) {
@@ -206,9 +206,9 @@ impl WithSimd for Step<'_> {
         for (block, &u) in self.simulator.u.iter_mut().zip(self.u) {
             block[0] = limited(u);
         }
-        let mut steps = [0.0; BLOCK];
+        let mut steps = Row([0.0; BLOCK]);
         steps[0] = self.step;
-        let mut output = [0.0; BLOCK];
+        let mut output = Row([0.0; BLOCK]);
         self.simulator.block(simd, &steps, 1, &mut output);
         *self.y = output[0];
     }

@@ -44,7 +44,7 @@ impl WithSimd for GradientOverRecords<'_> {
         let mut sums = Sums {
             output: self.output,
             backward: Backward::new(self.architecture),
-            residual: [0.0; BLOCK],
+            residual: Row([0.0; BLOCK]),
             gradient: vec![[0.0; LANES]; layout.len()],
             layout,
         };
@@ -74,7 +74,7 @@ impl TakeBlock for Sums<'_> {
         self.backward.run::<S>(readout, self.output, &self.residual, block);
         let by_neuron = &mut self.gradient[self.layout.hidden.clone()];
         for (sums, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
-            add_products(simd, slope, &[[1.0; BLOCK]], &mut sums[..1]);
+            add_products(simd, slope, &[Row([1.0; BLOCK])], &mut sums[..1]);
             add_products(simd, slope, z, &mut sums[1..]);
         }
         let (linear, rest) = self.backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
@@ -106,10 +106,10 @@ impl TakeBlock for Sums<'_> {
 /// Adds to each sum the products of `a` with one of the rows of `b`, row by row of the block.
 #[inline(always)]
 fn add_products<S: Simd>(simd: S, a: &Row, b: &[Row], sums: &mut [[f64; LANES]]) {
-    let a = S::as_simd_f64s(a).0;
+    let a = S::as_simd_f64s(&a.0).0;
     for (b, sum) in b.iter().zip(sums) {
         let sum = S::as_mut_simd_f64s(sum).0;
-        for (a, b) in a.chunks_exact(sum.len()).zip(S::as_simd_f64s(b).0.chunks_exact(sum.len())) {
+        for (a, b) in a.chunks_exact(sum.len()).zip(S::as_simd_f64s(&b.0).0.chunks_exact(sum.len())) {
             for ((sum, &a), &b) in sum.iter_mut().zip(a).zip(b) {
                 *sum = simd.mul_add_e_f64s(a, b, *sum);
             }

@@ -178,7 +178,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
             spec,
             layout: Layout::new(*spec.architecture),
             backward: Backward::new(spec.architecture),
-            columns: vec![[0.0; BLOCK]; spec.count()],
+            columns: vec![Row([0.0; BLOCK]); spec.count()],
             to,
         }
     }
@@ -189,7 +189,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
         let m = self.spec.architecture.output_weights();
         let jacobian = &mut self.columns[m + 1..];
         let Block { u, z, slopes, .. } = block;
-        self.backward.run::<S>(readout, output, &[1.0; BLOCK], block);
+        self.backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
         let by_neuron = &mut jacobian[self.layout.hidden.clone()];
         for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
             columns[0] = *slope;

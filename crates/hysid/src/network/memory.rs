@@ -8,6 +8,8 @@
 //! Time cannot be cut into lanes, neurons can: eight stops advance together, and their outputs are
 //! then turned from time-major to neuron-major for the readout, which has all of time to cut.
 
+use std::ops::{Deref, DerefMut};
+
 use pulp::Simd;
 
 use crate::network::transpose::transpose;
@@ -19,7 +21,44 @@ use crate::simd::multiply_add;
 pub(crate) const BLOCK: usize = 64;
 
 /// One quantity over a block of rows.
-pub(crate) type Row = [f64; BLOCK];
+///
+/// It begins at a cache line: a vector of 512 bits that lies across two of them is slow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub(crate) struct Row(pub [f64; BLOCK]);
+
+impl Deref for Row {
+    type Target = [f64; BLOCK];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f64; BLOCK] {
+        &self.0
+    }
+}
+
+impl<'a> IntoIterator for &'a Row {
+    type Item = &'a f64;
+    type IntoIter = std::slice::Iter<'a, f64>;
+
+    #[inline(always)]
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
+impl AsRef<[f64]> for Row {
+    #[inline(always)]
+    fn as_ref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl DerefMut for Row {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; BLOCK] {
+        &mut self.0
+    }
+}
 
 /// Stops that advance together.
 const LANES: usize = 8;
@@ -88,9 +127,9 @@ pub(crate) struct MemorySlopes {
 impl MemorySlopes {
     pub fn new(a: &Architecture) -> Self {
         Self {
-            weights: vec![[0.0; BLOCK]; a.stops * a.channels()],
-            ln_beta: vec![[0.0; BLOCK]; if a.deterioration { a.stops } else { 0 }],
-            ln_tau: vec![[0.0; BLOCK]; a.relaxation_neurons()],
+            weights: vec![Row([0.0; BLOCK]); a.stops * a.channels()],
+            ln_beta: vec![Row([0.0; BLOCK]); if a.deterioration { a.stops } else { 0 }],
+            ln_tau: vec![Row([0.0; BLOCK]); a.relaxation_neurons()],
         }
     }
 
@@ -358,7 +397,7 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
     let tile = &mut tile[..whole_lanes(rows)];
     // Nearly all networks have one or two channels: their weights stay in registers.
     let no_weights = [0.0; LANES];
-    let no_input = [0.0; BLOCK];
+    let no_input = Row([0.0; BLOCK]);
     let (x, second) = (&u[0], u.get(1).unwrap_or(&no_input));
     let of_x: [Lanes; G] = std::array::from_fn(|g| groups[g].weights[0]);
     let of_second: [Lanes; G] = std::array::from_fn(|g| *groups[g].weights.get(1).unwrap_or(&no_weights));

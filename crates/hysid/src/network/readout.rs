@@ -91,10 +91,10 @@ impl Readout {
         let y = &mut y[..whole_lanes(rows)];
         y.fill(constant);
         for (&c, h) in hidden.iter().zip(h) {
-            accumulate::<S>(c, h, y);
+            accumulate::<S>(c, &h.0, y);
         }
         for (&d, z) in direct.iter().zip(z) {
-            accumulate::<S>(d, z, y);
+            accumulate::<S>(d, &z.0, y);
         }
     }
 
@@ -102,7 +102,7 @@ impl Readout {
     #[inline(always)]
     pub fn features(&self, z: &[Row], h: &[Row], features: &mut [Row]) {
         let (constant, rest) = features.split_at_mut(usize::from(self.constant));
-        constant.fill([1.0; BLOCK]);
+        constant.fill(Row([1.0; BLOCK]));
         rest[..self.hidden].copy_from_slice(&h[..self.hidden]);
         if self.direct {
             rest[self.hidden..self.hidden + self.memory].copy_from_slice(&z[..self.memory]);
@@ -122,8 +122,8 @@ pub(crate) struct Backward {
 impl Backward {
     pub fn new(architecture: &Architecture) -> Self {
         Self {
-            by_sum: vec![[0.0; BLOCK]; architecture.hidden],
-            by_memory: vec![[0.0; BLOCK]; architecture.memory_neurons()],
+            by_sum: vec![Row([0.0; BLOCK]); architecture.hidden],
+            by_memory: vec![Row([0.0; BLOCK]); architecture.memory_neurons()],
         }
     }
 
@@ -142,7 +142,7 @@ impl Backward {
             }
             let (_, weights) = readout.neuron(i);
             for (q, &weight) in self.by_memory.iter_mut().zip(weights) {
-                accumulate::<S>(weight, slope, q);
+                accumulate::<S>(weight, &slope.0, &mut q.0);
             }
         }
     }
@@ -166,7 +166,7 @@ fn weighted_sums<S: Simd, const K: usize>(
     vectors: usize,
     sums: [&mut Row; K],
 ) {
-    let mut sums = sums.map(|sum| S::as_mut_simd_f64s(sum).0);
+    let mut sums = sums.map(|sum| S::as_mut_simd_f64s(&mut sum.0).0);
     let mut first = 0;
     while first + VECTORS <= vectors {
         weighted_sum_of_vectors::<S, K, VECTORS>(simd, z, &neurons, first, &mut sums);
@@ -188,7 +188,7 @@ fn weighted_sum_of_vectors<S: Simd, const K: usize, const V: usize>(
 ) {
     let mut total: [[S::f64s; V]; K] = std::array::from_fn(|k| [simd.splat_f64s(neurons[k].0); V]);
     for (j, z) in z.iter().enumerate() {
-        let z = &S::as_simd_f64s(z).0[first..first + V];
+        let z = &S::as_simd_f64s(&z.0).0[first..first + V];
         for k in 0..K {
             let weight = simd.splat_f64s(neurons[k].1[j]);
             for v in 0..V {

@@ -83,11 +83,11 @@ impl Block {
     fn new(walk: &Walk) -> Self {
         let a = walk.architecture;
         Self {
-            u: vec![[0.0; BLOCK]; a.channels()],
-            z: vec![[0.0; BLOCK]; a.memory_neurons()],
-            h: vec![[0.0; BLOCK]; a.hidden],
+            u: vec![Row([0.0; BLOCK]); a.channels()],
+            z: vec![Row([0.0; BLOCK]); a.memory_neurons()],
+            h: vec![Row([0.0; BLOCK]); a.hidden],
             slopes: if walk.with_slopes { MemorySlopes::new(a) } else { MemorySlopes::default() },
-            target: [0.0; BLOCK],
+            target: Row([0.0; BLOCK]),
         }
     }
 
@@ -139,7 +139,7 @@ impl Workspace {
     fn record<S: Simd>(&mut self, simd: S, drive: &Drive, target: &[f64], to: &mut impl TakeBlock) {
         let mut state = self.memory.virgin();
         let mut sensitivity = self.memory.virgin_sensitivity();
-        let mut steps = [0.0; BLOCK];
+        let mut steps = Row([0.0; BLOCK]);
         for start in (0..drive.len()).step_by(BLOCK) {
             let rows = BLOCK.min(drive.len() - start);
             for (block, channel) in self.block.u.iter_mut().zip(&drive.channels) {
