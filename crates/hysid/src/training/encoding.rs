@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
 
 use crate::training::objective::Objective;
 use crate::training::start::normal;
@@ -22,7 +23,7 @@ const LARGEST_BIAS: f64 = 2.0;
 const LARGEST_DEVIATION: f64 = 10.0;
 
 /// Bounds of the genes and the way between genes and parameters.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Encoding {
     bounds: Vec<(f64, f64)>,
     /// Genes that are thresholds: the first of each run of a stop's weights.
@@ -47,7 +48,8 @@ impl Encoding {
             let (low, high) = layout.bounds(index);
             let wanted = if layout.stop_weights.contains(&index) {
                 match (index - layout.stop_weights.start) % channels {
-                    0 => (SMALLEST_THRESHOLD * largest, largest),
+                    // A threshold is bounded as its weight is.
+                    0 => return ((SMALLEST_THRESHOLD * largest).max(1.0 / high), largest),
                     _ => (-LARGEST_WEIGHT, LARGEST_WEIGHT),
                 }
             } else if layout.ln_beta.contains(&index) {
@@ -103,4 +105,34 @@ impl Encoding {
 /// Deviation of a tanh neuron's weights for sums of about 1.
 fn deviation(run: usize) -> f64 {
     1.0 / (run as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::{Family, Sizes};
+    use crate::record::{ColumnNames, Dataset, Record};
+    use crate::scaling::Scaling;
+    use crate::training::FitOptions;
+
+    #[test]
+    fn every_gene_within_its_bounds_is_a_parameter_within_its_own() {
+        // A range that fills the scale, and one that is a ten-thousandth of it.
+        for offset in [0.0, 10_000.0] {
+            let x: Vec<f64> = (0..60).map(|k| offset + (0.3 * k as f64).sin()).collect();
+            let y = x.iter().map(|x| (x - offset).powi(3)).collect();
+            let data =
+                Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap();
+            let sizes = Sizes { stops: 3, hidden: 2, relaxation: 0 };
+            let options = FitOptions { model: Family::Xpnn, sizes, ..FitOptions::default() };
+            let scaling = Scaling::of(&data, None).unwrap();
+            let architecture = options.architecture(&data).unwrap();
+            let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+            let encoding = Encoding::new(&objective);
+            let genes = |end: fn(&(f64, f64)) -> f64| encoding.bounds().iter().map(end).collect::<Vec<f64>>();
+            for genes in [genes(|bounds| bounds.0), genes(|bounds| bounds.1)] {
+                objective.layout().check(&encoding.parameters(&genes)).unwrap();
+            }
+        }
+    }
 }
