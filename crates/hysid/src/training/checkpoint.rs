@@ -24,13 +24,13 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Snapshot<'a> {
     pub options: &'a FitOptions,
-    pub data: u32,
+    pub data: &'a Dataset,
     pub state: &'a State,
 }
 
 impl Snapshot<'_> {
     pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint { options: self.options.clone(), data: self.data, state: self.state.clone() }
+        Checkpoint { options: self.options.clone(), data: checksum(self.data), state: self.state.clone() }
     }
 }
 
@@ -86,7 +86,7 @@ impl Checkpoint {
 }
 
 /// Checksum of all that a fit takes from the data.
-pub(crate) fn checksum(data: &Dataset) -> u32 {
+fn checksum(data: &Dataset) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     let mut add = |values: &[f64]| {
         hasher.update(&(values.len() as u64).to_le_bytes());

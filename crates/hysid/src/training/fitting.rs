@@ -15,7 +15,7 @@ use crate::model::{Body, Model, Provenance};
 use crate::network::{Architecture, Network};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
-use crate::training::checkpoint::{Checkpoint, Snapshot, checksum};
+use crate::training::checkpoint::{Checkpoint, Snapshot};
 use crate::training::history::{Phase, Run};
 use crate::training::objective::Objective;
 use crate::training::options::{FitOptions, Trainer};
@@ -49,7 +49,6 @@ pub(crate) struct Fitting<'a> {
     options: FitOptions,
     architecture: Architecture,
     scaling: Scaling,
-    checksum: u32,
     state: State,
     stopped: bool,
 }
@@ -91,7 +90,6 @@ impl<'a> Fitting<'a> {
         Ok(Self {
             architecture: options.architecture(data)?,
             scaling: Scaling::of(data, options.rate)?,
-            checksum: checksum(data),
             data,
             options,
             state: State::default(),
@@ -280,7 +278,7 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            snapshot: Some(Snapshot { options: &self.options, data: self.checksum, state: &self.state }),
+            snapshot: Some(Snapshot { options: &self.options, data: self.data, state: &self.state }),
         };
         self.stopped = observer(&progress).is_break();
     }

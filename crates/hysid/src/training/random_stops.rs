@@ -9,18 +9,16 @@
 //! Source: an extreme learning machine of deteriorating stops, after Farrokh, Ghasemi, Noori, Wang and
 //! Sarhosis (2022), with a ridge in place of their support vector machine.
 
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
 use crate::error::Result;
-use crate::network::{Architecture, Columns, Drive, GramOverRecords, Layout, Network};
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
 use crate::training::FEWEST_ROWS;
-use crate::training::start::normal;
+use crate::training::start::{self, Capacities};
 
 /// How random stops are fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -62,18 +60,8 @@ pub struct RandomStops {
 /// Tanh neurons, where cross-validation finds them better than none. Designed.
 const HIDDEN: usize = 100;
 
-/// Thresholds lie between this share of the largest input and the whole of it, evenly in their logarithm.
-/// Designed.
-const SMALLEST_THRESHOLD: f64 = 0.01;
-
-/// Capacities are this, spread by [`BETA_SPREAD`]. Designed.
-const TYPICAL_BETA: f64 = 300.0;
-
-/// Standard deviation of ln β: from stops that are soon dead to such as hardly wear. Designed.
-const BETA_SPREAD: f64 = 2.0;
-
-/// Spread of the rate's weight, next to 1 for the input. Designed.
-const RATE_WEIGHT: f64 = 0.3;
+/// From stops that are soon dead to such as hardly wear. Designed.
+const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
 
 /// Fits random stops.
 ///
@@ -125,7 +113,7 @@ fn fit_readout(
     let inputs: Vec<(Vec<f64>, &[f64])> =
         used().map(|record| (record.inputs()[0].clone(), record.output())).collect();
     let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
-    let parameters = random_parameters(architecture, options.seed);
+    let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
     let sums = fold_sums(
         &Columns { architecture: &architecture, parameters: &parameters, output: None },
         &drives,
@@ -170,37 +158,4 @@ fn fold_sums(columns: &Columns, drives: &[Drive], targets: &[Vec<f64>], folds: &
         Sums::new(gram, columns.count() - 1, rows)
     };
     FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone())
-}
-
-/// Random parameters found by no search: log-even thresholds, rates, capacities.
-fn random_parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
-    let layout = Layout::new(architecture);
-    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut values = vec![0.0; layout.len()];
-    let channels = architecture.channels();
-    let first_further_input = 1 + usize::from(architecture.rate);
-    for (j, weights) in values[layout.stop_weights.clone()].chunks_exact_mut(channels).enumerate() {
-        let place = (j as f64 + generator.random::<f64>()) / architecture.stops as f64;
-        let threshold = SMALLEST_THRESHOLD.powf(1.0 - place);
-        weights[0] = 1.0 / threshold;
-        if architecture.rate {
-            weights[1] = RATE_WEIGHT * normal(&mut generator) / threshold;
-        }
-        for weight in &mut weights[first_further_input..] {
-            *weight = normal(&mut generator) / threshold;
-        }
-    }
-    for ln_beta in &mut values[layout.ln_beta.clone()] {
-        *ln_beta = TYPICAL_BETA.ln() + BETA_SPREAD * normal(&mut generator);
-    }
-    for (c, weight) in values[layout.linear.clone()].iter_mut().enumerate() {
-        *weight = if c == 0 { 1.0 } else { RATE_WEIGHT * normal(&mut generator) };
-    }
-    let run = 1 + architecture.memory_neurons();
-    let spread = 1.0 / (run as f64).sqrt();
-    for neuron in values[layout.hidden.clone()].chunks_exact_mut(run) {
-        neuron.iter_mut().for_each(|weight| *weight = spread * normal(&mut generator));
-    }
-    layout.clamp(&mut values);
-    values
 }

@@ -52,7 +52,7 @@ pub(crate) struct Point {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Search {
     LevenbergMarquardt(LevenbergMarquardt),
-    Genetic { search: Genetic, stall: Stall },
+    Genetic { search: Genetic, encoding: Encoding, stall: Stall },
     Subgradient { search: SpaceDilation, stall: Stall },
 }
 
@@ -116,9 +116,8 @@ impl TrainingRun {
                 self.best.take_if_lower(search.parameters(), reached, mean_square);
                 ended
             }
-            Search::Genetic { search, stall } => {
-                let encoding = Encoding::new(objective);
-                search.advance(&problem(&encoding, options, self.start, &cost(objective, &encoding)));
+            Search::Genetic { search, encoding, stall } => {
+                search.advance(&problem(encoding, options, self.start, &cost(objective, encoding)));
                 let best = search.best();
                 if best.cost < self.best.objective {
                     self.best = point(objective, encoding.parameters(&best.genes));
@@ -317,11 +316,13 @@ fn problem<'a>(
 fn begin_genetic(objective: &Objective, options: &FitOptions, start: usize) -> Result<(Search, Point)> {
     let encoding = Encoding::new(objective);
     let draw = |generator: &mut Xoshiro256PlusPlus| encoding.draw(generator);
-    let cost = cost(objective, &encoding);
-    let search = Genetic::new(&problem(&encoding, options, start, &cost), options.population, &draw)?;
+    let search = {
+        let cost = cost(objective, &encoding);
+        Genetic::new(&problem(&encoding, options, start, &cost), options.population, &draw)?
+    };
     let best = point(objective, encoding.parameters(&search.best().genes));
     let stall = Stall::new(best.objective, options.stall);
-    Ok((Search::Genetic { search, stall }, best))
+    Ok((Search::Genetic { search, encoding, stall }, best))
 }
 
 /// Begins a method that descends from given parameters.
@@ -331,14 +332,19 @@ fn begin(
     options: &FitOptions,
     parameters: Vec<f64>,
 ) -> Result<(Search, Point)> {
-    let mut best = point(objective, parameters.clone());
+    // The search evaluates its beginning, which is the lowest point so far.
+    let mut best =
+        Point { parameters: parameters.clone(), objective: f64::INFINITY, mean_square: f64::INFINITY };
     if method == Method::LevenbergMarquardt {
-        return Ok((Search::LevenbergMarquardt(LevenbergMarquardt::new(objective, parameters)), best));
+        let mut search = LevenbergMarquardt::new(objective, parameters);
+        let value = search.value(objective);
+        (best.objective, best.mean_square) = (value.objective, value.mean_square);
+        return Ok((Search::LevenbergMarquardt(search), best));
     }
     let scales = scales(objective.layout(), &parameters);
-    let stall = Stall::new(best.objective, options.stall);
     let mut function = NetworkFunction { objective, lowest: &mut best };
     let search = SpaceDilation::new(parameters, scales, dilation_options(), &mut function)?;
+    let stall = Stall::new(best.objective, options.stall);
     Ok((Search::Subgradient { search, stall }, best))
 }
 
