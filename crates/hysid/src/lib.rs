@@ -30,6 +30,7 @@
 //! of networks, [`training`] identifies one, [`model`] is the result.
 
 pub mod classical;
+pub mod diagnosis;
 pub mod error;
 mod free_run;
 pub mod identification;

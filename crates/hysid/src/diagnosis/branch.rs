@@ -1,0 +1,337 @@
+//! The way of the input as branches between turning points, and what closes what, theory.md (10.2).
+
+use std::ops::Range;
+
+use super::noise;
+use super::smoothing::{choose_window, smooth};
+use super::{DiagnosisOptions, PictureCurve, Piece};
+use crate::record::{Dataset, Record};
+use crate::turning_points::turning_points;
+
+/// A branch's curve has no more points than this; longer ones are averaged in blocks.
+const MOST_POINTS: usize = 400;
+
+/// A turning point counts as reached within this share of the input's range.
+const REACHED: f64 = 0.003;
+
+/// Turning points beneath a branch that are kept with it.
+const KEPT: usize = 4;
+
+/// A monotone way of the input between two turning points.
+#[derive(Debug, Clone)]
+pub(crate) struct Branch {
+    /// Number of the record.
+    pub record: usize,
+    /// Rows from the turning point at its beginning to that at its end, both included.
+    pub rows: Range<usize>,
+    /// The input at its beginning.
+    pub from: f64,
+    /// The input at its end.
+    pub to: f64,
+    /// Way of the input for time.
+    pub speed: Option<f64>,
+    /// Turning points that enclose it, the latest last; the last is where it began.
+    pub beneath: Vec<f64>,
+    /// Loops that it closes on its way.
+    pub closes: Vec<Closing>,
+    /// The output over the input.
+    pub curve: Curve,
+}
+
+/// A turning point that a branch comes back to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Closing {
+    /// Input at the turning point.
+    pub x: f64,
+    /// Number of the branch that first arrived there.
+    pub arrived: usize,
+}
+
+impl Branch {
+    /// True if the input grows.
+    pub fn rises(&self) -> bool {
+        self.to > self.from
+    }
+
+    /// Way of the input.
+    pub fn travel(&self) -> f64 {
+        (self.to - self.from).abs()
+    }
+
+    /// The input up to which this branch belongs to the loop that encloses it: where the turning point
+    /// before its beginning lies, or its end if that comes first. `None` where nothing encloses it.
+    pub fn own_end(&self) -> Option<f64> {
+        let before = *self.beneath.iter().rev().nth(1)?;
+        Some(if self.rises() { before.min(self.to) } else { before.max(self.to) })
+    }
+
+    /// Time between its ends.
+    pub fn duration(&self) -> Option<f64> {
+        self.speed.map(|speed| self.travel() / speed)
+    }
+}
+
+/// Output over input along a branch, in the order of the input.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Curve {
+    points: Vec<CurvePoint>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct CurvePoint {
+    x: f64,
+    y: f64,
+    deviation: f64,
+}
+
+/// A value read from a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    /// The output.
+    pub y: f64,
+    /// Its standard deviation from the noise.
+    pub deviation: f64,
+    /// How far reading between the rows may be off.
+    pub bend: f64,
+}
+
+impl Curve {
+    /// True if the branch has hardly an output.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Smallest and largest input.
+    pub fn range(&self) -> (f64, f64) {
+        match (self.points.first(), self.points.last()) {
+            (Some(first), Some(last)) => (first.x, last.x),
+            _ => (f64::INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    /// The points, in the order of the input.
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.points.iter().map(|point| (point.x, point.y))
+    }
+
+    /// The output at an input; `None` beyond the curve by more than the distance of its last points.
+    pub fn at(&self, x: f64) -> Option<Reading> {
+        let count = self.points.len();
+        if count < 2 {
+            return None;
+        }
+        let above = self.points.partition_point(|point| point.x < x).clamp(1, count - 1);
+        let (a, b) = (&self.points[above - 1], &self.points[above]);
+        let width = b.x - a.x;
+        if width <= 0.0 {
+            return (a.x == x).then_some(Reading { y: b.y, deviation: b.deviation, bend: 0.0 });
+        }
+        let share = (x - a.x) / width;
+        if !(-1.0..=2.0).contains(&share) {
+            return None;
+        }
+        let neighbours = [above.checked_sub(2), Some(above + 1)];
+        let line = |point: &CurvePoint| a.y + (b.y - a.y) * (point.x - a.x) / width;
+        // A neighbour as far off the line as a parabola would be has bent it by an eighth of that, at
+        // the spacing of two rows.
+        let bend = neighbours
+            .into_iter()
+            .flatten()
+            .filter_map(|index| self.points.get(index))
+            .map(|point| {
+                let away = ((point.x - a.x) * (point.x - b.x)).abs();
+                if away > 0.0 { (point.y - line(point)).abs() * width * width / (4.0 * away) } else { 0.0 }
+            })
+            .fold(0.0, f64::max);
+        let on_a_point = share == 0.0 || share == 1.0;
+        Some(Reading {
+            y: a.y + share * (b.y - a.y),
+            deviation: a.deviation + share.clamp(0.0, 1.0) * (b.deviation - a.deviation),
+            bend: if on_a_point { 0.0 } else { bend.min((b.y - a.y).abs()) },
+        })
+    }
+}
+
+/// A data set as the tests of properties look at it.
+#[derive(Debug)]
+pub(crate) struct Survey<'a> {
+    pub data: &'a Dataset,
+    /// Smallest and largest input.
+    pub input: (f64, f64),
+    /// Smallest and largest output.
+    pub output: (f64, f64),
+    /// Deviation of the noise of the input.
+    pub input_noise: f64,
+    /// Deviation of the noise of the output.
+    pub output_noise: f64,
+    /// Reversals of the input below this are no turning points.
+    pub smallest_reversal: f64,
+    /// Rows that are taken together to read a curve.
+    pub window: usize,
+    /// All branches, record after record.
+    pub branches: Vec<Branch>,
+}
+
+impl<'a> Survey<'a> {
+    /// Looks through the data.
+    pub fn new(data: &'a Dataset, options: &DiagnosisOptions) -> Self {
+        let input = data.input_range(0);
+        let width = input.1 - input.0;
+        let inputs = data.records().iter().map(|record| record.inputs()[0].as_slice());
+        let input_noise = noise::deviation(inputs);
+        let rows = data.rows().max(2);
+        // Jitter of all rows together hardly ever jumps further.
+        let jitter = 2.0 * input_noise * noise::critical_value(rows);
+        let smallest_reversal = (options.smallest_reversal * width).max(jitter);
+        let reached = REACHED * width + 2.0 * input_noise;
+        let mut branches = Vec::new();
+        for (number, record) in data.records().iter().enumerate() {
+            follow(number, record, smallest_reversal, reached, &mut branches);
+        }
+        let points: Vec<Vec<(f64, f64)>> = branches.iter().map(|branch| of_rows(data, branch)).collect();
+        let output_noise = output_noise(data, &branches);
+        let averaged = |branch: &Branch| branch.rows.len().div_ceil(MOST_POINTS) as f64;
+        let window = match options.smoothing {
+            true => {
+                let longest = branches.iter().map(averaged).fold(1.0, f64::max);
+                choose_window(&points, output_noise / longest.sqrt())
+            }
+            false => 1,
+        };
+        for (branch, points) in branches.iter_mut().zip(points) {
+            let deviation = output_noise / averaged(branch).sqrt();
+            branch.curve = curve(&points, window, deviation);
+        }
+        let output = data.output_range();
+        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches }
+    }
+
+    /// Range of the output.
+    pub fn height(&self) -> f64 {
+        self.output.1 - self.output.0
+    }
+
+    /// Range of the input.
+    pub fn width(&self) -> f64 {
+        self.input.1 - self.input.0
+    }
+
+    /// Inputs closer than this are the same.
+    pub fn same_input(&self) -> f64 {
+        0.01 * self.width() + 2.0 * self.input_noise
+    }
+}
+
+/// The branches of a record.
+fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches: &mut Vec<Branch>) {
+    let x = &record.inputs()[0];
+    let mut ends = vec![0];
+    ends.extend(turning_points(x, smallest));
+    ends.push(x.len() - 1);
+    ends.dedup();
+    // Each with the number of the branch that arrived there.
+    let mut stack: Vec<(f64, Option<usize>)> = vec![(x[0], None)];
+    for rows in ends.windows(2) {
+        let (first, last) = (rows[0], rows[1]);
+        let (from, to) = (x[first], x[last]);
+        let here = branches.len();
+        let beneath: Vec<f64> = stack[stack.len().saturating_sub(KEPT)..].iter().map(|(x, _)| *x).collect();
+        let mut closes = Vec::new();
+        while stack.len() >= 2 {
+            let (before, arrived) = stack[stack.len() - 2];
+            let passed = if to > from { to >= before - reached } else { to <= before + reached };
+            if !passed {
+                break;
+            }
+            // What lies beneath the last two is not known: only the latest turning point still counts.
+            if stack.len() == 2 {
+                stack.remove(0);
+                break;
+            }
+            closes.extend(arrived.map(|arrived| Closing { x: before, arrived }));
+            stack.truncate(stack.len() - 2);
+        }
+        stack.push((to, Some(here)));
+        let speed = record.time().map(|time| (to - from).abs() / (time[last] - time[first]));
+        branches.push(Branch {
+            record: number,
+            rows: first..last + 1,
+            from,
+            to,
+            speed,
+            beneath,
+            closes,
+            curve: Curve::default(),
+        });
+    }
+}
+
+/// Points of a branch in the order of the input, averaged in blocks where there are very many.
+fn of_rows(data: &Dataset, branch: &Branch) -> Vec<(f64, f64)> {
+    let record = &data.records()[branch.record];
+    let (x, y) = (&record.inputs()[0][branch.rows.clone()], &record.output()[branch.rows.clone()]);
+    let block = x.len().div_ceil(MOST_POINTS);
+    let mut points: Vec<(f64, f64)> = x
+        .chunks(block)
+        .zip(y.chunks(block))
+        .filter(|(_, y)| y.iter().all(|y| !y.is_nan()))
+        .map(|(x, y)| (x.iter().sum::<f64>() / x.len() as f64, y.iter().sum::<f64>() / y.len() as f64))
+        .collect();
+    if points.len() < 4 {
+        points.clear();
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
+    let scored = |branch: &Branch| {
+        let output = &data.records()[branch.record].output()[branch.rows.clone()];
+        !output.iter().any(|y| y.is_nan())
+    };
+    let runs = branches.iter().filter(|branch| scored(branch));
+    noise::deviation(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
+}
+
+fn curve(points: &[(f64, f64)], window: usize, deviation: f64) -> Curve {
+    let smoothed = smooth(points, window);
+    let place = |(point, value): (&(f64, f64), &super::smoothing::Smoothed)| CurvePoint {
+        x: point.0,
+        y: value.y,
+        deviation: value.deviation * deviation,
+    };
+    Curve { points: points.iter().zip(&smoothed).map(place).collect() }
+}
+
+/// Branches whose speeds differ by no more than this factor are of the same speed.
+const SAME_SPEED: f64 = 1.25;
+
+impl Survey<'_> {
+    /// True unless the speeds of two branches are known to differ.
+    pub fn similar_speed(&self, a: &Branch, b: &Branch) -> bool {
+        match (a.speed, b.speed) {
+            (Some(a), Some(b)) => a.max(b) <= SAME_SPEED * a.min(b),
+            _ => true,
+        }
+    }
+
+    /// Where a branch is in the data.
+    pub fn piece(&self, branch: &Branch) -> Piece {
+        Piece {
+            record: self.data.records()[branch.record].name().into(),
+            rows: (branch.rows.start, branch.rows.end - 1),
+        }
+    }
+
+    /// A branch for a picture.
+    pub fn curve(&self, label: &str, branch: &Branch) -> PictureCurve {
+        PictureCurve { label: label.into(), points: branch.curve.points().collect() }
+    }
+
+    /// The part of a branch between two inputs, for a picture.
+    pub fn curve_between(&self, label: &str, branch: &Branch, (a, b): (f64, f64)) -> PictureCurve {
+        let (low, high) = (a.min(b), a.max(b));
+        let points = branch.curve.points().filter(|(x, _)| *x >= low && *x <= high).collect();
+        PictureCurve { label: label.into(), points }
+    }
+}

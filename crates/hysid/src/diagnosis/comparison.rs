@@ -1,0 +1,66 @@
+//! Many comparisons, one verdict: what is larger than the noise, and large enough to matter.
+
+use super::noise;
+use super::{PictureCurve, Piece, Verdict};
+
+/// A limit so many times the effect that matters leaves a property undecided.
+const BLIND: f64 = 5.0;
+
+/// A difference that a property says is nought.
+#[derive(Debug, Clone)]
+pub(crate) struct Comparison {
+    /// Its magnitude, as a share.
+    pub index: f64,
+    /// Standard deviation of the noise in it.
+    pub deviation: f64,
+    /// What reading between rows may add to it.
+    pub bend: f64,
+    /// Where it was found.
+    pub pieces: Vec<Piece>,
+    /// What is drawn of it.
+    pub curves: Vec<PictureCurve>,
+}
+
+/// What many comparisons say together.
+#[derive(Debug, Clone)]
+pub(crate) struct Judgement {
+    /// `Yes` if all differences are nought as far as can be told.
+    pub verdict: Verdict,
+    /// The difference that decides.
+    pub index: f64,
+    /// What noise alone gives.
+    pub noise: f64,
+    /// The difference beyond which the property does not hold.
+    pub threshold: f64,
+    /// Number of comparisons.
+    pub count: usize,
+    /// Places of the comparisons, the one that decides first.
+    pub order: Vec<usize>,
+}
+
+/// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
+pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
+    let count = comparisons.len();
+    let critical = noise::critical_value(count);
+    let limit = |c: &Comparison| (effect + 2.0 * c.bend).max(critical * c.deviation);
+    let excess = |c: &Comparison| c.index / limit(c);
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
+    let deciding = &comparisons[*order.first()?];
+    let mut limits: Vec<f64> = comparisons.iter().map(limit).collect();
+    let verdict = if excess(deciding) > 1.0 {
+        Verdict::No
+    } else if noise::median(&mut limits) > BLIND * effect {
+        Verdict::NotTestable
+    } else {
+        Verdict::Yes
+    };
+    Some(Judgement {
+        verdict,
+        index: deciding.index,
+        noise: deciding.deviation * noise::typical_largest(count),
+        threshold: limit(deciding),
+        count,
+        order,
+    })
+}

@@ -1,0 +1,134 @@
+//! Congruency: minor loops between the same two inputs have the same shape, whatever came before. Index:
+//! how far two branches of equal beginning and different past differ in shape, over their height.
+//!
+//! `rms(Δ(y - y(x_a))) / height` over the part that belongs to both                  theory.md (10.5)
+
+use std::collections::BTreeMap;
+
+use super::branch::{Branch, Survey};
+use super::comparison::{Comparison, judge};
+use super::{Finding, Property, Verdict};
+
+/// A difference of shape that matters, as a share of the height.
+const EFFECT: f64 = 0.05;
+
+/// Branches lower than this share of the output's range have no shape.
+const LOWEST: f64 = 0.05;
+
+/// Branches lower than so many deviations of the noise have none either.
+const LOWEST_IN_NOISE: f64 = 10.0;
+
+/// Branches shorter than this share of the input's range.
+const SHORTEST: f64 = 0.05;
+
+/// Pasts whose last outer turning points are closer than this share of the input's range are the same.
+const OTHER_PAST: f64 = 0.05;
+
+/// Pairs with one beginning that are compared at most.
+const MOST_PAIRS: usize = 100;
+
+/// Places along the common part.
+const PLACES: usize = 40;
+
+const EXPERIMENT: &str =
+    "run the same minor loop twice: once on the way up and once on the way down of a larger loop";
+
+/// Tests for congruent minor loops.
+pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
+    let mut comparisons = Vec::new();
+    for group in same_beginning(survey).values() {
+        let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));
+        let different = pairs.filter(|(a, b)| other_past(survey, &survey.branches[*a], &survey.branches[*b]));
+        for (a, b) in different.take(MOST_PAIRS) {
+            let (a, b) = (&survey.branches[a], &survey.branches[b]);
+            if !equal_speed || survey.similar_speed(a, b) {
+                comparisons.extend(compare(survey, a, b));
+            }
+        }
+    }
+    let Some(judgement) = judge(&comparisons, EFFECT) else {
+        let statement =
+            "no two branches begin at the same input, in the same direction, with a different past";
+        return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
+    };
+    let percent = 100.0 * judgement.index;
+    let statement = match judgement.verdict {
+        Verdict::Yes => format!(
+            "loops between the same inputs have the same shape, within {percent:.1} % of their height"
+        ),
+        Verdict::No => {
+            format!("loops between the same inputs differ in shape by {percent:.0} % of their height")
+        }
+        Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
+    };
+    survey.finding(Property::Congruency, &judgement, &comparisons, statement, EXPERIMENT)
+}
+
+/// Branches that begin at about the same input and go the same way. The first branch of a record is
+/// left out: where it comes from is not known.
+fn same_beginning(survey: &Survey) -> BTreeMap<(i64, bool), Vec<usize>> {
+    let mut groups: BTreeMap<(i64, bool), Vec<usize>> = BTreeMap::new();
+    let cell = survey.same_input();
+    for (index, branch) in survey.branches.iter().enumerate() {
+        let known = branch.own_end().is_some() && !branch.curve.is_empty();
+        if known && branch.travel() >= SHORTEST * survey.width() {
+            let place = (branch.from / cell).round() as i64;
+            groups.entry((place, branch.rises())).or_default().push(index);
+        }
+    }
+    groups
+}
+
+/// True if the turning points that enclose two branches differ, so that they are on different loops.
+fn other_past(survey: &Survey, a: &Branch, b: &Branch) -> bool {
+    let outer = |branch: &Branch, depth: usize| branch.beneath.iter().rev().nth(depth).copied();
+    (1..=2).any(|depth| match (outer(a, depth), outer(b, depth)) {
+        (Some(a), Some(b)) => (a - b).abs() > OTHER_PAST * survey.width(),
+        (None, None) => false,
+        _ => true,
+    })
+}
+
+fn compare(survey: &Survey, a: &Branch, b: &Branch) -> Option<Comparison> {
+    let nearest = |a: f64, b: f64, rises: bool| if rises { a.min(b) } else { a.max(b) };
+    let rises = a.rises();
+    let beginning = if rises { a.from.max(b.from) } else { a.from.min(b.from) };
+    let end = nearest(a.own_end()?, b.own_end()?, rises);
+    let way = if rises { end - beginning } else { beginning - end };
+    if way < SHORTEST * survey.width() {
+        return None;
+    }
+    let (start_a, start_b) = (a.curve.at(beginning)?, b.curve.at(beginning)?);
+    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
+    let (mut low, mut high) = ([start_a.y, start_b.y], [start_a.y, start_b.y]);
+    for place in 1..=PLACES {
+        let x = beginning + (end - beginning) * place as f64 / PLACES as f64;
+        let (Some(y_a), Some(y_b)) = (a.curve.at(x), b.curve.at(x)) else { continue };
+        let difference = (y_a.y - start_a.y) - (y_b.y - start_b.y);
+        square += difference * difference;
+        variance += y_a.deviation.powi(2) + y_b.deviation.powi(2);
+        bend += (y_a.bend + y_b.bend).powi(2);
+        places += 1.0;
+        for (side, y) in [y_a.y, y_b.y].into_iter().enumerate() {
+            low[side] = low[side].min(y);
+            high[side] = high[side].max(y);
+        }
+    }
+    let height = (high[0] - low[0]).max(high[1] - low[1]);
+    let lowest = (LOWEST * survey.height()).max(LOWEST_IN_NOISE * survey.output_noise);
+    if places < 0.8 * PLACES as f64 || height < lowest {
+        return None;
+    }
+    // Of the noise, that at the beginning shifts the whole branch.
+    let deviation = (variance / places + start_a.deviation.powi(2) + start_b.deviation.powi(2)).sqrt();
+    Some(Comparison {
+        index: (square / places).sqrt() / height,
+        deviation: deviation / height,
+        bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
+        pieces: vec![survey.piece(a), survey.piece(b)],
+        curves: vec![
+            survey.curve_between("first", a, (beginning, end)),
+            survey.curve_between("second, with another past", b, (beginning, end)),
+        ],
+    })
+}

@@ -1,0 +1,166 @@
+//! Cycles of the input and the numbers engineers read from their loops.
+
+use serde::Serialize;
+
+use super::branch::{Branch, Survey};
+
+/// A cycle closes if the input comes back this close, as a share of its swing.
+const CLOSED: f64 = 0.02;
+
+/// A cycle of the input, there and back, and its loop. Inputs and outputs are in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cycle {
+    /// Name of the record.
+    pub record: String,
+    /// First and last row, counted from 0 at the beginning of the record.
+    pub rows: (usize, usize),
+    /// Smallest and largest input.
+    pub input: (f64, f64),
+    /// Smallest and largest output.
+    pub output: (f64, f64),
+    /// `∮ y dx`: the energy lost, for a force over a displacement. Positive if the loop is passed clockwise.
+    pub energy: f64,
+    /// Area between the rising and the falling branch, all of it counted as positive.
+    pub area: f64,
+    /// Standard deviation of the energy from the noise.
+    pub energy_deviation: f64,
+    /// Distance of the branches along the input, half way up the loop.
+    pub width: f64,
+    /// Slope of the line from tip to tip.
+    pub secant_stiffness: f64,
+    /// Half the distance of the branches where the output is 0, if it is.
+    pub coercive_input: Option<f64>,
+    /// Half the distance of the branches where the input is 0, if it is.
+    pub remanent_output: Option<f64>,
+    /// Output at the end less output at the beginning.
+    pub gap: f64,
+    /// Mean speed of the input, for records with time.
+    pub speed: Option<f64>,
+    /// Its branches among those of the survey.
+    #[serde(skip)]
+    pub(crate) branches: (usize, usize),
+}
+
+impl Cycle {
+    /// Height of the loop.
+    pub fn height(&self) -> f64 {
+        self.output.1 - self.output.0
+    }
+
+    /// Swing of the input.
+    pub fn swing(&self) -> f64 {
+        self.input.1 - self.input.0
+    }
+
+    /// Energy as a share of the box around the loop: 0 for a line, near 1 for dry friction.
+    pub fn fullness(&self) -> f64 {
+        self.energy / (self.swing() * self.height()).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
+pub(crate) fn cycles(survey: &Survey) -> Vec<Cycle> {
+    let mut found = Vec::new();
+    let mut index = 0;
+    while index + 1 < survey.branches.len() {
+        match cycle(survey, index) {
+            Some(cycle) => {
+                found.push(cycle);
+                index += 2;
+            }
+            None => index += 1,
+        }
+    }
+    found
+}
+
+fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
+    let (out, back) = (&survey.branches[index], &survey.branches[index + 1]);
+    let swing = out.travel().max(back.travel());
+    let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise;
+    if out.record != back.record || !closed || out.curve.is_empty() || back.curve.is_empty() {
+        return None;
+    }
+    let record = &survey.data.records()[out.record];
+    let rows = out.rows.start..back.rows.end;
+    let (x, y) = (&record.inputs()[0][rows.clone()], &record.output()[rows.clone()]);
+    if y.iter().any(|y| y.is_nan()) {
+        return None;
+    }
+    // The way along the loop, and straight back from its end to its beginning.
+    let n = x.len();
+    let step = |row: usize| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n]);
+    let energy: f64 = (0..n).map(|row| y[row] * step(row)).sum();
+    let squares: f64 = (0..n).map(|row| step(row).powi(2)).sum();
+    let range = |values: &[f64]| {
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+    };
+    let (input, output) = (range(x), range(y));
+    let middle = 0.5 * (output.0 + output.1);
+    let ends = |branch: &Branch| Some((branch.curve.at(branch.from)?.y, branch.curve.at(branch.to)?.y));
+    let ((first, tip), (_, last)) = (ends(out)?, ends(back)?);
+    let apart_along_input = |level: f64| Some((crossing(out, level)? - crossing(back, level)?).abs());
+    let apart_along_output = |x: f64| Some((out.curve.at(x)?.y - back.curve.at(x)?.y).abs());
+    Some(Cycle {
+        record: record.name().into(),
+        rows: (rows.start, rows.end - 1),
+        input,
+        output,
+        energy,
+        area: area_between(out, back),
+        energy_deviation: survey.output_noise * squares.sqrt(),
+        width: apart_along_input(middle).unwrap_or(0.0),
+        secant_stiffness: (tip - 0.5 * (first + last)) / (out.to - out.from),
+        coercive_input: apart_along_input(0.0).map(|apart| 0.5 * apart),
+        remanent_output: apart_along_output(0.0).map(|apart| 0.5 * apart),
+        gap: last - first,
+        speed: out.duration().zip(back.duration()).map(|(a, b)| (out.travel() + back.travel()) / (a + b)),
+        branches: (index, index + 1),
+    })
+}
+
+/// Input at which a branch first passes a level of the output.
+fn crossing(branch: &Branch, level: f64) -> Option<f64> {
+    let points: Vec<(f64, f64)> = branch.curve.points().collect();
+    points.windows(2).find(|pair| (pair[0].1 - level) * (pair[1].1 - level) <= 0.0).map(|pair| {
+        let rise = pair[1].1 - pair[0].1;
+        let share = if rise == 0.0 { 0.0 } else { (level - pair[0].1) / rise };
+        pair[0].0 + share * (pair[1].0 - pair[0].0)
+    })
+}
+
+/// Area between two branches over the inputs of both.
+fn area_between(a: &Branch, b: &Branch) -> f64 {
+    const PLACES: usize = 100;
+    let (one, other) = (a.curve.range(), b.curve.range());
+    let (low, high) = (one.0.max(other.0), one.1.min(other.1));
+    let step = (high - low) / PLACES as f64;
+    let place = |k: usize| low + (k as f64 + 0.5) * step;
+    let apart = |x: f64| Some((a.curve.at(x)?.y - b.curve.at(x)?.y).abs());
+    (0..PLACES).filter_map(|k| apart(place(k))).sum::<f64>() * step
+}
+
+/// Cycles of the same record between the same inputs, in the order of time, two of a kind at least.
+pub(crate) fn repeated<'c>(survey: &Survey, cycles: &'c [Cycle]) -> Vec<Vec<&'c Cycle>> {
+    let tolerance = survey.same_input();
+    let mut groups: Vec<Vec<&Cycle>> = Vec::new();
+    let mut open = 0;
+    for cycle in cycles {
+        let alike = |group: &&mut Vec<&Cycle>| {
+            let one = group[0];
+            one.record == cycle.record
+                && (one.input.0 - cycle.input.0).abs() <= tolerance
+                && (one.input.1 - cycle.input.1).abs() <= tolerance
+                && survey.branches[one.branches.0].rises() == survey.branches[cycle.branches.0].rises()
+        };
+        if groups.last().is_some_and(|group| group[0].record != cycle.record) {
+            open = groups.len();
+        }
+        match groups[open..].iter_mut().find(alike) {
+            Some(group) => group.push(cycle),
+            None => groups.push(vec![cycle]),
+        }
+    }
+    groups.retain(|group| group.len() >= 2);
+    groups
+}

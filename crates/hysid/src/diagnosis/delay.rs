@@ -1,0 +1,126 @@
+//! A fixed time by which the output lags behind the input: it widens loops in proportion to the speed, and so
+//! looks like rate dependence, theory.md (10.14).
+
+use serde::Serialize;
+
+use super::branch::{Branch, Survey};
+use super::rate_dependence::Speeds;
+use crate::record::Record;
+
+/// Delays are sought up to this share of the shortest branch, either way.
+const LONGEST: f64 = 0.25;
+
+/// Delays tried before the best is refined.
+const TRIED: i32 = 20;
+
+/// Golden sections of the interval around the best.
+const SECTIONS: usize = 40;
+
+/// Courses and branches that are looked at.
+const MOST: usize = 40;
+
+/// A delay of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Delay {
+    /// By which the output lags behind the input, in the unit of time; negative if it leads.
+    pub time: f64,
+    /// What of the difference between speeds is left after the shift, as a share of the output's range.
+    pub remains: f64,
+}
+
+/// The delay that makes the outputs of all speeds agree best.
+pub(crate) fn between_speeds(survey: &Survey, courses: &[Speeds]) -> Option<Delay> {
+    let step = courses.len().div_ceil(MOST).max(1);
+    let courses: Vec<&Speeds> = courses.iter().step_by(step).collect();
+    let all = || courses.iter().flat_map(|speeds| speeds.slow.iter().chain(&speeds.fast));
+    let shortest = all().filter_map(|branch| branch.duration()).fold(f64::INFINITY, f64::min);
+    if !shortest.is_finite() {
+        return None;
+    }
+    let remainder = |delay: f64| -> f64 {
+        let squares = courses.iter().filter_map(|speeds| mean_square(survey, speeds, delay));
+        squares.fold(0.0, f64::max)
+    };
+    let time = lowest(&remainder, LONGEST * shortest);
+    Some(Delay { time, remains: remainder(time).sqrt() / survey.height() })
+}
+
+/// Where a function of one valley is lowest within `±reach`: a coarse search, then golden sections.
+fn lowest(function: &impl Fn(f64) -> f64, reach: f64) -> f64 {
+    let place = |k: i32| reach * f64::from(k) / f64::from(TRIED);
+    let best = (-TRIED..=TRIED)
+        .min_by(|&a, &b| function(place(a)).total_cmp(&function(place(b))))
+        .expect("there are places");
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let (mut low, mut high) = (place(best - 1), place(best + 1));
+    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_a, mut at_b) = (function(a), function(b));
+    for _ in 0..SECTIONS {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - golden * (high - low);
+            at_a = function(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + golden * (high - low);
+            at_b = function(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later.
+fn mean_square(survey: &Survey, speeds: &Speeds, delay: f64) -> Option<f64> {
+    let records = survey.data.records();
+    let shifted = |set: &[&Branch]| -> Vec<Vec<(f64, f64)>> {
+        set.iter().map(|branch| later(&records[branch.record], branch, delay)).collect()
+    };
+    let (slow, fast) = (shifted(&speeds.slow), shifted(&speeds.fast));
+    let (mut square, mut places) = (0.0, 0.0);
+    for x in speeds.places() {
+        if let (Some(slow), Some(fast)) = (mean(&slow, x), mean(&fast, x)) {
+            square += (slow - fast).powi(2);
+            places += 1.0;
+        }
+    }
+    (places > 0.0).then(|| square / places)
+}
+
+/// The rows of a branch with the output that comes `delay` later, in the order of the input.
+fn later(record: &Record, branch: &Branch, delay: f64) -> Vec<(f64, f64)> {
+    let (x, y) = (&record.inputs()[0], record.output());
+    let time = record.time().expect("delays are sought in data with time");
+    let mut after = branch.rows.start;
+    let mut points: Vec<(f64, f64)> = Vec::with_capacity(branch.rows.len());
+    // The first row whose time is not before the wanted one moves on with the rows.
+    while after > 0 && time[after - 1] >= time[branch.rows.start] + delay {
+        after -= 1;
+    }
+    for row in branch.rows.clone() {
+        let wanted = time[row] + delay;
+        while after < time.len() && time[after] < wanted {
+            after += 1;
+        }
+        if after == 0 || after == time.len() {
+            continue;
+        }
+        let share = (wanted - time[after - 1]) / (time[after] - time[after - 1]);
+        let value = y[after - 1] + share * (y[after] - y[after - 1]);
+        if !value.is_nan() {
+            points.push((x[row], value));
+        }
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+fn mean(set: &[Vec<(f64, f64)>], x: f64) -> Option<f64> {
+    let mut sum = 0.0;
+    for points in set {
+        let above = points.partition_point(|point| point.0 < x);
+        let (a, b) = (points.get(above.checked_sub(1)?)?, points.get(above)?);
+        let width = b.0 - a.0;
+        sum += if width > 0.0 { a.1 + (b.1 - a.1) * (x - a.0) / width } else { a.1 };
+    }
+    Some(sum / set.len() as f64)
+}

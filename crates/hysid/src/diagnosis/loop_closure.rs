@@ -1,0 +1,56 @@
+//! Loop closure: under a periodic input, does the output come back every period? Index: gap after a period
+//! over the range of the output, the first period of each kind aside.
+//!
+//! `|y(t + T) - y(t)| / R`                                                          theory.md (10.10)
+
+use super::branch::Survey;
+use super::comparison::{Comparison, judge};
+use super::cycles::repeated;
+use super::orientation::piece;
+use super::{Cycle, Finding, Property, Verdict};
+
+/// A gap that matters, as a share of the range of the output.
+const EFFECT: f64 = 0.01;
+
+/// Cycles that are compared at most.
+const MOST: usize = 400;
+
+const EXPERIMENT: &str = "repeat a loop three times or more";
+
+/// Tests for closed loops.
+pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
+    let groups = repeated(survey, cycles);
+    // The first period still remembers what was before.
+    let later: Vec<&Cycle> = groups.iter().flat_map(|group| group[1..].iter().copied()).collect();
+    let step = later.len().div_ceil(MOST).max(1);
+    let comparisons: Vec<Comparison> =
+        later.into_iter().step_by(step).filter_map(|cycle| gap(survey, cycle)).collect();
+    let Some(judgement) = judge(&comparisons, EFFECT) else {
+        return Finding::not_testable(Property::LoopClosure, "no loop is repeated", EXPERIMENT);
+    };
+    let percent = 100.0 * judgement.index;
+    let statement = match judgement.verdict {
+        Verdict::Yes => format!("repeated loops close, within {percent:.2} % of the output's range"),
+        Verdict::No => format!("a repeated loop stays open by {percent:.1} % of the output's range"),
+        Verdict::NotTestable => "the noise hides gaps of the size that matters".into(),
+    };
+    survey.finding(Property::LoopClosure, &judgement, &comparisons, statement, EXPERIMENT)
+}
+
+fn gap(survey: &Survey, cycle: &Cycle) -> Option<Comparison> {
+    let (out, back) = (&survey.branches[cycle.branches.0], &survey.branches[cycle.branches.1]);
+    // Where the input did not come back quite to its beginning, both branches are read where it ended.
+    let x = if out.rises() { out.from.max(back.to) } else { out.from.min(back.to) };
+    let (first, last) = (out.curve.at(x)?, back.curve.at(x)?);
+    let inside = (x - out.from).abs();
+    // Away from the beginning the loop has a width of its own.
+    let own = if inside > 0.0 { (out.curve.at(out.from)?.y - first.y).abs() } else { 0.0 };
+    let height = survey.height();
+    Some(Comparison {
+        index: (last.y - first.y).abs() / height,
+        deviation: first.deviation.hypot(last.deviation) / height,
+        bend: (first.bend + last.bend + own) / height,
+        pieces: vec![piece(cycle)],
+        curves: vec![survey.curve("there", out), survey.curve("back", back)],
+    })
+}

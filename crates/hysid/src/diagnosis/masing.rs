@@ -1,0 +1,133 @@
+//! Masing's rule: every branch is the same curve, beginning at its turning point and magnified by two.
+//! Index: how far branches, laid onto each other at their beginnings, differ, over their height.
+//!
+//! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
+
+use super::branch::{Branch, Survey};
+use super::comparison::{Comparison, judge};
+use super::{Finding, Property, Verdict};
+
+/// A difference that matters, as a share of the height.
+const EFFECT: f64 = 0.05;
+
+/// Branches lower than this share of the output's range have no shape.
+const LOWEST: f64 = 0.05;
+
+/// Branches lower than so many deviations of the noise have none either.
+const LOWEST_IN_NOISE: f64 = 10.0;
+
+/// Branches shorter than this share of the input's range.
+const SHORTEST: f64 = 0.05;
+
+/// Branches as long as the longest, to this share, tell nothing new.
+const SAME_LENGTH: f64 = 0.9;
+
+/// Branches that are compared at most.
+const MOST: usize = 200;
+
+/// Places along a branch.
+const PLACES: usize = 40;
+
+const EXPERIMENT: &str = "run closed loops of three or more amplitudes, the smaller ones within the larger";
+
+/// A branch as far as it belongs to its loop, from its turning point on.
+struct OwnPart<'b> {
+    branch: &'b Branch,
+    length: f64,
+}
+
+impl OwnPart<'_> {
+    /// `|y - y_a|/2` at a distance `u = |x - x_a|/2`, with the sign that growth in the branch's
+    /// direction is positive.
+    fn at(&self, u: f64) -> Option<(f64, f64, f64)> {
+        let sign = if self.branch.rises() { 1.0 } else { -1.0 };
+        let start = self.branch.curve.at(self.branch.from)?;
+        let there = self.branch.curve.at(self.branch.from + 2.0 * u * sign)?;
+        Some((
+            0.5 * sign * (there.y - start.y),
+            0.5 * start.deviation.hypot(there.deviation),
+            0.5 * (start.bend + there.bend),
+        ))
+    }
+}
+
+/// Tests for Masing's rule.
+pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
+    let mut parts: Vec<OwnPart> =
+        survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();
+    parts.sort_by(|a, b| b.length.total_cmp(&a.length));
+    let comparisons: Vec<Comparison> = match parts.split_first() {
+        Some((longest, others)) => {
+            let shorter = others.iter().filter(|part| part.length < SAME_LENGTH * longest.length);
+            let allowed =
+                shorter.filter(|part| !equal_speed || survey.similar_speed(longest.branch, part.branch));
+            let parts: Vec<&OwnPart> = allowed.collect();
+            let step = parts.len().div_ceil(MOST).max(1);
+            parts.into_iter().step_by(step).filter_map(|part| compare(survey, longest, part)).collect()
+        }
+        None => Vec::new(),
+    };
+    if comparisons.len() < 2 {
+        let statement = format!(
+            "{} branches shorter than the longest, within known loops; 2 are needed",
+            comparisons.len()
+        );
+        return Finding::not_testable(Property::Masing, statement, EXPERIMENT);
+    }
+    let judgement = judge(&comparisons, EFFECT).expect("there are comparisons");
+    let percent = 100.0 * judgement.index;
+    let statement = match judgement.verdict {
+        Verdict::Yes => format!("all branches lie on one curve, within {percent:.1} % of their height"),
+        Verdict::No => format!("a branch is off the longest one by {percent:.0} % of its height"),
+        Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
+    };
+    let mut finding = survey.finding(Property::Masing, &judgement, &comparisons, statement, EXPERIMENT);
+    if let Some(picture) = &mut finding.picture {
+        picture.x_label = "|x - x_a|/2".into();
+        picture.y_label = "|y - y_a|/2".into();
+        picture.curves.extend(judgement.order.iter().skip(1).take(8).map(|&place| {
+            let mut curve = comparisons[place].curves[1].clone();
+            curve.label = String::new();
+            curve
+        }));
+    }
+    finding
+}
+
+fn own_part<'b>(survey: &Survey, branch: &'b Branch) -> Option<OwnPart<'b>> {
+    let length = (branch.own_end()? - branch.from).abs();
+    let long_enough = length >= SHORTEST * survey.width() && !branch.curve.is_empty();
+    long_enough.then_some(OwnPart { branch, length })
+}
+
+fn compare(survey: &Survey, longest: &OwnPart, part: &OwnPart) -> Option<Comparison> {
+    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
+    let mut height: f64 = 0.0;
+    let mut curves = [Vec::new(), Vec::new()];
+    for place in 1..=PLACES {
+        let u = 0.5 * part.length * place as f64 / PLACES as f64;
+        let (Some(master), Some(here)) = (longest.at(u), part.at(u)) else { continue };
+        square += (master.0 - here.0).powi(2);
+        variance += master.1.powi(2) + here.1.powi(2);
+        bend += (master.2 + here.2).powi(2);
+        places += 1.0;
+        height = height.max(here.0.abs());
+        curves[0].push((u, master.0));
+        curves[1].push((u, here.0));
+    }
+    let lowest = 0.5 * (LOWEST * survey.height()).max(LOWEST_IN_NOISE * survey.output_noise);
+    if places < 0.8 * PLACES as f64 || height < lowest {
+        return None;
+    }
+    let [master, here] = curves;
+    Some(Comparison {
+        index: (square / places).sqrt() / height,
+        deviation: (variance / places).sqrt() / height,
+        bend: (bend / places).sqrt() / height,
+        pieces: vec![survey.piece(longest.branch), survey.piece(part.branch)],
+        curves: vec![
+            super::PictureCurve { label: "longest branch".into(), points: master },
+            super::PictureCurve { label: "shorter branch".into(), points: here },
+        ],
+    })
+}

@@ -1,0 +1,113 @@
+//! Odd symmetry: a loop turned by half a turn about its centre is itself. Index: how far the falling branch,
+//! turned, is off the rising one, their mean difference aside, over the range of the output.
+//!
+//! `rms(y_up(x) + y_down(2 x_c - x) - mean) / R`,  half the mean is the offset       theory.md (10.7)
+
+use super::branch::{Branch, Survey};
+use super::comparison::{Comparison, judge};
+use super::{Finding, Property, Verdict};
+
+/// A difference that matters, as a share of the range of the output.
+const EFFECT: f64 = 0.02;
+
+/// The centre is 0 if 0 is this close to the middle of the input's range, as a share of it.
+const ABOUT_ZERO: f64 = 0.1;
+
+/// The loop must cover this share of the input's range.
+const COVERED: f64 = 0.6;
+
+/// Pairs of branches at most.
+const MOST: usize = 12;
+
+/// Places along a branch.
+const PLACES: usize = 80;
+
+const EXPERIMENT: &str =
+    "run a few equal loops over the whole range of the input, as far to one side as to the other";
+
+/// Tests for odd symmetry.
+pub(crate) fn test(survey: &Survey) -> Finding {
+    let middle = 0.5 * (survey.input.0 + survey.input.1);
+    let centre = if middle.abs() <= ABOUT_ZERO * survey.width() { 0.0 } else { middle };
+    let half = (survey.input.1 - centre).min(centre - survey.input.0);
+    let pairs = pairs(survey, centre, half);
+    let step = pairs.len().div_ceil(MOST).max(1);
+    let comparisons: Vec<Comparison> =
+        pairs.into_iter().step_by(step).filter_map(|pair| compare(survey, centre, half, pair)).collect();
+    let Some(judgement) = judge(&comparisons, EFFECT) else {
+        let statement = "no rising and falling branch that follow each other over the whole range";
+        return Finding::not_testable(Property::OddSymmetry, statement, EXPERIMENT);
+    };
+    let percent = 100.0 * judgement.index;
+    let about = if centre == 0.0 { "x = 0" } else { "the middle of the input's range" };
+    let statement = match judgement.verdict {
+        Verdict::Yes => {
+            format!("loops turned about {about} are themselves, within {percent:.2} % of the output's range")
+        }
+        Verdict::No => {
+            format!("a loop turned about {about} is off itself by {percent:.1} % of the output's range")
+        }
+        Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
+    };
+    survey.finding(Property::OddSymmetry, &judgement, &comparisons, statement, EXPERIMENT)
+}
+
+/// Branches over the whole range that follow each other, with the one before the first where that is over
+/// the whole range too: half way between before and after, what a loop loses by wear is in both directions alike.
+fn pairs<'s>(survey: &'s Survey, centre: f64, half: f64) -> Vec<[&'s Branch; 3]> {
+    if half < 0.5 * COVERED * survey.width() {
+        return Vec::new();
+    }
+    let tolerance = survey.same_input();
+    let whole = |branch: &Branch| {
+        let (low, high) = branch.curve.range();
+        !branch.curve.is_empty() && low <= centre - half + tolerance && high >= centre + half - tolerance
+    };
+    survey
+        .branches
+        .windows(3)
+        .filter(|three| three.iter().all(|b| b.record == three[0].record) && three.iter().all(whole))
+        .map(|three| [&three[0], &three[1], &three[2]])
+        .collect()
+}
+
+fn compare(
+    survey: &Survey,
+    centre: f64,
+    half: f64,
+    [before, branch, after]: [&Branch; 3],
+) -> Option<Comparison> {
+    let mut rows = Vec::with_capacity(PLACES);
+    let half = half - survey.same_input();
+    for place in 0..PLACES {
+        let distance = half * (2.0 * place as f64 / (PLACES - 1) as f64 - 1.0);
+        let (x, turned) = (centre + distance, centre - distance);
+        let here = branch.curve.at(x)?;
+        let (one, other) = (before.curve.at(turned)?, after.curve.at(turned)?);
+        let mirrored = 0.5 * (one.y + other.y);
+        let variance = here.deviation.powi(2) + 0.25 * (one.deviation.powi(2) + other.deviation.powi(2));
+        rows.push((x, here.y, mirrored, variance, here.bend + 0.5 * (one.bend + other.bend)));
+    }
+    let n = rows.len() as f64;
+    let mean = rows.iter().map(|row| row.1 + row.2).sum::<f64>() / n;
+    let square = rows.iter().map(|row| (row.1 + row.2 - mean).powi(2)).sum::<f64>() / n;
+    let variance = rows.iter().map(|row| row.3).sum::<f64>() / n;
+    let bend = (rows.iter().map(|row| row.4 * row.4).sum::<f64>() / n).sqrt();
+    let height = survey.height();
+    Some(Comparison {
+        index: square.sqrt() / height,
+        deviation: variance.sqrt() / height,
+        bend: bend / height,
+        pieces: [before, branch, after].into_iter().map(|branch| survey.piece(branch)).collect(),
+        curves: vec![
+            super::PictureCurve {
+                label: "branch".into(),
+                points: rows.iter().map(|row| (row.0, row.1)).collect(),
+            },
+            super::PictureCurve {
+                label: "opposite branch, turned".into(),
+                points: rows.iter().map(|row| (row.0, mean - row.2)).collect(),
+            },
+        ],
+    })
+}

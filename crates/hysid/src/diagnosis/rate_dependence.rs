@@ -1,0 +1,190 @@
+//! Rate dependence: does the same way of the input give another output when it is gone faster? Index: how far
+//! branches of equal course and different speed lie apart, over the range of the output.
+//!
+//! `rms(y_fast(x) - y_slow(x)) / R`                                                 theory.md (10.13)
+//!
+//! An output that lags behind by a fixed time also differs with the speed. Where shifting the output by
+//! one time makes all speeds agree, that time is a delay, and the law behind it does not depend on the rate.
+
+use std::collections::HashMap;
+
+use super::branch::{Branch, Survey};
+use super::comparison::{Comparison, judge};
+use super::delay;
+use super::{Finding, Property, Verdict};
+
+/// A difference that matters, as a share of the range of the output.
+const EFFECT: f64 = 0.01;
+
+/// Speeds that differ by less than this factor say nothing.
+const DIFFERENT: f64 = 1.3;
+
+/// Speeds must differ by this factor for agreement to mean something.
+const FAR_APART: f64 = 2.0;
+
+/// Speeds within this factor are taken together.
+const TOGETHER: f64 = 1.15;
+
+/// Branches of the same speed may differ by so much less than those of another.
+const CLEAR: f64 = 2.0;
+
+/// Branches shorter than this share of the input's range.
+const SHORTEST: f64 = 0.1;
+
+/// Branches of one course and speed at most.
+const MOST: usize = 8;
+
+/// Places along a branch.
+const PLACES: usize = 40;
+
+const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten times slower than the fastest";
+
+/// Branches of one course: a slow and a fast set.
+pub(crate) struct Speeds<'b> {
+    pub slow: Vec<&'b Branch>,
+    pub fast: Vec<&'b Branch>,
+    /// Inputs that all go through.
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Speeds<'_> {
+    /// Ratio of the speeds.
+    fn ratio(&self) -> f64 {
+        let mean = |set: &[&Branch]| set.iter().filter_map(|b| b.speed).sum::<f64>() / set.len() as f64;
+        mean(&self.fast) / mean(&self.slow)
+    }
+
+    /// Inputs along the way.
+    pub fn places(&self) -> impl Iterator<Item = f64> + use<'_> {
+        (1..PLACES).map(|place| self.from + (self.to - self.from) * place as f64 / PLACES as f64)
+    }
+}
+
+/// Tests for rate dependence.
+pub(crate) fn test(survey: &Survey) -> Finding {
+    if !survey.data.has_time() {
+        let statement = "the data have no time stamps";
+        return Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
+    }
+    let courses = courses(survey);
+    let comparisons: Vec<Comparison> = courses.iter().filter_map(|speeds| compare(survey, speeds)).collect();
+    let Some(mut judgement) = judge(&comparisons, EFFECT) else {
+        let statement = "no way of the input is gone at two speeds";
+        return Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
+    };
+    let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);
+    let percent = 100.0 * judgement.index;
+    // The comparisons say whether the outputs agree.
+    let agree = judgement.verdict;
+    let delay = if agree == Verdict::No { delay::between_speeds(survey, &courses) } else { None };
+    let explained = delay.filter(|delay| {
+        delay.remains <= EFFECT.max(3.0 * judgement.noise) && delay.remains < 0.3 * judgement.index
+    });
+    let statement = match (agree, explained) {
+        (Verdict::No, Some(delay)) => format!(
+            "outputs differ by {percent:.1} % of their range at {ratio:.1} times the speed, and agree within {:.2} % when \
+             shifted by {:.4} in time: a delay, not a rate-dependent law",
+            100.0 * delay.remains,
+            delay.time
+        ),
+        (Verdict::No, None) => {
+            format!("at {ratio:.1} times the speed the output differs by {percent:.1} % of its range")
+        }
+        (Verdict::Yes, _) if ratio < FAR_APART => {
+            format!("outputs agree, but the speeds differ only by a factor of {ratio:.1}")
+        }
+        (Verdict::Yes, _) => format!(
+            "at {ratio:.1} times the speed the output is the same, within {percent:.2} % of its range"
+        ),
+        (Verdict::NotTestable, _) => "the noise hides differences of the size that matters".into(),
+    };
+    judgement.verdict = match (agree, explained) {
+        (Verdict::No, Some(_)) => Verdict::No,
+        (Verdict::No, None) => Verdict::Yes,
+        (Verdict::Yes, _) if ratio >= FAR_APART => Verdict::No,
+        _ => Verdict::NotTestable,
+    };
+    survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT)
+}
+
+/// Branches of the same course that are gone at different speeds: same ends, same direction, same turning
+/// point before.
+pub(crate) fn courses<'s>(survey: &'s Survey) -> Vec<Speeds<'s>> {
+    let tolerance = survey.same_input();
+    let cell = |x: f64| (x / (2.0 * tolerance)).round() as i64;
+    let mut groups: HashMap<(i64, i64, Option<i64>), Vec<&Branch>> = HashMap::new();
+    let mut order = Vec::new();
+    for branch in &survey.branches {
+        if branch.speed.is_none() || branch.curve.is_empty() || branch.travel() < SHORTEST * survey.width() {
+            continue;
+        }
+        let before = branch.beneath.iter().rev().nth(1).map(|&x| cell(x));
+        let key = (cell(branch.from), cell(branch.to), before);
+        groups
+            .entry(key)
+            .or_insert_with(|| {
+                order.push(key);
+                Vec::new()
+            })
+            .push(branch);
+    }
+    order.iter().filter_map(|key| speeds(&groups[key])).collect()
+}
+
+/// The slowest and the fastest branches of a course, if their speeds differ.
+fn speeds<'b>(branches: &[&'b Branch]) -> Option<Speeds<'b>> {
+    let speed = |branch: &&Branch| branch.speed.unwrap_or(0.0);
+    let slowest = branches.iter().map(speed).fold(f64::INFINITY, f64::min);
+    let fastest = branches.iter().map(speed).fold(0.0, f64::max);
+    if fastest < DIFFERENT * slowest {
+        return None;
+    }
+    let pick = |wanted: &dyn Fn(f64) -> bool| -> Vec<&'b Branch> {
+        // The last ones are the most settled.
+        branches.iter().rev().filter(|branch| wanted(speed(branch))).take(MOST).copied().collect()
+    };
+    let slow = pick(&|speed| speed <= TOGETHER * slowest);
+    let fast = pick(&|speed| speed >= fastest / TOGETHER);
+    let rises = slow[0].rises();
+    let all = || slow.iter().chain(&fast);
+    let lowest = all().map(|b| b.curve.range().0).fold(f64::NEG_INFINITY, f64::max);
+    let highest = all().map(|b| b.curve.range().1).fold(f64::INFINITY, f64::min);
+    let (from, to) = if rises { (lowest, highest) } else { (highest, lowest) };
+    Some(Speeds { slow, fast, from, to })
+}
+
+/// Mean over a set of branches at an input, and its variance from the noise.
+fn mean(set: &[&Branch], x: f64) -> Option<(f64, f64)> {
+    let readings: Vec<_> = set.iter().map(|branch| branch.curve.at(x)).collect::<Option<_>>()?;
+    let n = readings.len() as f64;
+    let y = readings.iter().map(|reading| reading.y).sum::<f64>() / n;
+    Some((y, readings.iter().map(|reading| reading.deviation.powi(2)).sum::<f64>() / (n * n)))
+}
+
+fn compare(survey: &Survey, speeds: &Speeds) -> Option<Comparison> {
+    let (mut square, mut variance, mut places) = (0.0, 0.0, 0.0);
+    // How far branches of one speed lie apart, because of their past or their wear.
+    let mut own = [0.0, 0.0];
+    for x in speeds.places() {
+        let (slow, fast) = (mean(&speeds.slow, x)?, mean(&speeds.fast, x)?);
+        square += (slow.0 - fast.0).powi(2);
+        variance += slow.1 + fast.1;
+        places += 1.0;
+        for (own, (set, mean)) in own.iter_mut().zip([(&speeds.slow, slow.0), (&speeds.fast, fast.0)]) {
+            let squares =
+                set.iter().filter_map(|b| b.curve.at(x)).map(|r| (r.y - mean).powi(2) - r.deviation.powi(2));
+            *own += squares.sum::<f64>().max(0.0) / (set.len() as f64 - 1.0).max(1.0);
+        }
+    }
+    let height = survey.height();
+    let apart = (square / places).sqrt();
+    let own = (own[0].max(own[1]) / places).sqrt();
+    Some(Comparison {
+        index: apart / height,
+        deviation: (variance / places).sqrt() / height,
+        bend: 0.5 * CLEAR * own / height,
+        pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
+        curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
+    })
+}
