@@ -24,6 +24,7 @@ mod loop_closure;
 mod masing;
 mod noise;
 mod odd_symmetry;
+mod opening;
 mod orientation;
 mod rate_dependence;
 mod saturation;
@@ -253,12 +254,13 @@ impl Diagnosis {
         data.check_identifiable(FEWEST_ROWS)?;
         let survey = Survey::new(data, options);
         let cycles = cycles::cycles(&survey);
+        let openings = opening::openings(&survey);
         let rate = rate_dependence::test(&survey);
         // Branches of different speed say nothing about memory where the speed matters.
         let equal_speed = rate.verdict == Verdict::Yes;
         let properties = vec![
-            static_hysteresis::test(&survey, &cycles),
-            orientation::test(&survey, &cycles),
+            static_hysteresis::test(&survey, &openings),
+            orientation::test(&survey, &openings),
             rate,
             wiping_out::test(&survey, equal_speed),
             congruency::test(&survey, equal_speed),

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use super::noise;
-use super::smoothing::{choose_window, smooth};
+use super::smoothing::{Place, Points, Smoothed, choose_window, smooth};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use crate::record::{Dataset, Record};
 use crate::turning_points::turning_points;
 
-/// A branch's curve has no more points than this; longer ones are averaged in blocks.
+/// Branches of twice as many rows are averaged in blocks, to about so many points.
 const MOST_POINTS: usize = 400;
 
 /// A turning point counts as reached within this share of the input's range.
@@ -32,6 +32,8 @@ pub(crate) struct Branch {
     pub speed: Option<f64>,
     /// Turning points that enclose it, the latest last; the last is where it began.
     pub beneath: Vec<f64>,
+    /// Those of them that still enclose it at its end, the latest last.
+    pub around: Vec<f64>,
     /// Loops that it closes on its way.
     pub closes: Vec<Closing>,
     /// The output over the input.
@@ -164,8 +166,6 @@ pub(crate) struct Survey<'a> {
     pub input_noise: f64,
     /// Deviation of the noise of the output.
     pub output_noise: f64,
-    /// Reversals of the input below this are no turning points.
-    pub smallest_reversal: f64,
     /// Rows that are taken together to read a curve.
     pub window: usize,
     /// All branches, record after record.
@@ -188,22 +188,14 @@ impl<'a> Survey<'a> {
         for (number, record) in data.records().iter().enumerate() {
             follow(number, record, smallest_reversal, reached, &mut branches);
         }
-        let points: Vec<Vec<(f64, f64)>> = branches.iter().map(|branch| of_rows(data, branch)).collect();
         let output_noise = output_noise(data, &branches);
-        let averaged = |branch: &Branch| branch.rows.len().div_ceil(MOST_POINTS) as f64;
-        let window = match options.smoothing {
-            true => {
-                let longest = branches.iter().map(averaged).fold(1.0, f64::max);
-                choose_window(&points, output_noise / longest.sqrt())
-            }
-            false => 1,
-        };
+        let points: Vec<Points> = branches.iter().map(|branch| of_rows(data, branch, output_noise)).collect();
+        let window = if options.smoothing { choose_window(&points) } else { 1 };
         for (branch, points) in branches.iter_mut().zip(points) {
-            let deviation = output_noise / averaged(branch).sqrt();
-            branch.curve = curve(&points, window, deviation);
+            branch.curve = curve(&points, window);
         }
         let output = data.output_range();
-        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches }
+        Self { data, input, output, input_noise, output_noise, window, branches }
     }
 
     /// Range of the output.
@@ -235,7 +227,10 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
         let (first, last) = (rows[0], rows[1]);
         let (from, to) = (x[first], x[last]);
         let here = branches.len();
-        let beneath: Vec<f64> = stack[stack.len().saturating_sub(KEPT)..].iter().map(|(x, _)| *x).collect();
+        let latest = |stack: &[(f64, Option<usize>)]| -> Vec<f64> {
+            stack[stack.len().saturating_sub(KEPT)..].iter().map(|(x, _)| *x).collect()
+        };
+        let beneath = latest(&stack);
         let mut closes = Vec::new();
         while stack.len() >= 2 {
             let (before, arrived) = stack[stack.len() - 2];
@@ -251,6 +246,7 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
             closes.extend(arrived.map(|arrived| Closing { x: before, arrived }));
             stack.truncate(stack.len() - 2);
         }
+        let around = latest(&stack);
         stack.push((to, Some(here)));
         let speed = record.time().map(|time| (to - from).abs() / (time[last] - time[first]));
         branches.push(Branch {
@@ -260,28 +256,33 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
             to,
             speed,
             beneath,
+            around,
             closes,
             curve: Curve::default(),
         });
     }
 }
 
-/// Points of a branch in the order of the input, averaged in blocks where there are very many.
-fn of_rows(data: &Dataset, branch: &Branch) -> Vec<(f64, f64)> {
+/// Points of a branch in the order of time, averaged in blocks where there are very many.
+fn of_rows(data: &Dataset, branch: &Branch, noise: f64) -> Points {
     let record = &data.records()[branch.record];
-    let (x, y) = (&record.inputs()[0][branch.rows.clone()], &record.output()[branch.rows.clone()]);
-    let block = x.len().div_ceil(MOST_POINTS);
-    let mut points: Vec<(f64, f64)> = x
-        .chunks(block)
-        .zip(y.chunks(block))
-        .filter(|(_, y)| y.iter().all(|y| !y.is_nan()))
-        .map(|(x, y)| (x.iter().sum::<f64>() / x.len() as f64, y.iter().sum::<f64>() / y.len() as f64))
-        .collect();
-    if points.len() < 4 {
-        points.clear();
+    let columns = [&record.inputs()[0], record.output()].map(|column| &column[branch.rows.clone()]);
+    let block = (branch.rows.len() / MOST_POINTS).max(1);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let blocks = |column: usize| columns[column].chunks(block).map(mean);
+    // The output is smooth in time, whatever the input does; without time stamps the input stands for it.
+    let stations: Vec<f64> = match record.time() {
+        Some(time) => time[branch.rows.clone()].chunks(block).map(mean).collect(),
+        None => blocks(0).collect(),
+    };
+    let rows = stations.into_iter().zip(blocks(0).zip(blocks(1)));
+    let mut places: Vec<Place> =
+        rows.filter(|(_, (_, y))| !y.is_nan()).map(|(station, (x, y))| Place { station, x, y }).collect();
+    if places.len() < 4 {
+        places.clear();
     }
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
+    places.sort_by(|a, b| a.station.total_cmp(&b.station));
+    Points { places, deviation: noise / (block as f64).sqrt() }
 }
 
 fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
@@ -293,14 +294,16 @@ fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
     noise::deviation(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
 }
 
-fn curve(points: &[(f64, f64)], window: usize, deviation: f64) -> Curve {
-    let smoothed = smooth(points, window);
-    let place = |(point, value): (&(f64, f64), &super::smoothing::Smoothed)| CurvePoint {
-        x: point.0,
+fn curve(points: &Points, window: usize) -> Curve {
+    let smoothed = smooth(&points.places, window);
+    let place = |(place, value): (&Place, &Smoothed)| CurvePoint {
+        x: place.x,
         y: value.y,
-        deviation: value.deviation * deviation,
+        deviation: value.deviation * points.deviation,
     };
-    Curve { points: points.iter().zip(&smoothed).map(place).collect() }
+    let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    Curve { points }
 }
 
 /// Branches whose speeds differ by no more than this factor are of the same speed.

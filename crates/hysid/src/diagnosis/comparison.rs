@@ -4,7 +4,7 @@ use super::noise;
 use super::{PictureCurve, Piece, Verdict};
 
 /// A limit so many times the effect that matters leaves a property undecided.
-const BLIND: f64 = 5.0;
+const BLIND: f64 = 8.0;
 
 /// A difference that a property says is nought.
 #[derive(Debug, Clone)]
@@ -41,8 +41,9 @@ pub(crate) struct Judgement {
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
-    let critical = noise::critical_value(count);
-    let limit = |c: &Comparison| (effect + 2.0 * c.bend).max(critical * c.deviation);
+    let (critical, doubtful) = (noise::critical_value(count), noise::doubtful_value(count));
+    let beyond = |c: &Comparison, deviations: f64| (effect + 2.0 * c.bend).max(deviations * c.deviation);
+    let limit = |c: &Comparison| beyond(c, critical);
     let excess = |c: &Comparison| c.index / limit(c);
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
@@ -50,7 +51,9 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     let mut limits: Vec<f64> = comparisons.iter().map(limit).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
-    } else if noise::median(&mut limits) > BLIND * effect {
+    } else if noise::median(&mut limits) > BLIND * effect
+        || comparisons.iter().any(|c| c.index > beyond(c, doubtful))
+    {
         Verdict::NotTestable
     } else {
         Verdict::Yes

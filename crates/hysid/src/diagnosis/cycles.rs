@@ -1,8 +1,12 @@
 //! Cycles of the input and the numbers engineers read from their loops.
 
+use std::collections::HashMap;
+
 use serde::Serialize;
 
+use super::Piece;
 use super::branch::{Branch, Survey};
+use super::opening::opening;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 const CLOSED: f64 = 0.02;
@@ -52,6 +56,11 @@ impl Cycle {
         self.input.1 - self.input.0
     }
 
+    /// The rows of the cycle.
+    pub fn piece(&self) -> Piece {
+        Piece { record: self.record.clone(), rows: self.rows }
+    }
+
     /// Energy as a share of the box around the loop: 0 for a line, near 1 for dry friction.
     pub fn fullness(&self) -> f64 {
         self.energy / (self.swing() * self.height()).max(f64::MIN_POSITIVE)
@@ -88,6 +97,7 @@ fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
         return None;
     }
     // The way along the loop, and straight back from its end to its beginning.
+    let opening = opening(survey, index)?;
     let n = x.len();
     let step = |row: usize| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n]);
     let energy: f64 = (0..n).map(|row| y[row] * step(row)).sum();
@@ -107,7 +117,7 @@ fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
         input,
         output,
         energy,
-        area: area_between(out, back),
+        area: opening.area,
         energy_deviation: survey.output_noise * squares.sqrt(),
         width: apart_along_input(middle).unwrap_or(0.0),
         secant_stiffness: (tip - 0.5 * (first + last)) / (out.to - out.from),
@@ -129,36 +139,29 @@ fn crossing(branch: &Branch, level: f64) -> Option<f64> {
     })
 }
 
-/// Area between two branches over the inputs of both.
-fn area_between(a: &Branch, b: &Branch) -> f64 {
-    const PLACES: usize = 100;
-    let (one, other) = (a.curve.range(), b.curve.range());
-    let (low, high) = (one.0.max(other.0), one.1.min(other.1));
-    let step = (high - low) / PLACES as f64;
-    let place = |k: usize| low + (k as f64 + 0.5) * step;
-    let apart = |x: f64| Some((a.curve.at(x)?.y - b.curve.at(x)?.y).abs());
-    (0..PLACES).filter_map(|k| apart(place(k))).sum::<f64>() * step
-}
-
-/// Cycles of the same record between the same inputs, in the order of time, two of a kind at least.
+/// Cycles of the same record between the same inputs and within the same outer turning points, in the order of
+/// time, two of a kind at least. Loops with another past are other loops.
 pub(crate) fn repeated<'c>(survey: &Survey, cycles: &'c [Cycle]) -> Vec<Vec<&'c Cycle>> {
     let tolerance = survey.same_input();
+    let out = |cycle: &Cycle| &survey.branches[cycle.branches.0];
+    let cell = |cycle: &Cycle| (out(cycle).to / tolerance).floor() as i64;
+    let same = |a: f64, b: f64| (a - b).abs() <= tolerance;
+    let alike = |a: &Branch, b: &Branch| {
+        let outer = a.around.iter().rev().skip(1).zip(b.around.iter().rev().skip(1)).take(2);
+        same(a.from, b.from) && same(a.to, b.to) && outer.into_iter().all(|(a, b)| same(*a, *b))
+    };
     let mut groups: Vec<Vec<&Cycle>> = Vec::new();
-    let mut open = 0;
+    let mut near: HashMap<(usize, i64), Vec<usize>> = HashMap::new();
     for cycle in cycles {
-        let alike = |group: &&mut Vec<&Cycle>| {
-            let one = group[0];
-            one.record == cycle.record
-                && (one.input.0 - cycle.input.0).abs() <= tolerance
-                && (one.input.1 - cycle.input.1).abs() <= tolerance
-                && survey.branches[one.branches.0].rises() == survey.branches[cycle.branches.0].rises()
-        };
-        if groups.last().is_some_and(|group| group[0].record != cycle.record) {
-            open = groups.len();
-        }
-        match groups[open..].iter_mut().find(alike) {
-            Some(group) => group.push(cycle),
-            None => groups.push(vec![cycle]),
+        let (record, here) = (out(cycle).record, cell(cycle));
+        let candidates = (here - 1..=here + 1).filter_map(|cell| near.get(&(record, cell))).flatten();
+        let known = candidates.copied().find(|&group| alike(out(groups[group][0]), out(cycle)));
+        match known {
+            Some(group) => groups[group].push(cycle),
+            None => {
+                near.entry((record, here)).or_default().push(groups.len());
+                groups.push(vec![cycle]);
+            }
         }
     }
     groups.retain(|group| group.len() >= 2);

@@ -5,7 +5,6 @@
 use super::branch::Survey;
 use super::cycles::repeated;
 use super::noise;
-use super::orientation::piece;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
 
 /// A loss of energy that matters, as a share of the first cycle's.
@@ -84,7 +83,7 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
             pieces: [strongest.cycles.first(), strongest.cycles.last()]
                 .into_iter()
                 .flatten()
-                .map(|c| piece(c))
+                .map(|cycle| cycle.piece())
                 .collect(),
         }],
         picture: Some(energies(&trends)),

@@ -6,7 +6,6 @@
 use super::branch::Survey;
 use super::comparison::{Comparison, judge};
 use super::cycles::repeated;
-use super::orientation::piece;
 use super::{Cycle, Finding, Property, Verdict};
 
 /// A gap that matters, as a share of the range of the output.
@@ -50,7 +49,7 @@ fn gap(survey: &Survey, cycle: &Cycle) -> Option<Comparison> {
         index: (last.y - first.y).abs() / height,
         deviation: first.deviation.hypot(last.deviation) / height,
         bend: (first.bend + last.bend + own) / height,
-        pieces: vec![piece(cycle)],
+        pieces: vec![cycle.piece()],
         curves: vec![survey.curve("there", out), survey.curve("back", back)],
     })
 }

@@ -44,6 +44,11 @@ pub fn critical_value(count: usize) -> f64 {
     upper_quantile(5e-5 / count.max(1) as f64)
 }
 
+/// The same with a chance of 1 in 1000: what is below is what noise does.
+pub fn doubtful_value(count: usize) -> f64 {
+    upper_quantile(5e-4 / count.max(1) as f64)
+}
+
 /// Magnitude that the largest of `count` independent standard normal numbers has, typically.
 pub fn typical_largest(count: usize) -> f64 {
     upper_quantile(0.25 / count.max(1) as f64)

@@ -1,32 +1,37 @@
-//! Orientation: which way loops are passed. Index: signed over unsigned area of all loops, theory.md (10.9):
-//! 1 is clockwise, as for a force that dissipates, -1 counter-clockwise, as for an output that lags behind.
+//! Orientation: which way loops are passed. Index: signed over unsigned area between branches that follow each
+//! other, theory.md (10.9): 1 is clockwise, as for a force that dissipates, -1 counter-clockwise, as for an
+//! output that lags behind.
 
-use super::Piece;
 use super::branch::Survey;
+use super::opening::Opening;
 use super::wiping_out::loops;
-use super::{Cycle, Evidence, Finding, Property, Verdict};
+use super::{Evidence, Finding, Property, Verdict};
 
-/// Below this magnitude loops cross themselves, or there are none.
+/// Below this magnitude loops cross themselves.
 const CLEAR: f64 = 0.3;
 
 /// Loops narrower than this share of their box are no loops.
 const FULL: f64 = 0.003;
 
+/// Openings over less than this share of the widest do not count.
+const WIDE: f64 = 0.3;
+
 const EXPERIMENT: &str = "run a few closed loops over the whole range of the input";
 
 /// Tests which way loops are passed.
-pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
-    let open = |cycle: &&Cycle| {
-        let bounds = cycle.swing() * cycle.height();
-        cycle.area > FULL * bounds && cycle.area > 5.0 * cycle.energy_deviation
+pub(crate) fn test(survey: &Survey, openings: &[Opening]) -> Finding {
+    let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
+    let counts = |opening: &&Opening| {
+        let open = opening.fullness() > FULL && opening.area > 5.0 * opening.deviation;
+        opening.swing >= WIDE * widest && open
     };
-    let loops_found: Vec<&Cycle> = cycles.iter().filter(open).collect();
-    let total: f64 = loops_found.iter().map(|cycle| cycle.area).sum();
-    let Some(largest) = loops_found.iter().copied().max_by(|a, b| a.area.total_cmp(&b.area)) else {
-        return Finding::not_testable(Property::Orientation, "no closed loop with an area", EXPERIMENT);
+    let open: Vec<&Opening> = openings.iter().filter(counts).collect();
+    let total: f64 = open.iter().map(|opening| opening.area).sum();
+    let Some(largest) = open.iter().copied().max_by(|a, b| a.area.total_cmp(&b.area)) else {
+        return Finding::not_testable(Property::Orientation, "no loop with an area", EXPERIMENT);
     };
-    let index = loops_found.iter().map(|cycle| cycle.energy).sum::<f64>() / total;
-    let noise = loops_found.iter().map(|cycle| cycle.energy_deviation.powi(2)).sum::<f64>().sqrt() / total;
+    let index = open.iter().map(|opening| opening.signed).sum::<f64>() / total;
+    let noise = open.iter().map(|opening| opening.deviation.powi(2)).sum::<f64>().sqrt() / total;
     let (verdict, statement) = if index > CLEAR {
         (
             Verdict::Yes,
@@ -37,25 +42,16 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
     } else {
         (Verdict::NotTestable, "loops cross themselves (butterfly), so that they have no one orientation")
     };
-    let (a, b) = largest.branches;
     Finding {
         property: Property::Orientation,
         verdict,
         index: Some(index),
         threshold: Some(CLEAR),
         noise: Some(noise),
-        comparisons: loops_found.len(),
+        comparisons: open.len(),
         statement: statement.into(),
         experiment: (verdict == Verdict::NotTestable).then(|| EXPERIMENT.into()),
-        evidence: vec![Evidence { index: largest.energy / largest.area, pieces: vec![piece(largest)] }],
-        picture: Some(loops(vec![
-            survey.curve("there", &survey.branches[a]),
-            survey.curve("back", &survey.branches[b]),
-        ])),
+        evidence: vec![Evidence { index: largest.signed / largest.area, pieces: largest.pieces(survey) }],
+        picture: Some(loops(largest.curves(survey))),
     }
-}
-
-/// The rows of a cycle.
-pub(super) fn piece(cycle: &Cycle) -> Piece {
-    Piece { record: cycle.record.clone(), rows: cycle.rows }
 }

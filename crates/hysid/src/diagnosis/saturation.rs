@@ -2,8 +2,9 @@
 //! over the largest slope of the same branch, theory.md (10.8).
 
 use super::branch::{Branch, Survey};
-use super::comparison::{Comparison, judge};
-use super::{Finding, Property, Verdict};
+use super::comparison::Comparison;
+use super::wiping_out::loops;
+use super::{Evidence, Finding, Property, Verdict};
 
 /// A slope below this share of the largest one is saturated.
 const SATURATED: f64 = 0.1;
@@ -11,8 +12,17 @@ const SATURATED: f64 = 0.1;
 /// Parts of a branch over which slopes are taken.
 const PARTS: usize = 10;
 
+/// Deviations of the noise that make sure.
+const SURE: f64 = 3.0;
+
+/// An uncertainty below this does not matter.
+const CLOSE: f64 = 0.02;
+
 /// Share of the input's range that a branch must cover.
 const COVERED: f64 = 0.6;
+
+/// Share of the output's range that a branch must cover.
+const HIGH: f64 = 0.3;
 
 /// Branches at most, each end.
 const MOST: usize = 12;
@@ -44,16 +54,40 @@ fn end(survey: &Survey, rising: bool) -> Option<Finding> {
     let step = branches.len().div_ceil(MOST).max(1);
     let comparisons: Vec<Comparison> =
         branches.into_iter().step_by(step).filter_map(|branch| slope_ratio(survey, branch)).collect();
-    // The slope at the end is to be nought: the comparisons say whether it is.
-    let judgement = judge(&comparisons, SATURATED)?;
+    let n = comparisons.len() as f64;
+    if comparisons.is_empty() {
+        return None;
+    }
+    let index = comparisons.iter().map(|c| c.index).sum::<f64>() / n;
+    let deviation = comparisons.iter().map(|c| c.deviation.powi(2)).sum::<f64>().sqrt() / n;
     let side = if rising { "upper" } else { "lower" };
-    let share = 100.0 * judgement.index;
-    let statement = match judgement.verdict {
-        Verdict::Yes => format!("at the {side} end the slope is {share:.1} % of the largest"),
-        Verdict::No => format!("at the {side} end the slope is still {share:.0} % of the largest"),
-        Verdict::NotTestable => "the noise hides slopes of the size that matters".into(),
+    let share = 100.0 * index;
+    let (verdict, statement) = if index + SURE * deviation < SATURATED {
+        (Verdict::Yes, format!("at the {side} end the slope is {share:.1} % of the largest"))
+    } else if index - SURE * deviation > SATURATED || SURE * deviation < CLOSE {
+        let verdict = if index < SATURATED { Verdict::Yes } else { Verdict::No };
+        (verdict, format!("at the {side} end the slope is {share:.0} % of the largest"))
+    } else {
+        (
+            Verdict::NotTestable,
+            format!(
+                "at the {side} end the slope is {share:.0} % of the largest, too uncertain for the noise"
+            ),
+        )
     };
-    Some(survey.finding(Property::Saturation, &judgement, &comparisons, statement, EXPERIMENT))
+    Some(Finding {
+        property: Property::Saturation,
+        verdict,
+        index: Some(index),
+        threshold: Some(SATURATED),
+        noise: Some(deviation),
+        comparisons: comparisons.len(),
+        statement,
+        experiment: (verdict == Verdict::NotTestable)
+            .then(|| format!("measure with less noise; {EXPERIMENT}")),
+        evidence: comparisons.iter().map(|c| Evidence { index: c.index, pieces: c.pieces.clone() }).collect(),
+        picture: Some(loops(comparisons[0].curves.clone())),
+    })
 }
 
 fn slope_ratio(survey: &Survey, branch: &Branch) -> Option<Comparison> {
@@ -61,7 +95,7 @@ fn slope_ratio(survey: &Survey, branch: &Branch) -> Option<Comparison> {
     let readings: Vec<_> = (0..=PARTS).map(|part| branch.curve.at(place(part))).collect::<Option<_>>()?;
     let rises: Vec<f64> = readings.windows(2).map(|pair| (pair[1].y - pair[0].y).abs()).collect();
     let largest = rises.iter().copied().fold(0.0, f64::max);
-    if largest <= 0.0 {
+    if (readings[PARTS].y - readings[0].y).abs() < HIGH * survey.height() {
         return None;
     }
     let last = readings[PARTS - 1].deviation.hypot(readings[PARTS].deviation);

@@ -25,34 +25,53 @@ pub(crate) struct Smoothed {
     pub deviation: f64,
 }
 
-/// The points `(x, y)`, in the order of `x`, each on the parabola of least squares through the `window` nearest
-/// rows; a window at an end of the branch lies on one side of its row.
-pub(crate) fn smooth(points: &[(f64, f64)], window: usize) -> Vec<Smoothed> {
-    let window = window.min(points.len() - (points.len() + 1) % 2);
+/// A row of a branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    /// Where it stands on the way: its time, or its input.
+    pub station: f64,
+    /// The input.
+    pub x: f64,
+    /// The output.
+    pub y: f64,
+}
+
+/// The rows of a branch, in the order of their stations, and the deviation of their noise.
+#[derive(Debug, Clone)]
+pub(crate) struct Points {
+    pub places: Vec<Place>,
+    pub deviation: f64,
+}
+
+/// Each row on the parabola of least squares over the stations of the `window` nearest rows; a window at an
+/// end of the branch lies on one side of its row.
+pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
+    let window = window.min(places.len() - (places.len() + 1) % 2);
     if window < 5 {
-        return points.iter().map(|&(_, y)| Smoothed { y, deviation: 1.0 }).collect();
+        return places.iter().map(|place| Smoothed { y: place.y, deviation: 1.0 }).collect();
     }
-    (0..points.len())
+    (0..places.len())
         .map(|row| {
-            let first = row.saturating_sub(window / 2).min(points.len() - window);
-            parabola_at(&points[first..first + window], points[row])
+            let first = row.saturating_sub(window / 2).min(places.len() - window);
+            parabola_at(&places[first..first + window], &places[row])
         })
         .collect()
 }
 
-/// Value at `x` of the parabola of least squares; the mean where the points have no extent.
-fn parabola_at(points: &[(f64, f64)], (x, y): (f64, f64)) -> Smoothed {
-    let n = points.len() as f64;
-    let extent = (points[points.len() - 1].0 - points[0].0).abs();
-    if extent <= 1e-12 * x.abs() || extent == 0.0 {
-        let mean = points.iter().map(|point| point.1).sum::<f64>() / n;
+/// Value of the parabola of least squares at a row; the mean where the stations have no extent.
+fn parabola_at(places: &[Place], at: &Place) -> Smoothed {
+    let n = places.len() as f64;
+    let extent = places[places.len() - 1].station - places[0].station;
+    if extent <= 1e-12 * at.station.abs() || extent == 0.0 {
+        let mean = places.iter().map(|place| place.y).sum::<f64>() / n;
         return Smoothed { y: mean, deviation: n.sqrt().recip() };
     }
+    let scale = extent.recip();
     let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
     let (mut t0, mut t1, mut t2) = (0.0, 0.0, 0.0);
-    for &(other, value) in points {
-        let u = (other - x) / extent;
-        let v = value - y;
+    for place in places {
+        let u = (place.station - at.station) * scale;
+        let v = place.y - at.y;
         let square = u * u;
         s1 += u;
         s2 += square;
@@ -68,35 +87,35 @@ fn parabola_at(points: &[(f64, f64)], (x, y): (f64, f64)) -> Smoothed {
     let c2 = s1 * s3 - s2 * s2;
     let determinant = n * c0 + s1 * c1 + s2 * c2;
     if determinant <= 1e-9 * n * s2 * s4 {
-        // Three places at most: a mean of what stands at this one.
-        let here: Vec<f64> = points.iter().filter(|point| point.0 == x).map(|point| point.1).collect();
+        // Two stations: a mean of what stands at this one.
+        let here: Vec<f64> =
+            places.iter().filter(|place| place.station == at.station).map(|place| place.y).collect();
         let n = here.len().max(1) as f64;
         return Smoothed { y: here.iter().sum::<f64>() / n, deviation: n.sqrt().recip() };
     }
     Smoothed {
-        y: y + (c0 * t0 + c1 * t1 + c2 * t2) / determinant,
+        y: at.y + (c0 * t0 + c1 * t1 + c2 * t2) / determinant,
         deviation: (c0 / determinant).max(0.0).sqrt(),
     }
 }
 
 /// The longest window that leaves no more than the noise behind.
-pub(crate) fn choose_window(branches: &[Vec<(f64, f64)>], deviation: f64) -> usize {
-    if deviation <= 0.0 {
+pub(crate) fn choose_window(branches: &[Points]) -> usize {
+    let judged: Vec<&Points> =
+        branches.iter().filter(|branch| branch.places.len() >= 7 && branch.deviation > 0.0).collect();
+    if judged.is_empty() {
         return 1;
     }
-    let mut order: Vec<&Vec<(f64, f64)>> = branches.iter().filter(|branch| branch.len() >= 7).collect();
-    let step = order.len().div_ceil(JUDGED).max(1);
-    order = order.into_iter().step_by(step).collect();
+    let judged: Vec<&Points> = judged.iter().step_by(judged.len().div_ceil(JUDGED)).copied().collect();
     let leaves_only_noise = |window: &&usize| {
         let (mut remainder, mut expected) = (0.0, 0.0);
         let mut parts = Vec::new();
-        for points in &order {
-            let smoothed = smooth(points, **window);
-            for (rows, values) in
-                points.chunks(points.len().div_ceil(10)).zip(smoothed.chunks(points.len().div_ceil(10)))
-            {
+        for Points { places, deviation } in &judged {
+            let smoothed = smooth(places, **window);
+            let tenth = places.len().div_ceil(10);
+            for (rows, values) in places.chunks(tenth).zip(smoothed.chunks(tenth)) {
                 let pairs = || rows.iter().zip(values);
-                let left: f64 = pairs().map(|(point, value)| (point.1 - value.y).powi(2)).sum();
+                let left: f64 = pairs().map(|(place, value)| (place.y - value.y).powi(2)).sum();
                 let free: f64 = pairs().map(|(_, value)| 1.0 - value.deviation.powi(2)).sum();
                 remainder += left;
                 expected += free * deviation * deviation;
@@ -111,7 +130,7 @@ pub(crate) fn choose_window(branches: &[Vec<(f64, f64)>], deviation: f64) -> usi
             None => 0.0,
         };
         // A tenth with few rows has much or little by chance.
-        let rows = order.iter().map(|points| points.len() / 10).min().unwrap_or(1).max(1) as f64;
+        let rows = judged.iter().map(|points| points.places.len() / 10).min().unwrap_or(1).max(1) as f64;
         let by_chance = 1.0 + noise::upper_quantile(0.1) * (2.0 / rows).sqrt();
         remainder <= ACCEPTED * expected && part <= ACCEPTED_IN_A_PART.max(1.3 * by_chance)
     };
@@ -122,27 +141,31 @@ pub(crate) fn choose_window(branches: &[Vec<(f64, f64)>], deviation: f64) -> usi
 mod tests {
     use super::*;
 
+    fn place(station: f64, y: f64) -> Place {
+        Place { station, x: station, y }
+    }
+
     #[test]
     fn a_parabola_stays_as_it_is() {
-        let points: Vec<(f64, f64)> =
-            (0..50).map(|k| 0.1 * k as f64).map(|x| (x, 3.0 - x + 0.5 * x * x)).collect();
-        for (point, value) in points.iter().zip(smooth(&points, 11)) {
-            assert!((point.1 - value.y).abs() < 1e-11, "{point:?} {value:?}");
+        let places: Vec<Place> =
+            (0..50).map(|k| 0.1 * k as f64).map(|x| place(x, 3.0 - x + 0.5 * x * x)).collect();
+        for (place, value) in places.iter().zip(smooth(&places, 11)) {
+            assert!((place.y - value.y).abs() < 1e-11, "{place:?} {value:?}");
         }
     }
 
     #[test]
     fn deviations_are_those_of_least_squares() {
         // Even spacing, 5 rows: (3/35)(…) weights of Savitzky and Golay, whose middle one is 17/35.
-        let points: Vec<(f64, f64)> = (0..20).map(|k| (k as f64, 0.0)).collect();
-        let smoothed = smooth(&points, 5);
+        let places: Vec<Place> = (0..20).map(|k| place(k as f64, 0.0)).collect();
+        let smoothed = smooth(&places, 5);
         assert!((smoothed[10].deviation.powi(2) - 17.0 / 35.0).abs() < 1e-12);
         assert!((smoothed[0].deviation.powi(2) - 31.0 / 35.0).abs() < 1e-12);
     }
 
     #[test]
     fn equal_places_are_averaged() {
-        let points = [(1.0, 2.0), (1.0, 4.0), (1.0, 2.0), (1.0, 4.0), (1.0, 3.0)];
-        assert_eq!(smooth(&points, 5)[2].y, 3.0);
+        let places = [2.0, 4.0, 2.0, 4.0, 3.0].map(|y| place(1.0, y));
+        assert_eq!(smooth(&places, 5)[2].y, 3.0);
     }
 }

@@ -2,9 +2,9 @@
 //! carried on to speed 0 where there are several speeds, theory.md (10.12).
 
 use super::branch::Survey;
-use super::orientation::piece;
+use super::opening::Opening;
 use super::wiping_out::loops;
-use super::{Cycle, Evidence, Finding, Property, Verdict, noise};
+use super::{Evidence, Finding, Property, Verdict, noise};
 
 /// Loops fuller than this share of their box are loops.
 const FULL: f64 = 0.02;
@@ -12,58 +12,65 @@ const FULL: f64 = 0.02;
 /// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
 const RANGE_OF_SPEEDS: f64 = 1.5;
 
+/// Speeds within this factor are taken together.
+const TOGETHER: f64 = 1.15;
+
+/// Openings over less than this share of the widest do not count.
+const WIDE: f64 = 0.7;
+
+/// Mean magnitude of the difference of two numbers with noise of deviation 1.
+const OF_A_LINE: f64 = 1.13;
+
 /// A loop of speed 0 is at least this share of the slowest one; less may be the curvature of its growth.
 const REMAINS: f64 = 0.3;
 
 const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten times slower than the fastest";
 
 /// Tests whether loops remain at speed 0.
-pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
-    let widest = cycles.iter().map(Cycle::swing).fold(0.0, f64::max);
-    let large: Vec<&Cycle> = cycles.iter().filter(|cycle| cycle.swing() > 0.9 * widest).collect();
+pub(crate) fn test(survey: &Survey, openings: &[Opening]) -> Finding {
+    let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
+    let mut large: Vec<&Opening> = openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
     if large.is_empty() {
-        return Finding::not_testable(Property::StaticHysteresis, "no closed loop", EXPERIMENT);
+        return Finding::not_testable(Property::StaticHysteresis, "the input never turns", EXPERIMENT);
     }
-    let slowest = large.iter().filter_map(|cycle| cycle.speed).fold(f64::INFINITY, f64::min);
-    let fastest = large.iter().filter_map(|cycle| cycle.speed).fold(0.0, f64::max);
-    let timed = slowest.is_finite();
-    let several = timed && fastest > RANGE_OF_SPEEDS * slowest;
-    let slow: Vec<&Cycle> = large
-        .iter()
-        .filter(|cycle| cycle.speed.is_none_or(|speed| speed <= 1.1 * slowest))
-        .copied()
-        .collect();
-    let fullness = |cycle: &Cycle| cycle.area / (cycle.swing() * cycle.height()).max(f64::MIN_POSITIVE);
-    let mean = |cycles: &[&Cycle]| cycles.iter().map(|c| fullness(c)).sum::<f64>() / cycles.len() as f64;
-    let slow_area = mean(&slow);
-    let shown = slow[0];
-    // The area of a line that is not quite one: what noise leaves between two smoothed branches.
-    let noise = 0.8 * survey.output_noise / (survey.window as f64).sqrt() / shown.height();
-    let index = if several {
-        let next = large.iter().filter_map(|cycle| cycle.speed).filter(|speed| *speed > 1.2 * slowest);
-        let next = next.fold(f64::INFINITY, f64::min);
-        let faster: Vec<&Cycle> = large
-            .iter()
-            .filter(|cycle| cycle.speed.is_some_and(|speed| speed > 1.2 * slowest && speed <= 1.1 * next))
-            .copied()
-            .collect();
-        let growth = (mean(&faster) - slow_area) / (next - slowest);
-        slow_area - growth.max(0.0) * slowest
-    } else {
-        slow_area
+    large.sort_by(|a, b| a.speed.unwrap_or(0.0).total_cmp(&b.speed.unwrap_or(0.0)));
+    let at_speed = |speed: f64| -> Vec<&Opening> {
+        let within =
+            |opening: &&Opening| opening.speed.is_none_or(|own| own >= speed && own <= TOGETHER * speed);
+        large.iter().copied().filter(within).collect()
     };
+    let mean =
+        |set: &[&Opening]| set.iter().map(|opening| opening.fullness()).sum::<f64>() / set.len() as f64;
+    let slowest = large[0].speed;
+    let slow = at_speed(slowest.unwrap_or(0.0));
+    let area = mean(&slow);
+    let next = slowest.and_then(|slowest| {
+        let faster = large.iter().filter_map(|opening| opening.speed);
+        let next = faster.filter(|speed| *speed > RANGE_OF_SPEEDS * slowest).fold(f64::INFINITY, f64::min);
+        next.is_finite().then_some((slowest, next))
+    });
+    let index = match next {
+        Some((slowest, next)) => {
+            let growth = (mean(&at_speed(next)) - area) / (next - slowest);
+            area - growth.max(0.0) * slowest
+        }
+        None => area,
+    };
+    // What noise leaves between two branches that are one line.
+    let shown = slow.iter().max_by(|a, b| a.area.total_cmp(&b.area)).expect("the slowest is among them");
+    let noise = OF_A_LINE * survey.output_noise / (survey.window as f64).sqrt() / shown.height;
     let threshold = FULL + noise::critical_value(1) * noise;
     let percent = 100.0 * index;
-    let (verdict, statement) = if slow_area < threshold {
+    let (verdict, statement) = if area < threshold {
         (
             Verdict::No,
             format!("the loops fill {percent:.1} % of their box: the output follows the input alone"),
         )
-    } else if several && index < REMAINS * slow_area {
+    } else if next.is_some() && index < REMAINS * area {
         (Verdict::No, "the loops vanish as the speed goes to 0".to_string())
-    } else if several {
+    } else if next.is_some() {
         (Verdict::Yes, format!("carried on to speed 0, loops still fill {percent:.0} % of their box"))
-    } else if timed {
+    } else if slowest.is_some() {
         (
             Verdict::NotTestable,
             format!("loops fill {percent:.0} % of their box, at one speed: a lag would look alike"),
@@ -71,7 +78,6 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
     } else {
         (Verdict::Yes, format!("loops fill {percent:.0} % of their box (without time stamps, taken as slow)"))
     };
-    let (a, b) = shown.branches;
     Finding {
         property: Property::StaticHysteresis,
         verdict,
@@ -81,10 +87,7 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
         comparisons: large.len(),
         statement,
         experiment: (verdict == Verdict::NotTestable).then(|| EXPERIMENT.into()),
-        evidence: vec![Evidence { index: fullness(shown), pieces: vec![piece(shown)] }],
-        picture: Some(loops(vec![
-            survey.curve("there", &survey.branches[a]),
-            survey.curve("back", &survey.branches[b]),
-        ])),
+        evidence: vec![Evidence { index: shown.fullness(), pieces: shown.pieces(survey) }],
+        picture: Some(loops(shown.curves(survey))),
     }
 }

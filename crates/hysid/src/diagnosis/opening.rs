@@ -1,0 +1,80 @@
+//! How far a branch and the one after it stand open, whether or not they close a loop.
+
+use super::branch::Survey;
+use super::{PictureCurve, Piece};
+
+/// Places along the inputs that both branches go through.
+const PLACES: usize = 100;
+
+/// A branch, the next, and the area between them over the inputs of both.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Opening {
+    /// Number of the first branch.
+    pub branch: usize,
+    /// `∮ y dx`, positive if passed clockwise.
+    pub signed: f64,
+    /// The same with all parts counted as positive.
+    pub area: f64,
+    /// Standard deviation of the signed area from the noise.
+    pub deviation: f64,
+    /// Range of the inputs of both.
+    pub swing: f64,
+    /// Range of their outputs.
+    pub height: f64,
+    /// Speed of the input.
+    pub speed: Option<f64>,
+}
+
+impl Opening {
+    /// Area as a share of its box.
+    pub fn fullness(&self) -> f64 {
+        self.area / (self.swing * self.height).max(f64::MIN_POSITIVE)
+    }
+
+    /// The rows of both branches.
+    pub fn pieces(&self, survey: &Survey) -> Vec<Piece> {
+        vec![survey.piece(&survey.branches[self.branch]), survey.piece(&survey.branches[self.branch + 1])]
+    }
+
+    /// Both branches for a picture.
+    pub fn curves(&self, survey: &Survey) -> Vec<PictureCurve> {
+        let curve = |label, index: usize| survey.curve(label, &survey.branches[index]);
+        vec![curve("there", self.branch), curve("back", self.branch + 1)]
+    }
+}
+
+/// The openings between all branches that follow each other.
+pub(crate) fn openings(survey: &Survey) -> Vec<Opening> {
+    (1..survey.branches.len()).filter_map(|next| opening(survey, next - 1)).collect()
+}
+
+/// The opening between a branch and the next.
+pub(super) fn opening(survey: &Survey, branch: usize) -> Option<Opening> {
+    let (out, back) = (&survey.branches[branch], &survey.branches[branch + 1]);
+    if out.record != back.record || out.curve.is_empty() || back.curve.is_empty() {
+        return None;
+    }
+    let (one, other) = (out.curve.range(), back.curve.range());
+    let (from, to) = (one.0.max(other.0), one.1.min(other.1));
+    let step = (to - from) / PLACES as f64;
+    let (mut signed, mut area, mut low, mut high) = (0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY);
+    for place in 0..PLACES {
+        let x = from + (place as f64 + 0.5) * step;
+        let (a, b) = (out.curve.at(x)?.y, back.curve.at(x)?.y);
+        // Clockwise is above on the way up.
+        signed += if out.rises() { a - b } else { b - a };
+        area += (a - b).abs();
+        low = low.min(a).min(b);
+        high = high.max(a).max(b);
+    }
+    let rows = out.rows.len().min(back.rows.len()) as f64;
+    Some(Opening {
+        branch,
+        signed: signed * step,
+        area: area * step,
+        deviation: survey.output_noise * (to - from) * (2.0 / rows).sqrt(),
+        swing: to - from,
+        height: high - low,
+        speed: out.speed.zip(back.speed).map(|(a, b)| 0.5 * (a + b)),
+    })
+}
