@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::noise;
-use super::smoothing::{Place, Points, Smoothed, choose_window, smooth};
+use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use crate::record::{Dataset, Record};
 use crate::turning_points::turning_points;
@@ -84,6 +84,7 @@ struct CurvePoint {
     x: f64,
     y: f64,
     deviation: f64,
+    bend: f64,
 }
 
 /// A value read from a curve.
@@ -93,7 +94,7 @@ pub(crate) struct Reading {
     pub y: f64,
     /// Its standard deviation from the noise.
     pub deviation: f64,
-    /// How far reading between the rows may be off.
+    /// How far smoothing and reading between the rows may be off.
     pub bend: f64,
 }
 
@@ -126,7 +127,7 @@ impl Curve {
         let (a, b) = (&self.points[above - 1], &self.points[above]);
         let width = b.x - a.x;
         if width <= 0.0 {
-            return (a.x == x).then_some(Reading { y: b.y, deviation: b.deviation, bend: 0.0 });
+            return (a.x == x).then_some(Reading { y: b.y, deviation: b.deviation, bend: b.bend });
         }
         let share = (x - a.x) / width;
         if !(-1.0..=2.0).contains(&share) {
@@ -149,7 +150,7 @@ impl Curve {
         Some(Reading {
             y: a.y + share * (b.y - a.y),
             deviation: a.deviation + share.clamp(0.0, 1.0) * (b.deviation - a.deviation),
-            bend: if on_a_point { 0.0 } else { bend.min((b.y - a.y).abs()) },
+            bend: a.bend.max(b.bend) + if on_a_point { 0.0 } else { bend.min((b.y - a.y).abs()) },
         })
     }
 }
@@ -295,11 +296,12 @@ fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
 }
 
 fn curve(points: &Points, window: usize) -> Curve {
-    let smoothed = smooth(&points.places, window);
+    let smoothed = smooth_where_straight(points, window);
     let place = |(place, value): (&Place, &Smoothed)| CurvePoint {
         x: place.x,
         y: value.y,
         deviation: value.deviation * points.deviation,
+        bend: value.bend,
     };
     let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
     points.sort_by(|a, b| a.x.total_cmp(&b.x));

@@ -42,7 +42,9 @@ pub(crate) fn between_speeds(survey: &Survey, courses: &[Speeds]) -> Option<Dela
         squares.fold(0.0, f64::max)
     };
     let time = lowest(&remainder, LONGEST * shortest);
-    Some(Delay { time, remains: remainder(time).sqrt() / survey.height() })
+    // Rows are taken with their noise, which no delay takes away.
+    let remains = (remainder(time) - survey.output_noise.powi(2)).max(0.0).sqrt();
+    Some(Delay { time, remains: remains / survey.height() })
 }
 
 /// Where a function of one valley is lowest within `±reach`: a coarse search, then golden sections.
@@ -69,49 +71,62 @@ fn lowest(function: &impl Fn(f64) -> f64, reach: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later.
+/// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later. The rows
+/// of the fast branches, which lie far apart, are taken as they are; between the many of the slow ones is read.
 fn mean_square(survey: &Survey, speeds: &Speeds, delay: f64) -> Option<f64> {
     let records = survey.data.records();
     let shifted = |set: &[&Branch]| -> Vec<Vec<(f64, f64)>> {
         set.iter().map(|branch| later(&records[branch.record], branch, delay)).collect()
     };
-    let (slow, fast) = (shifted(&speeds.slow), shifted(&speeds.fast));
-    let (mut square, mut places) = (0.0, 0.0);
-    for x in speeds.places() {
-        if let (Some(slow), Some(fast)) = (mean(&slow, x), mean(&fast, x)) {
-            square += (slow - fast).powi(2);
-            places += 1.0;
+    let slow = shifted(&speeds.slow);
+    let (low, high) = (speeds.from.min(speeds.to), speeds.from.max(speeds.to));
+    let (mut square, mut rows) = (0.0, 0.0);
+    for (x, y) in shifted(&speeds.fast).into_iter().flatten().filter(|(x, _)| *x >= low && *x <= high) {
+        if let Some(slow) = mean(&slow, x) {
+            square += (slow - y).powi(2);
+            rows += 1.0;
         }
     }
-    (places > 0.0).then(|| square / places)
+    (rows > 0.0).then(|| square / rows)
 }
 
-/// The rows of a branch with the output that comes `delay` later, in the order of the input.
+/// The outputs that come `delay` after the inputs of a branch, over those inputs, in the order of the input.
+/// The input is read between rows, not the output: it is the smoother of the two.
 fn later(record: &Record, branch: &Branch, delay: f64) -> Vec<(f64, f64)> {
     let (x, y) = (&record.inputs()[0], record.output());
     let time = record.time().expect("delays are sought in data with time");
-    let mut after = branch.rows.start;
-    let mut points: Vec<(f64, f64)> = Vec::with_capacity(branch.rows.len());
-    // The first row whose time is not before the wanted one moves on with the rows.
-    while after > 0 && time[after - 1] >= time[branch.rows.start] + delay {
-        after -= 1;
-    }
-    for row in branch.rows.clone() {
-        let wanted = time[row] + delay;
-        while after < time.len() && time[after] < wanted {
-            after += 1;
+    let (begin, end) = (time[branch.rows.start], time[branch.rows.end - 1]);
+    let first = time.partition_point(|&t| t < begin + delay);
+    let mut points = Vec::with_capacity(branch.rows.len());
+    let mut below = branch.rows.start;
+    for row in first..time.len() {
+        let wanted = time[row] - delay;
+        if wanted > end {
+            break;
         }
-        if after == 0 || after == time.len() {
-            continue;
+        while below + 2 < branch.rows.end && time[below + 1] <= wanted {
+            below += 1;
         }
-        let share = (wanted - time[after - 1]) / (time[after] - time[after - 1]);
-        let value = y[after - 1] + share * (y[after] - y[after - 1]);
-        if !value.is_nan() {
-            points.push((x[row], value));
+        if !y[row].is_nan() {
+            points.push((cubic(time, x, below, wanted), y[row]));
         }
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
+}
+
+/// Value at a time between rows `below` and `below + 1`, by the cubic through four rows (Lagrange); by a line
+/// where a row is missing.
+fn cubic(time: &[f64], x: &[f64], below: usize, wanted: f64) -> f64 {
+    let rows = match below.checked_sub(1) {
+        Some(first) if first + 4 <= x.len() => first..first + 4,
+        _ => below..below + 2,
+    };
+    let weight = |row: usize| -> f64 {
+        let others = rows.clone().filter(|&other| other != row);
+        others.map(|other| (wanted - time[other]) / (time[row] - time[other])).product()
+    };
+    rows.clone().map(|row| x[row] * weight(row)).sum()
 }
 
 fn mean(set: &[Vec<(f64, f64)>], x: f64) -> Option<f64> {

@@ -38,15 +38,15 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Largest magnitude that `count` independent standard normal numbers exceed with a chance of 1 in 10,000
+/// Largest magnitude that `count` independent standard normal numbers exceed with a chance of 1 in 100,000
 /// all together (Bonferroni).
 pub fn critical_value(count: usize) -> f64 {
-    upper_quantile(5e-5 / count.max(1) as f64)
+    upper_quantile(5e-6 / count.max(1) as f64)
 }
 
-/// The same with a chance of 1 in 1000: what is below is what noise does.
+/// The same with a chance of 1 in 100: what is below is what noise does.
 pub fn doubtful_value(count: usize) -> f64 {
-    upper_quantile(5e-4 / count.max(1) as f64)
+    upper_quantile(5e-3 / count.max(1) as f64)
 }
 
 /// Magnitude that the largest of `count` independent standard normal numbers has, typically.
@@ -88,6 +88,6 @@ mod tests {
     fn quantiles_are_those_of_the_tables() {
         assert!((upper_quantile(0.025) - 1.95996).abs() < 5e-4);
         assert!((upper_quantile(1e-6) - 4.75342).abs() < 5e-4);
-        assert!((critical_value(1) - 3.8906).abs() < 5e-4);
+        assert!((critical_value(1) - 4.4172).abs() < 5e-4);
     }
 }

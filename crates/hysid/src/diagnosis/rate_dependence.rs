@@ -8,7 +8,7 @@
 
 use std::collections::HashMap;
 
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, Reading, Survey};
 use super::comparison::{Comparison, judge};
 use super::delay;
 use super::{Finding, Property, Verdict};
@@ -27,6 +27,9 @@ const TOGETHER: f64 = 1.15;
 
 /// Branches of the same speed may differ by so much less than those of another.
 const CLEAR: f64 = 2.0;
+
+/// A delay that explains a difference leaves less than this share of it.
+const EXPLAINED: f64 = 0.4;
 
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.1;
@@ -78,9 +81,10 @@ pub(crate) fn test(survey: &Survey) -> Finding {
     // The comparisons say whether the outputs agree.
     let agree = judgement.verdict;
     let delay = if agree == Verdict::No { delay::between_speeds(survey, &courses) } else { None };
-    let explained = delay.filter(|delay| {
-        delay.remains <= EFFECT.max(3.0 * judgement.noise) && delay.remains < 0.3 * judgement.index
-    });
+    let agrees = |delay: &delay::Delay| {
+        delay.remains <= EFFECT.max(0.7 * judgement.noise) && delay.remains < EXPLAINED * judgement.index
+    };
+    let explained = delay.filter(agrees);
     let statement = match (agree, explained) {
         (Verdict::No, Some(delay)) => format!(
             "outputs differ by {percent:.1} % of their range at {ratio:.1} times the speed, and agree within {:.2} % when \
@@ -154,24 +158,28 @@ fn speeds<'b>(branches: &[&'b Branch]) -> Option<Speeds<'b>> {
     Some(Speeds { slow, fast, from, to })
 }
 
-/// Mean over a set of branches at an input, and its variance from the noise.
-fn mean(set: &[&Branch], x: f64) -> Option<(f64, f64)> {
+/// Mean over a set of branches at an input.
+fn mean(set: &[&Branch], x: f64) -> Option<Reading> {
     let readings: Vec<_> = set.iter().map(|branch| branch.curve.at(x)).collect::<Option<_>>()?;
     let n = readings.len() as f64;
-    let y = readings.iter().map(|reading| reading.y).sum::<f64>() / n;
-    Some((y, readings.iter().map(|reading| reading.deviation.powi(2)).sum::<f64>() / (n * n)))
+    Some(Reading {
+        y: readings.iter().map(|reading| reading.y).sum::<f64>() / n,
+        deviation: readings.iter().map(|reading| reading.deviation.powi(2)).sum::<f64>().sqrt() / n,
+        bend: readings.iter().map(|reading| reading.bend).sum::<f64>() / n,
+    })
 }
 
 fn compare(survey: &Survey, speeds: &Speeds) -> Option<Comparison> {
-    let (mut square, mut variance, mut places) = (0.0, 0.0, 0.0);
+    let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     // How far branches of one speed lie apart, because of their past or their wear.
     let mut own = [0.0, 0.0];
     for x in speeds.places() {
         let (slow, fast) = (mean(&speeds.slow, x)?, mean(&speeds.fast, x)?);
-        square += (slow.0 - fast.0).powi(2);
-        variance += slow.1 + fast.1;
+        square += (slow.y - fast.y).powi(2);
+        variance += slow.deviation.powi(2) + fast.deviation.powi(2);
+        bend += (slow.bend + fast.bend).powi(2);
         places += 1.0;
-        for (own, (set, mean)) in own.iter_mut().zip([(&speeds.slow, slow.0), (&speeds.fast, fast.0)]) {
+        for (own, (set, mean)) in own.iter_mut().zip([(&speeds.slow, slow.y), (&speeds.fast, fast.y)]) {
             let squares =
                 set.iter().filter_map(|b| b.curve.at(x)).map(|r| (r.y - mean).powi(2) - r.deviation.powi(2));
             *own += squares.sum::<f64>().max(0.0) / (set.len() as f64 - 1.0).max(1.0);
@@ -183,7 +191,7 @@ fn compare(survey: &Survey, speeds: &Speeds) -> Option<Comparison> {
     Some(Comparison {
         index: apart / height,
         deviation: (variance / places).sqrt() / height,
-        bend: 0.5 * CLEAR * own / height,
+        bend: (0.5 * CLEAR * own).max((bend / places).sqrt()) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
     })

@@ -14,6 +14,15 @@ const ACCEPTED: f64 = 1.15;
 /// The same for a tenth of a branch: nine in ten tenths are below.
 const ACCEPTED_IN_A_PART: f64 = 1.8;
 
+/// Longest window, as a share of the branch.
+const LONGEST: f64 = 0.2;
+
+/// Shortest window that a parabola smooths.
+const SHORTEST: usize = 5;
+
+/// Values of two windows agree within so many deviations of the shorter one.
+const AGREE: f64 = 2.0;
+
 /// Branches that the window is chosen from.
 const JUDGED: usize = 60;
 
@@ -23,6 +32,8 @@ pub(crate) struct Smoothed {
     pub y: f64,
     /// Deviation of `y` where the rows' noise has deviation 1.
     pub deviation: f64,
+    /// How far a window half as long is off, beyond its noise.
+    pub bend: f64,
 }
 
 /// A row of a branch.
@@ -44,11 +55,12 @@ pub(crate) struct Points {
 }
 
 /// Each row on the parabola of least squares over the stations of the `window` nearest rows; a window at an
-/// end of the branch lies on one side of its row.
+/// end of the branch lies on one side of its row, and none is longer than a share of the branch.
 pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
-    let window = window.min(places.len() - (places.len() + 1) % 2);
-    if window < 5 {
-        return places.iter().map(|place| Smoothed { y: place.y, deviation: 1.0 }).collect();
+    // An odd number of rows.
+    let window = window.min((places.len() as f64 * LONGEST) as usize / 2 * 2 + 1);
+    if window < SHORTEST {
+        return places.iter().map(|place| Smoothed { y: place.y, deviation: 1.0, bend: 0.0 }).collect();
     }
     (0..places.len())
         .map(|row| {
@@ -58,13 +70,31 @@ pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
         .collect()
 }
 
+/// As [`smooth`], with shorter windows where a longer one bends the course: at each row the longest that agrees
+/// with those half and a quarter as long, as far as noise goes.
+pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<Smoothed> {
+    let lengths = [window / 4, window / 2, window].map(|length| length / 2 * 2 + 1);
+    let [mut chosen, half, whole] = lengths.map(|length| smooth(&points.places, length));
+    let agree = |a: &Smoothed, b: &Smoothed| (a.y - b.y).abs() <= AGREE * points.deviation * a.deviation;
+    for (row, chosen) in chosen.iter_mut().enumerate() {
+        for longer in [&half[row], &whole[row]] {
+            if !agree(chosen, longer) {
+                break;
+            }
+            let apart = (longer.y - chosen.y).abs() - 0.5 * points.deviation * chosen.deviation;
+            *chosen = Smoothed { bend: apart.max(0.0), ..*longer };
+        }
+    }
+    chosen
+}
+
 /// Value of the parabola of least squares at a row; the mean where the stations have no extent.
 fn parabola_at(places: &[Place], at: &Place) -> Smoothed {
     let n = places.len() as f64;
     let extent = places[places.len() - 1].station - places[0].station;
     if extent <= 1e-12 * at.station.abs() || extent == 0.0 {
         let mean = places.iter().map(|place| place.y).sum::<f64>() / n;
-        return Smoothed { y: mean, deviation: n.sqrt().recip() };
+        return Smoothed { y: mean, deviation: n.sqrt().recip(), bend: 0.0 };
     }
     let scale = extent.recip();
     let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
@@ -91,11 +121,12 @@ fn parabola_at(places: &[Place], at: &Place) -> Smoothed {
         let here: Vec<f64> =
             places.iter().filter(|place| place.station == at.station).map(|place| place.y).collect();
         let n = here.len().max(1) as f64;
-        return Smoothed { y: here.iter().sum::<f64>() / n, deviation: n.sqrt().recip() };
+        return Smoothed { y: here.iter().sum::<f64>() / n, deviation: n.sqrt().recip(), bend: 0.0 };
     }
     Smoothed {
         y: at.y + (c0 * t0 + c1 * t1 + c2 * t2) / determinant,
         deviation: (c0 / determinant).max(0.0).sqrt(),
+        bend: 0.0,
     }
 }
 
@@ -149,7 +180,7 @@ mod tests {
     fn a_parabola_stays_as_it_is() {
         let places: Vec<Place> =
             (0..50).map(|k| 0.1 * k as f64).map(|x| place(x, 3.0 - x + 0.5 * x * x)).collect();
-        for (place, value) in places.iter().zip(smooth(&places, 11)) {
+        for (place, value) in places.iter().zip(smooth(&places, 9)) {
             assert!((place.y - value.y).abs() < 1e-11, "{place:?} {value:?}");
         }
     }
@@ -157,7 +188,7 @@ mod tests {
     #[test]
     fn deviations_are_those_of_least_squares() {
         // Even spacing, 5 rows: (3/35)(…) weights of Savitzky and Golay, whose middle one is 17/35.
-        let places: Vec<Place> = (0..20).map(|k| place(k as f64, 0.0)).collect();
+        let places: Vec<Place> = (0..30).map(|k| place(k as f64, 0.0)).collect();
         let smoothed = smooth(&places, 5);
         assert!((smoothed[10].deviation.powi(2) - 17.0 / 35.0).abs() < 1e-12);
         assert!((smoothed[0].deviation.powi(2) - 31.0 / 35.0).abs() < 1e-12);
@@ -165,7 +196,7 @@ mod tests {
 
     #[test]
     fn equal_places_are_averaged() {
-        let places = [2.0, 4.0, 2.0, 4.0, 3.0].map(|y| place(1.0, y));
-        assert_eq!(smooth(&places, 5)[2].y, 3.0);
+        let places: Vec<Place> = (0..30).map(|k| place(1.0, f64::from(k % 5))).collect();
+        assert_eq!(smooth(&places, 5)[12].y, 2.0);
     }
 }
