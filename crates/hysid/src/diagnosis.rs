@@ -40,6 +40,7 @@ use crate::error::Result;
 use crate::record::Dataset;
 use branch::Survey;
 pub use cycles::Cycle;
+pub use delay::Delay;
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;
@@ -239,6 +240,8 @@ pub struct Diagnosis {
     pub output_noise: f64,
     /// Standard deviation of the noise of the first input, in its unit.
     pub input_noise: f64,
+    /// The delay of the output that makes several speeds agree, if one does.
+    pub delay: Option<Delay>,
     /// Turning points of the first input.
     pub turning_points: usize,
     /// Cycles of the first input with an output, in the order of the data.
@@ -255,7 +258,7 @@ impl Diagnosis {
         let survey = Survey::new(data, options);
         let cycles = cycles::cycles(&survey);
         let openings = opening::openings(&survey);
-        let rate = rate_dependence::test(&survey);
+        let (rate, delay) = rate_dependence::test(&survey);
         // Branches of different speed say nothing about memory where the speed matters.
         let equal_speed = rate.verdict == Verdict::Yes;
         let properties = vec![
@@ -273,6 +276,7 @@ impl Diagnosis {
         let starts = data.records().len();
         Ok(Self {
             properties,
+            delay,
             output_noise: survey.output_noise,
             input_noise: survey.input_noise,
             turning_points: survey.branches.len().saturating_sub(starts),

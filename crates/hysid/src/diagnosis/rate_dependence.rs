@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 use super::branch::{Branch, Reading, Survey};
 use super::comparison::{Comparison, judge};
-use super::delay;
+use super::delay::{self, Delay};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the range of the output.
@@ -64,24 +64,24 @@ impl Speeds<'_> {
     }
 }
 
-/// Tests for rate dependence.
-pub(crate) fn test(survey: &Survey) -> Finding {
+/// Tests for rate dependence; with the delay that explains what looks like it, if one does.
+pub(crate) fn test(survey: &Survey) -> (Finding, Option<Delay>) {
     if !survey.data.has_time() {
         let statement = "the data have no time stamps";
-        return Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
+        return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
     }
     let courses = courses(survey);
     let comparisons: Vec<Comparison> = courses.iter().filter_map(|speeds| compare(survey, speeds)).collect();
     let Some(mut judgement) = judge(&comparisons, EFFECT) else {
         let statement = "no way of the input is gone at two speeds";
-        return Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
+        return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
     };
     let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);
     let percent = 100.0 * judgement.index;
     // The comparisons say whether the outputs agree.
     let agree = judgement.verdict;
     let delay = if agree == Verdict::No { delay::between_speeds(survey, &courses) } else { None };
-    let agrees = |delay: &delay::Delay| {
+    let agrees = |delay: &Delay| {
         delay.remains <= EFFECT.max(0.7 * judgement.noise) && delay.remains < EXPLAINED * judgement.index
     };
     let explained = delay.filter(agrees);
@@ -109,7 +109,7 @@ pub(crate) fn test(survey: &Survey) -> Finding {
         (Verdict::Yes, _) if ratio >= FAR_APART => Verdict::No,
         _ => Verdict::NotTestable,
     };
-    survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT)
+    (survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT), explained)
 }
 
 /// Branches of the same course that are gone at different speeds: same ends, same direction, same turning
