@@ -6,26 +6,30 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// More differences than these tell the noise no better.
 const MOST: usize = 200_000;
 
+/// Differences that are tried, each as coefficients: the course of the values is less in the higher ones, and
+/// corners of it are in fewer of the lower ones.
+const DIFFERENCES: [&[f64]; 3] =
+    [&[1.0, -2.0, 1.0], &[1.0, -3.0, 3.0, -1.0], &[1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]];
+
 /// Standard deviation of white noise on values in a row, theory.md (10.1): from the median magnitude of
-/// second and of third differences, whichever is smaller (the course of the values adds to either). In
-/// the unit of the values; 0 for fewer than 8 of them. Runs of rows are kept apart: no difference is
-/// taken across their ends.
+/// differences of several orders, whichever gives least (the course of the values adds to each). In the unit
+/// of the values; 0 for fewer than 8 of them. Runs of rows are kept apart: no difference is taken across
+/// their ends.
 pub fn deviation<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     let rows: usize = runs.clone().map(<[f64]>::len).sum();
     if rows < 8 {
         return 0.0;
     }
     let stride = rows.div_ceil(MOST);
-    let second = |w: &[f64]| (w[0] - 2.0 * w[1] + w[2]).abs();
-    let third = |w: &[f64]| (w[0] - 3.0 * w[1] + 3.0 * w[2] - w[3]).abs();
-    let mut seconds: Vec<f64> =
-        runs.clone().flat_map(|run| run.windows(3).step_by(stride).map(second)).collect();
-    let mut thirds: Vec<f64> = runs.flat_map(|run| run.windows(4).step_by(stride).map(third)).collect();
-    let of = |differences: &mut Vec<f64>, norm: f64| match differences.is_empty() {
-        true => f64::INFINITY,
-        false => median(differences) / (MEDIAN_OF_NORMAL * norm),
+    let of = |coefficients: &&[f64]| {
+        let difference =
+            |window: &[f64]| window.iter().zip(*coefficients).map(|(v, c)| v * c).sum::<f64>().abs();
+        let windows = runs.clone().flat_map(|run| run.windows(coefficients.len()).step_by(stride));
+        let mut differences: Vec<f64> = windows.map(difference).collect();
+        let norm = coefficients.iter().map(|c| c * c).sum::<f64>().sqrt();
+        median(&mut differences) / (MEDIAN_OF_NORMAL * norm)
     };
-    let deviation = of(&mut seconds, 6f64.sqrt()).min(of(&mut thirds, 20f64.sqrt()));
+    let deviation = DIFFERENCES.iter().map(of).filter(|d| d.is_finite()).fold(f64::INFINITY, f64::min);
     if deviation.is_finite() { deviation } else { 0.0 }
 }
 

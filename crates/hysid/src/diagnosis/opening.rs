@@ -3,8 +3,8 @@
 use super::branch::Survey;
 use super::{PictureCurve, Piece};
 
-/// Places along the inputs that both branches go through.
-const PLACES: usize = 100;
+/// Places along the inputs that both branches go through, at most.
+const MOST_PLACES: usize = 100;
 
 /// A branch, the next, and the area between them over the inputs of both.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,9 +56,10 @@ pub(super) fn opening(survey: &Survey, branch: usize) -> Option<Opening> {
     }
     let (one, other) = (out.curve.range(), back.curve.range());
     let (from, to) = (one.0.max(other.0), one.1.min(other.1));
-    let step = (to - from) / PLACES as f64;
+    let places = (out.rows.len() + back.rows.len()).min(MOST_PLACES);
+    let step = (to - from) / places as f64;
     let (mut signed, mut area, mut low, mut high) = (0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY);
-    for place in 0..PLACES {
+    for place in 0..places {
         let x = from + (place as f64 + 0.5) * step;
         let (a, b) = (out.curve.at(x)?.y, back.curve.at(x)?.y);
         // Clockwise is above on the way up.
