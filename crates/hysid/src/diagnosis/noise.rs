@@ -48,9 +48,9 @@ pub fn critical_value(count: usize) -> f64 {
     upper_quantile(5e-6 / count.max(1) as f64)
 }
 
-/// The same with a chance of 1 in 100: what is below is what noise does.
+/// The same with a chance of 1 in 500: what is below is what noise does.
 pub fn doubtful_value(count: usize) -> f64 {
-    upper_quantile(5e-3 / count.max(1) as f64)
+    upper_quantile(1e-3 / count.max(1) as f64)
 }
 
 /// Magnitude that the largest of `count` independent standard normal numbers has, typically.
