@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
 use hysid::network::{Family, Sizes};
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
@@ -80,4 +81,23 @@ fn a_ferrite_with_blank_rows() {
 #[test]
 fn a_piezo_actuator_with_its_rate() {
     quick_fit("piezo-sine", Some(RateMethod::Central), 1600, 1);
+}
+
+fn doctor(case: &str) -> Option<Vec<Complaint>> {
+    let data = read(&folder()?.join(case).join("train.csv"));
+    Some(Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap().doctor)
+}
+
+#[test]
+fn the_doctor_sees_what_is_in_measured_records() {
+    // 367 of 1087 rows of the coupon are the row before, counted by hand; the piezo actuator begins at 149.9 V.
+    if let Some(coupon) = doctor("steel-coupon") {
+        let repeated = coupon.iter().find(|complaint| complaint.kind == ComplaintKind::RepeatedRows);
+        let percent = repeated.expect("rows repeat").value.unwrap();
+        assert!((percent - 100.0 * 367.0 / 1087.0).abs() < 0.5, "{percent}");
+    }
+    if let Some(piezo) = doctor("piezo-sine") {
+        let kinds: Vec<ComplaintKind> = piezo.iter().map(|complaint| complaint.kind).collect();
+        assert_eq!(kinds, [ComplaintKind::UnknownStart]);
+    }
 }
