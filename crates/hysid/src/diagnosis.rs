@@ -14,12 +14,14 @@
 //! # Ok::<(), hysid::Error>(())
 //! ```
 
+mod advice;
 mod branch;
 mod comparison;
 mod congruency;
 pub mod cycles;
 pub mod delay;
 mod deterioration;
+mod doctor;
 mod loop_closure;
 mod masing;
 mod noise;
@@ -38,9 +40,12 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::record::Dataset;
+pub use advice::Advice;
 use branch::Survey;
 pub use cycles::Cycle;
 pub use delay::Delay;
+
+pub use doctor::{Complaint, ComplaintKind, Severity};
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;
@@ -246,6 +251,10 @@ pub struct Diagnosis {
     pub turning_points: usize,
     /// Cycles of the first input with an output, in the order of the data.
     pub cycles: Vec<Cycle>,
+    /// What in the data would mislead a fit, warnings first.
+    pub doctor: Vec<Complaint>,
+    /// The simplest model that can hold what was found.
+    pub advice: Advice,
 }
 
 impl Diagnosis {
@@ -275,6 +284,8 @@ impl Diagnosis {
         ];
         let starts = data.records().len();
         Ok(Self {
+            doctor: doctor::examine(&survey, &cycles, &properties),
+            advice: advice::advise(&properties),
             properties,
             delay,
             output_noise: survey.output_noise,
