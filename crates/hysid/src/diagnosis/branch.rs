@@ -167,6 +167,8 @@ pub(crate) struct Survey<'a> {
     pub input_noise: f64,
     /// Deviation of the noise of the output.
     pub output_noise: f64,
+    /// Reversals of the input below this are no turning points.
+    pub smallest_reversal: f64,
     /// Rows that are taken together to read a curve.
     pub window: usize,
     /// All branches, record after record.
@@ -196,7 +198,7 @@ impl<'a> Survey<'a> {
             branch.curve = curve(&points, window);
         }
         let output = data.output_range();
-        Self { data, input, output, input_noise, output_noise, window, branches }
+        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches }
     }
 
     /// Range of the output.

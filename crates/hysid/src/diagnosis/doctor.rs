@@ -131,6 +131,12 @@ pub(crate) fn examine(survey: &Survey, cycles: &[Cycle], findings: &[Finding]) -
     told
 }
 
+/// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
+/// turns, theory.md (10.21); `None` where the turning points do not tell.
+pub(crate) fn longest_lag(survey: &Survey) -> Option<f64> {
+    lag::longest(survey)
+}
+
 /// Units of the columns, as their names tell them.
 struct Units {
     input: Option<String>,

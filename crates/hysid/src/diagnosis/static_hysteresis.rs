@@ -12,6 +12,9 @@ const FULL: f64 = 0.02;
 /// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
 const RANGE_OF_SPEEDS: f64 = 1.5;
 
+/// A loop this many times as wide as a lag makes it is not only the lag's.
+const BEYOND_A_LAG: f64 = 3.0;
+
 /// Speeds within this factor are taken together.
 const TOGETHER: f64 = 1.15;
 
@@ -26,8 +29,9 @@ const REMAINS: f64 = 0.3;
 
 const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten times slower than the fastest";
 
-/// Tests whether loops remain at speed 0.
-pub(crate) fn test(survey: &Survey, openings: &[Opening]) -> Finding {
+/// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
+/// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`.
+pub(crate) fn test(survey: &Survey, openings: &[Opening], longest_lag: Option<f64>) -> Finding {
     let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let mut large: Vec<&Opening> = openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
     if large.is_empty() {
@@ -72,6 +76,13 @@ pub(crate) fn test(survey: &Survey, openings: &[Opening]) -> Finding {
         (Verdict::No, "the loops vanish as the speed goes to 0".to_string())
     } else if next.is_some() {
         (Verdict::Yes, format!("carried on to speed 0, loops still fill {percent:.0} % of their box"))
+    } else if let Some(speed) = slowest
+        && longest_lag.is_some_and(|lag| area * shown.swing > BEYOND_A_LAG * 2.0 * lag * speed)
+    {
+        (
+            Verdict::Yes,
+            format!("loops fill {percent:.0} % of their box, more than a lag would that fits their tips"),
+        )
     } else if slowest.is_some() {
         (
             Verdict::NotTestable,

@@ -97,6 +97,14 @@ pub(super) fn complaints(survey: &Survey, findings: &[Finding]) -> Vec<Complaint
     if at_turns.is_empty() { between_speeds(survey, findings).into_iter().collect() } else { at_turns }
 }
 
+/// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
+pub(super) fn longest(survey: &Survey) -> Option<f64> {
+    const SURE: f64 = 3.0;
+    let turns = turns(survey);
+    let lag = at_one_speed(survey, speeds(&turns).first()?)?;
+    Some(lag.time.abs() + SURE * lag.deviation)
+}
+
 /// A delay that makes all speeds agree, where the test of rate dependence found one, theory.md (10.14).
 fn between_speeds(survey: &Survey, findings: &[Finding]) -> Option<Complaint> {
     let rate = findings.iter().find(|finding| finding.property == Property::RateDependence)?;
