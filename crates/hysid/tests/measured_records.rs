@@ -90,7 +90,7 @@ fn doctor(case: &str) -> Option<Vec<Complaint>> {
 
 #[test]
 fn the_doctor_sees_what_is_in_measured_records() {
-    // 367 of 1087 rows of the coupon are the row before, counted by hand; the piezo actuator begins at 149.9 V.
+    // 367 of 1087 rows of the coupon are the row before, counted with awk; the piezo actuator begins at 149.9 V.
     if let Some(coupon) = doctor("steel-coupon") {
         let repeated = coupon.iter().find(|complaint| complaint.kind == ComplaintKind::RepeatedRows);
         let percent = repeated.expect("rows repeat").value.unwrap();
