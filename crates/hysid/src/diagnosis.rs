@@ -271,7 +271,7 @@ impl Diagnosis {
         // Branches of different speed say nothing about memory where the speed matters.
         let equal_speed = rate.verdict == Verdict::Yes;
         let properties = vec![
-            static_hysteresis::test(&survey, &openings, doctor::longest_lag(&survey)),
+            static_hysteresis::test(&survey, &openings, || doctor::longest_lag(&survey)),
             orientation::test(&survey, &openings),
             rate,
             wiping_out::test(&survey, equal_speed),

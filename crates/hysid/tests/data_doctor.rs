@@ -137,7 +137,7 @@ fn specimens_are_not_complained_of_without_reason() {
         // misled by noise, and the doctor repeats what it says.
         let true_of_it: &[ComplaintKind] = match specimen.name {
             "reinforced-concrete-joint" => &[UnclosedLoops],
-            "rate-dependent-actuator" => &[LagChangesWithSpeed, UnclosedLoops],
+            "rate-dependent-actuator" => &[LagChangesWithSpeed],
             "piezo-actuator" => &[LagChangesWithSpeed],
             "magnetostrictive-actuator" => &[Lag],
             _ => &[],

@@ -31,7 +31,11 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
 /// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`.
-pub(crate) fn test(survey: &Survey, openings: &[Opening], longest_lag: Option<f64>) -> Finding {
+pub(crate) fn test(
+    survey: &Survey,
+    openings: &[Opening],
+    longest_lag: impl FnOnce() -> Option<f64>,
+) -> Finding {
     let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let mut large: Vec<&Opening> = openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
     if large.is_empty() {
@@ -77,7 +81,7 @@ pub(crate) fn test(survey: &Survey, openings: &[Opening], longest_lag: Option<f6
     } else if next.is_some() {
         (Verdict::Yes, format!("carried on to speed 0, loops still fill {percent:.0} % of their box"))
     } else if let Some(speed) = slowest
-        && longest_lag.is_some_and(|lag| area * shown.swing > BEYOND_A_LAG * 2.0 * lag * speed)
+        && longest_lag().is_some_and(|lag| area * shown.swing > BEYOND_A_LAG * 2.0 * lag * speed)
     {
         (
             Verdict::Yes,
