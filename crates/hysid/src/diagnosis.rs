@@ -24,6 +24,7 @@ mod deterioration;
 mod doctor;
 mod loop_closure;
 mod masing;
+pub mod model;
 mod noise;
 mod odd_symmetry;
 mod opening;
@@ -46,6 +47,8 @@ pub use cycles::Cycle;
 pub use delay::Delay;
 
 pub use doctor::{Complaint, ComplaintKind, Severity};
+
+pub use model::ModelDiagnosis;
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;

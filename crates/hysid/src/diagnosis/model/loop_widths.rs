@@ -1,0 +1,69 @@
+//! The paper's `K` and `P`: how wide a loop is at no speed, and how much wider at speed.
+//!
+//! ```text
+//! K = width half way up the loop, as the speed goes to 0;   P(speed) = width(speed) - K      theory.md (10.34)
+//! ```
+
+use serde::Serialize;
+
+use super::probe::{Probe, data};
+use super::properties::survey;
+use crate::diagnosis::cycles::{Cycle, cycles};
+use crate::error::Result;
+
+/// The loop that is measured is the second.
+const LOOPS: [f64; 6] = [0.0, 1.0, -1.0, 1.0, -1.0, 1.0];
+
+/// Widths of the loop over the whole trained range of the input, in its unit. The direction in which the
+/// widest of the loops is passed counts as positive: a loop of negative width is passed the other way.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LoopWidths {
+    /// `K`: at a vanishing speed.
+    pub static_width: f64,
+    /// `P` at several speeds, the slowest first; empty for a model that does not see the speed.
+    pub dynamic: Vec<WidthAtSpeed>,
+}
+
+/// The loop at one speed of the input.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct WidthAtSpeed {
+    /// In the unit of the input over that of time.
+    pub speed: f64,
+    /// Width of the loop.
+    pub width: f64,
+    /// `P`: by how much it is wider than at no speed.
+    pub widening: f64,
+}
+
+impl LoopWidths {
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(super) fn of(probe: &Probe) -> Result<Self> {
+        let mut speeds = vec![probe.speeds.vanishing];
+        if probe.speeds.matter() {
+            speeds.extend(probe.speeds.tried());
+        }
+        let path = probe.path(&LOOPS);
+        let width = |speed: &f64| -> Result<f64> {
+            let data = data(vec![probe.run("loop", &path.x, *speed)?])?;
+            Ok(cycles(&survey(&data)).last().map_or(0.0, signed_width))
+        };
+        let mut widths: Vec<f64> = speeds.iter().map(width).collect::<Result<_>>()?;
+        let widest = widths.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        if widest < 0.0 {
+            widths.iter_mut().for_each(|width| *width = 0.0 - *width);
+        }
+        let static_width = widths[0];
+        let dynamic = speeds.iter().zip(&widths).skip(1).map(|(&speed, &width)| WidthAtSpeed {
+            speed,
+            width,
+            widening: width - static_width,
+        });
+        Ok(Self { static_width, dynamic: dynamic.collect() })
+    }
+}
+
+/// Positive for a loop that is passed clockwise.
+fn signed_width(cycle: &Cycle) -> f64 {
+    if cycle.energy < 0.0 { 0.0 - cycle.width } else { cycle.width }
+}
