@@ -162,7 +162,8 @@ fn law_output(law: &Classical, x: Interval, rate: Interval) -> Interval {
         }
         Classical::RateDependentPrandtlIshlinskii(law) => {
             // Whatever the rate, thresholds are not negative.
-            let plays = law.weights.values(law.spacing, 1).into_iter().map(|weight| x.play(0.0).times(weight));
+            let plays =
+                law.weights.values(law.spacing, 1).into_iter().map(|weight| x.play(0.0).times(weight));
             Interval::sum(plays).plus(x.times(law.spring)).plus(Interval::point(law.offset))
         }
         Classical::NeuroMadelung(law) => {

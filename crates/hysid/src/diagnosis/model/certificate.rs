@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::bound::{within_trained_ranges, whatever_the_input};
+use super::bound::{whatever_the_input, within_trained_ranges};
 use super::direct::ROUNDING;
 use super::probe::{Probe, extent, path, times};
 use super::properties::PROTOCOL;
@@ -12,6 +12,7 @@ use crate::classical::Classical;
 use crate::diagnosis::{Finding, Property, Verdict};
 use crate::error::Result;
 use crate::model::Body;
+use crate::warning::Significant;
 
 /// Rows to half the range of the path that is refined.
 const COARSE: u32 = 20;
@@ -139,11 +140,11 @@ fn refine(probe: &Probe) -> Result<Refinement> {
         "a path in finer steps gives the same outputs, to rounding".into()
     } else {
         format!(
-            "a branch in twice its {} steps gives outputs that differ by up to {:.3} % of their range, in ten times as many by \
-             {:.3} %",
+            "a branch in twice its {} steps gives outputs that differ by up to {} % of their range, in ten times as many by \
+             {} %",
             2 * COARSE,
-            100.0 * by_two,
-            100.0 * by_ten
+            Significant(100.0 * by_two),
+            Significant(100.0 * by_ten)
         )
     };
     let basis = if exact && step_is_free(probe.model.body()) { Basis::Structure } else { Basis::Probing };
@@ -167,14 +168,14 @@ fn rate_independent(probe: &Probe, index: Option<f64>) -> Claim {
         Body::Law(law) => law_sees_rate(law),
     };
     let measured = index.unwrap_or(0.0);
-    let percent = 100.0 * measured;
     let (holds, basis, statement) = if !sees {
         let basis = if probe.speeds.matter() { Basis::Weights } else { Basis::Structure };
         (true, basis, "no part of the model sees rate or time".to_string())
     } else if measured <= ROUNDING {
         (true, Basis::Probing, "the output is the same at all trained speeds, to rounding".into())
     } else {
-        let text = format!("at 30 times the speed the output differs by {percent:.3} % of its range");
+        let percent = Significant(100.0 * measured);
+        let text = format!("at 30 times the speed the output differs by {percent} % of its range");
         (false, Basis::Probing, text)
     };
     Claim { holds, basis, measured: index, statement }
@@ -191,10 +192,12 @@ fn return_point_memory(
         wear.is_some_and(|criterion| criterion.value <= ROUNDING)
     });
     let measured = gap.map_or("; at a vanishing speed the output hardly moves".into(), |gap| {
-        format!("; the largest gap found is {:.2e} % of the output's range", 100.0 * gap)
+        format!("; the largest gap found is {} % of the output's range", Significant(100.0 * gap))
     });
     let (holds, basis, text) = match (promised, found) {
-        (Some(Verdict::Yes), _) => (true, Basis::Structure, "all of the memory is turning points that are wiped out"),
+        (Some(Verdict::Yes), _) => {
+            (true, Basis::Structure, "all of the memory is turning points that are wiped out")
+        }
         _ if unworn => (true, Basis::Weights, "no stop that matters slips so much that it wears"),
         (_, Some(Verdict::Yes)) => (true, Basis::Probing, "excursions leave no gap that matters"),
         (_, Some(Verdict::No)) => (false, Basis::Probing, "excursions leave a gap"),

@@ -5,6 +5,7 @@ use crate::diagnosis::wiping_out::loops;
 use crate::diagnosis::{Evidence, Finding, Picture, PictureCurve, Piece, Property, Verdict};
 use crate::error::Result;
 use crate::record::Record;
+use crate::warning::Significant;
 
 /// Differences between speeds that matter, as for data, as a share of the range of the output.
 const RATE_EFFECT: f64 = 0.01;
@@ -67,11 +68,11 @@ pub(super) fn rate_dependence(probe: &Probe) -> Result<Finding> {
         })
         .collect();
     let index = evidence.iter().map(|evidence| evidence.index).fold(0.0, f64::max);
-    let percent = 100.0 * index;
     let statement = if index <= ROUNDING {
         "the output is the same at every speed, to rounding".into()
     } else {
-        format!("at 30 times the speed the output differs by up to {percent:.2} % of its range")
+        let percent = Significant(100.0 * index);
+        format!("at 30 times the speed the output differs by up to {percent:.3} % of its range")
     };
     let last_loop = path.turns[FORGOTTEN]..path.turns[FORGOTTEN + 2];
     let curve = |(speed, record): (&f64, &Record)| {
@@ -110,21 +111,22 @@ pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     let Probe { centre, half, .. } = *probe;
     let middle = mirrored(probe, centre, half)?;
     let zero = if about_zero(probe) { Some(mirrored(probe, 0.0, half - centre.abs())?) } else { None };
-    let of_range = |mirrored: &Mirrored| {
-        format!("an output turned about {{}} is off itself by {:.2} % of its range", 100.0 * mirrored.index)
-    };
-    let statement = match &zero {
-        Some(zero) if centre == 0.0 => of_range(zero).replace("{}", "x = 0"),
-        Some(zero) => format!(
-            "{}, about the middle of the input's range by {:.2} %",
-            of_range(zero).replace("{}", "x = 0"),
-            100.0 * middle.index
+    let percent = |mirrored: &Mirrored| Significant(100.0 * mirrored.index);
+    let middle_of_range = "the middle of the input's range";
+    let (about, further) = match &zero {
+        Some(zero) if centre == 0.0 => {
+            (format!("x = 0 is off itself by {:.3} %", percent(zero)), String::new())
+        }
+        Some(zero) => (
+            format!("x = 0 is off itself by {:.3} %", percent(zero)),
+            format!(", about {middle_of_range} by {:.3} %", percent(&middle)),
         ),
-        None => format!(
-            "{} (x = 0 is not in the middle of what was trained)",
-            of_range(&middle).replace("{}", "the middle of the input's range")
+        None => (
+            format!("{middle_of_range} is off itself by {:.3} %", percent(&middle)),
+            "; x = 0 is not in the middle of what was trained".into(),
         ),
     };
+    let statement = format!("an output turned about {about} of its range{further}");
     let best = match zero {
         Some(zero) if zero.index <= middle.index => zero,
         _ => middle,
@@ -191,7 +193,8 @@ pub(super) fn with_accumulated_gap(probe: &Probe, finding: Finding, height: f64)
     let (gap, rows) = gaps.max_by(|a, b| a.0.total_cmp(&b.0)).expect("there are excursions");
     let mut finding = finding;
     if finding.verdict == Verdict::No || gap <= GAP_EFFECT {
-        finding.statement += &format!("; after {EXCURSIONS} in a row it is {:.2} %", 100.0 * gap);
+        finding.statement +=
+            &format!("; after {EXCURSIONS} in a row it is {:.2} %", Significant(100.0 * gap));
         finding.index = finding.index.map(|index| index.max(gap)).or(Some(gap));
         return Ok(finding);
     }

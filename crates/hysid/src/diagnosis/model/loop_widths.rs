@@ -6,13 +6,16 @@
 
 use serde::Serialize;
 
-use super::probe::{Probe, data};
+use super::probe::{Path, Probe, data};
 use super::properties::survey;
 use crate::diagnosis::cycles::{Cycle, cycles};
 use crate::error::Result;
 
 /// The loop that is measured is the second.
 const LOOPS: [f64; 6] = [0.0, 1.0, -1.0, 1.0, -1.0, 1.0];
+
+/// Rows beside a turning point are this share of a step away from it.
+const SHARP: f64 = 1e-3;
 
 /// Widths of the loop over the whole trained range of the input, in its unit. The direction in which the
 /// widest of the loops is passed counts as positive: a loop of negative width is passed the other way.
@@ -43,9 +46,9 @@ impl LoopWidths {
         if probe.speeds.matter() {
             speeds.extend(probe.speeds.tried());
         }
-        let path = probe.path(&LOOPS);
+        let x = with_sharp_turns(&probe.path(&LOOPS));
         let width = |speed: &f64| -> Result<f64> {
-            let data = data(vec![probe.run("loop", &path.x, *speed)?])?;
+            let data = data(vec![probe.run("loop", &x, *speed)?])?;
             Ok(cycles(&survey(&data)).last().map_or(0.0, signed_width))
         };
         let mut widths: Vec<f64> = speeds.iter().map(width).collect::<Result<_>>()?;
@@ -61,6 +64,20 @@ impl LoopWidths {
         });
         Ok(Self { static_width, dynamic: dynamic.collect() })
     }
+}
+
+/// A path with a row more close before and after each turning point: the rate there is that of the branch, as
+/// far as a sampled path can have it, so that what it does to the width does not depend on the steps.
+fn with_sharp_turns(path: &Path) -> Vec<f64> {
+    let mut x = Vec::with_capacity(path.x.len() + 2 * path.turns.len());
+    for (row, &here) in path.x.iter().enumerate() {
+        let beside = |neighbour: f64| here + SHARP * (neighbour - here);
+        let turns = row > 0 && row + 1 < path.x.len() && path.turns.contains(&row);
+        x.extend(turns.then(|| beside(path.x[row - 1])));
+        x.push(here);
+        x.extend(turns.then(|| beside(path.x[row + 1])));
+    }
+    x
 }
 
 /// Positive for a loop that is passed clockwise.

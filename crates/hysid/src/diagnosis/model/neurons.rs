@@ -272,8 +272,7 @@ impl<'a> Inside<'a> {
             still[1] = 0.0;
             self.change(place, &self.run(&still, inverse_beta).z) > MATTERS
         };
-        let deteriorating =
-            inverse_beta > 0.0 && self.change(place, &self.run(weights, 0.0).z) > MATTERS;
+        let deteriorating = inverse_beta > 0.0 && self.change(place, &self.run(weights, 0.0).z) > MATTERS;
         let influence = self.influence(place);
         let dies = inverse_beta > 0.0 && as_it_is.early_slip * inverse_beta >= 1.0;
         let kinds = [
@@ -334,4 +333,3 @@ fn run_stop(weights: &[f64], inverse_beta: f64, drive: &Drive, rows: &[usize], e
     }
     run
 }
-

@@ -36,7 +36,8 @@ const HARDLY_MOVES: f64 = 0.01;
 /// No smoothing: a model has no noise.
 const EXACT: DiagnosisOptions = DiagnosisOptions { smallest_reversal: 0.02, smoothing: false };
 
-const FASTER: &str = "the model answers to the rate of the input alone; look at its loops at the trained speeds";
+const FASTER: &str =
+    "the model answers to the rate of the input alone; look at its loops at the trained speeds";
 
 /// Looks through a model's own data.
 pub(super) fn survey(data: &Dataset) -> Survey<'_> {
@@ -62,11 +63,8 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
         let problem = DataProblem::ConstantOutput(loops.output()[0]);
         return Err(loops.defect(None, Some(crate::error::Channel::Output), problem));
     }
-    let mut findings = if slow > HARDLY_MOVES * moving {
-        of_memory(probe, &memory)?
-    } else {
-        hardly_moving()
-    };
+    let mut findings =
+        if slow > HARDLY_MOVES * moving { of_memory(probe, &memory)? } else { hardly_moving() };
     findings.extend([
         static_loops(probe)?,
         direct::rate_dependence(probe)?,
@@ -157,7 +155,8 @@ fn wear(probe: &Probe) -> Result<Finding> {
         (Verdict::NotTestable, _) => true,
         _ => fast.index > slow.index,
     };
-    let (mut finding, speed) = if stronger { (fast, "the middle speed") } else { (slow, "a vanishing speed") };
+    let (mut finding, speed) =
+        if stronger { (fast, "the middle speed") } else { (slow, "a vanishing speed") };
     finding.statement += &format!(", at {speed}");
     Ok(finding)
 }

@@ -1,8 +1,12 @@
 //! Models of known weights: closed forms, and what each neuron is.
 
 use super::*;
+use crate::classical::bouc_wen::{BoucWen, Degradation};
 use crate::classical::identification::{ClassicalOptions, Rival};
-use crate::classical::{Classical, bouc_wen::BoucWen};
+use crate::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use crate::classical::rate_dependent_prandtl_ishlinskii::{
+    PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
+};
 use crate::identification::Request;
 use crate::metrics::Errors;
 use crate::model::{Body, Provenance};
@@ -48,12 +52,8 @@ fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
 
 fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Model {
     let rate = architecture.rate.then_some(RateMethod::Central);
-    let scaling = Scaling {
-        inputs: vec![X],
-        rate: rate.map(|_| RATE),
-        output_mean: 10.0,
-        output_deviation: 2.0,
-    };
+    let scaling =
+        Scaling { inputs: vec![X], rate: rate.map(|_| RATE), output_mean: 10.0, output_deviation: 2.0 };
     let network = Network::new(architecture, parameters, output).unwrap();
     let request = Request::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() });
     model(Body::Network { network, scaling }, request, rate)
@@ -91,20 +91,26 @@ fn one_stop_has_the_width_of_its_parallelogram() {
 
 /// A triangle of the speed `q` of the fastest shifts the stop's argument by `d = w_d q` there and back:
 /// `width = 2 (w - 1 + 2 d) X/w` with slip, `2 d X/w` without, as long as the jump at the turning point does not
-/// pass the middle.
+/// pass the middle. Backwards, for `d < 0`, it slips at the turning points and the loop is as wide as at rest.
 #[test]
 fn one_stop_with_rate_widens_by_the_closed_form() {
     for (w, w_rate) in [(1.42, 0.3), (1.42, -0.1), (0.5, 0.2), (3.0, 0.45)] {
         let model = stops(true, vec![w, w_rate], vec![], vec![0.0, 2.0]);
         let diagnosis = ModelDiagnosis::of(&model).unwrap();
         let widths = &diagnosis.loop_widths;
-        assert!((widths.static_width - (2.0 * X * (1.0 - 1.0 / w)).max(0.0)).abs() < 1e-4);
+        assert!((widths.static_width - (2.0 * X * (1.0 - 1.0 / w)).max(0.0)).abs() < 2e-5 * X);
         assert_eq!(widths.dynamic.len(), 4);
         assert!((widths.dynamic[3].speed - RATE).abs() < 1e-12);
         for at in &widths.dynamic {
             let d: f64 = w_rate * at.speed / RATE;
-            let exact = if w + d > 1.0 { 2.0 * (w - 1.0 + 2.0 * d) * X / w } else { 2.0 * d * X / w };
-            assert!((at.width - exact).abs() < 1e-4, "{w} {w_rate} at {}: {}, not {exact}", at.speed, at.width);
+            let exact =
+                if w + d > 1.0 { 2.0 * (w - 1.0 + 2.0 * d.max(0.0)) * X / w } else { 2.0 * d * X / w };
+            assert!(
+                (at.width - exact).abs() < 2e-5 * X,
+                "{w} {w_rate} at {}: {}, not {exact}",
+                at.speed,
+                at.width
+            );
             assert_eq!(at.widening, at.width - widths.static_width);
         }
         assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
@@ -170,16 +176,187 @@ fn a_mixing_readout_is_not_congruent() {
     agreement(&ModelDiagnosis::of(&of(0.02, 0.0)).unwrap(), [Yes, Yes, Yes]);
 }
 
+fn law(law: impl Into<crate::classical::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
+    let request = Request::Classical(ClassicalOptions::of(rival));
+    let model = model(Body::Law(law.into()), request, rate.then_some(RateMethod::Central));
+    let diagnosis = ModelDiagnosis::of(&model).unwrap();
+    assert!(
+        diagnosis.promises.iter().all(|promise| promise.agrees != Some(false)),
+        "{:?}",
+        diagnosis.promises
+    );
+    diagnosis
+}
+
 /// Bouc-Wen's element drifts where its input does not reverse sign: no return-point memory.
 #[test]
 fn bouc_wen_does_not_wipe_out() {
-    let law = BoucWen { n: 1.5, ..BoucWen::new(0.1, 1.0, 0.8).unwrap() };
-    let request = Request::Classical(ClassicalOptions::of(Rival::BoucWen));
-    let diagnosis = ModelDiagnosis::of(&model(Body::Law(Classical::from(law)), request, None)).unwrap();
+    let plain = BoucWen { n: 1.5, ..BoucWen::new(0.1, 1.0, 0.8).unwrap() };
+    let diagnosis = law(plain, Rival::BoucWen, false);
     assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
     assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::Yes);
     assert_eq!(diagnosis.memory.return_point_memory.basis, Basis::Probing);
+    let weakening = Degradation {
+        delta_a: 0.0,
+        delta_nu: 0.02,
+        delta_eta: 0.0,
+        zeta_s: 0.0,
+        p: 1.0,
+        q: 0.0,
+        psi_0: 0.1,
+        delta_psi: 0.0,
+        lambda: 0.1,
+    };
+    let diagnosis = law(BoucWen { degradation: Some(weakening), ..plain }, Rival::BoucWen, false);
+    assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
+}
+
+/// Jiles and Atherton's small loops drift, theory.md (8.22).
+#[test]
+fn jiles_atherton_does_not_wipe_out() {
+    let magnet = JilesAtherton {
+        offset: 0.0,
+        permeability: 0.0,
+        saturation: 1.0,
+        a: 0.5,
+        k: 0.6,
+        coupling: 0.4,
+        c: 0.1,
+        form: JilesAthertonForm::Original,
+    };
+    let diagnosis = law(magnet, Rival::JilesAtherton, false);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::Saturation), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
+    assert!(diagnosis.memory.rate_independent.holds);
+    assert_eq!(diagnosis.memory.bound.whatever_the_input.map(|bound| bound.1.round()), Some(1.0));
+}
+
+/// A damper beside a spring: a loop of width `2 c v/k` that vanishes with the speed.
+#[test]
+fn a_damper_has_a_dynamic_loop_only() {
+    let damper = BoucWen { damping: 0.2, ..BoucWen::new(1.5, 0.0, 1.0).unwrap() };
+    let diagnosis = law(damper, Rival::BoucWen, true);
+    let widths = &diagnosis.loop_widths;
+    assert!(widths.static_width.abs() < 1e-5);
+    for at in &widths.dynamic {
+        let exact = 2.0 * 0.2 * at.speed / 1.5;
+        assert!((at.widening - exact).abs() < 1e-5 * X, "{at:?}, not {exact}");
+    }
+    assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert!(!diagnosis.memory.rate_independent.holds);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
+}
+
+/// One play of threshold `α + β v`: a loop twice as wide, passed the way of a lag.
+#[test]
+fn a_rate_dependent_play_widens_by_twice_its_threshold() {
+    let (alpha, beta) = (0.4, 0.05);
+    let play = RateDependentPrandtlIshlinskii {
+        offset: 1.0,
+        spring: 0.0,
+        spacing: alpha,
+        thresholds: Thresholds::Linear { beta },
+        weights: PlayWeights::Free(vec![2.0]),
+    };
+    let diagnosis = law(play, Rival::RateDependentPrandtlIshlinskii, true);
+    let widths = &diagnosis.loop_widths;
+    assert!((widths.static_width - 2.0 * alpha).abs() < 1e-5);
+    for at in &widths.dynamic {
+        assert!((at.widening - 2.0 * beta * at.speed).abs() < 1e-5, "{at:?}");
+    }
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::Congruency), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::Masing), Verdict::Yes);
+}
+
+/// Relaxation neurons alone: no static loop, and a time scale of their own.
+#[test]
+fn a_relaxing_network_is_driven_at_its_own_times() {
+    let sizes = Sizes { stops: 1, hidden: 1, relaxation: 1 };
+    let architecture = Architecture::new(Family::XpnnPlus, sizes, 1, false, true).unwrap();
+    // Stop, its ln β, linear neuron, ln τ, then a tanh neuron that sees nothing.
+    let parameters = vec![0.3, 10.0, 1.0, 0.05f64.ln(), 0.0, 0.0, 0.0, 0.0];
+    // Constant, tanh neuron, then straight: linear neuron, stop, relaxation.
+    let model = network(architecture, parameters, vec![0.0, 0.0, 1.0, 0.0, 0.8]);
+    let diagnosis = ModelDiagnosis::of(&model).unwrap();
+    assert_eq!(diagnosis.probing.time_scale, TimeScale::RelaxationTimes);
+    assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert!(diagnosis.loop_widths.static_width.abs() < 1e-4 * X);
+    assert!(diagnosis.loop_widths.dynamic[2].widening.abs() > 0.05 * X);
+    let weights = diagnosis.weights.unwrap();
+    assert_eq!(weights.neurons[0].kinds, [NeuronKind::NeverSlips, NeuronKind::Idle]);
+    assert_eq!(weights.neurons[1].kinds, [NeuronKind::Relaxation]);
+    assert!(
+        weights.criteria.iter().all(|criterion| criterion.agrees != Some(false)),
+        "{:?}",
+        weights.criteria
+    );
+    assert_eq!(diagnosis.memory.bound.whatever_the_input, None);
+}
+
+#[test]
+fn a_model_that_answers_nothing_is_refused() {
+    let model = stops(false, vec![1.5], vec![], vec![0.3, 0.0]);
+    let error = ModelDiagnosis::of(&model).unwrap_err().to_string();
+    assert!(error.contains("constant"), "{error}");
+}
+
+/// A network of the full family with random weights, and an input within the trained ranges.
+fn random_case(seed: u64) -> (Model, Record) {
+    use rand::{RngExt, SeedableRng};
+    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut even = |low: f64, high: f64| low + (high - low) * generator.random::<f64>();
+    let sizes = Sizes { stops: 3, hidden: 2, relaxation: 2 };
+    let family = [Family::Pnn, Family::Gpnn, Family::PreisachNn, Family::Xpnn, Family::XpnnPlus];
+    let family = family[(seed % 5) as usize];
+    let architecture = Architecture::new(family, sizes, 1, true, true).unwrap();
+    let layout = crate::network::Layout::new(architecture);
+    let parameters = (0..layout.len())
+        .map(|index| match index {
+            index if layout.ln_beta.contains(&index) => even(0.0, 8.0),
+            index if layout.ln_tau.contains(&index) => even(-5.0, 2.0),
+            _ => even(-1.0, 1.0) * 10f64.powf(even(-1.0, 0.8)),
+        })
+        .collect();
+    let output = (0..architecture.output_weights()).map(|_| even(-2.0, 2.0)).collect();
+    let model = network(architecture, parameters, output);
+    let (mut x, mut time) = (vec![even(-X, X)], vec![0.0]);
+    for row in 0..400 {
+        // To the very ends now and then, and never faster than trained.
+        let to: f64 = (1.4 * even(-X, X)).clamp(-X, X);
+        let step = (to - x[row]).abs() / RATE * even(1.0, 3.0) + 1e-6;
+        x.push(to);
+        time.push(time[row] + step);
+    }
+    let blank = vec![f64::NAN; x.len()];
+    (model, Record::new("random", vec![x], blank).unwrap().with_time(time).unwrap())
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config::with_cases(400))]
+
+    /// No input within the trained ranges leads an output out of its bound.
+    #[test]
+    fn the_bound_is_never_passed(seed in 0u64..1_000_000) {
+        let (model, record) = random_case(seed);
+        let bound = bound::within_trained_ranges(&model);
+        let everywhere = bound::whatever_the_input(&model);
+        let hidden_only = !model.network().unwrap().architecture().direct;
+        proptest::prop_assert_eq!(everywhere.is_some(), hidden_only);
+        for y in model.simulate(&record).unwrap() {
+            proptest::prop_assert!(y >= bound.0 && y <= bound.1, "{} beyond {:?}", y, bound);
+        }
+        if let Some(everywhere) = everywhere {
+            proptest::prop_assert!(everywhere.0 <= bound.0 && everywhere.1 >= bound.1);
+        }
+    }
 }

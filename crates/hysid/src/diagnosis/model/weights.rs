@@ -10,17 +10,21 @@ use crate::diagnosis::{Finding, Property, Verdict};
 use crate::error::Result;
 use crate::model::Body;
 
-/// A rate that moves a stop by less than this share of its threshold is none.
-const NO_RATE: f64 = 0.02;
+/// What the rate may move the output by without mattering, as a share of its range; as in probing.
+const NO_RATE: f64 = 0.01;
 
-/// Wear that matters, as a share of a stop's strength.
+/// Wear that matters, as a share of what the stops do; as in probing.
 const WEAR: f64 = 0.05;
 
-/// Curvature of the readout that matters, as a share of the range of the output.
-const CURVED: f64 = 0.01;
+/// Curvature of the readout that cannot matter: what is one twentieth of a loop as high as a twentieth of the
+/// range of the output.
+const STRAIGHT: f64 = 0.0025;
 
-/// Unevenness of the readout that matters, as a share of the range of the output.
-const UNEVEN: f64 = 0.02;
+/// Unevenness of the readout that cannot matter, as a share of the range of the output; as in probing.
+const EVEN: f64 = 0.02;
+
+/// A bound so many times above its threshold is taken as exceeded; in between the weights do not tell.
+const CLEARLY: f64 = 10.0;
 
 /// What the weights of a network say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -41,9 +45,9 @@ pub struct Criterion {
     pub value: f64,
     /// Where it decides otherwise.
     pub threshold: f64,
-    /// What it says.
+    /// What it says; not testable where it is an upper bound that does not tell.
     pub verdict: Verdict,
-    /// Whether probing says the same; `None` where it could not tell.
+    /// Whether probing says the same; `None` where one of them could not tell.
     pub agrees: Option<bool>,
     /// What the number is, in words.
     pub statement: String,
@@ -72,57 +76,85 @@ impl WeightDiagnosis {
             let found = findings.iter().find(|finding| finding.property == criterion.property);
             criterion.agrees = found
                 .filter(|finding| finding.verdict != Verdict::NotTestable)
+                .filter(|_| criterion.verdict != Verdict::NotTestable)
                 .map(|finding| finding.verdict == criterion.verdict);
         }
         Ok(Some(Self { criteria, neurons }))
     }
 }
 
-fn criterion(property: Property, value: f64, threshold: f64, holds: bool, statement: String) -> Criterion {
-    let verdict = if holds { Verdict::Yes } else { Verdict::No };
+fn criterion(
+    property: Property,
+    value: f64,
+    threshold: f64,
+    verdict: Verdict,
+    statement: String,
+) -> Criterion {
     Criterion { property, value, threshold, verdict, agrees: None, statement }
 }
 
-/// Largest of a number of the neurons that matter.
-fn largest(neurons: &[Neuron], of: impl Fn(&Neuron) -> Option<f64>) -> f64 {
-    let matters = neurons.iter().filter(|neuron| neuron.influence >= MATTERS);
-    matters.filter_map(of).fold(0.0, f64::max)
+fn yes_if(holds: bool) -> Verdict {
+    if holds { Verdict::Yes } else { Verdict::No }
 }
 
-/// `max |w_x| ptp(x) > 2`, theory.md (10.37).
+/// The verdict of an upper bound of what breaks a property.
+fn of_bound(value: f64, threshold: f64) -> Verdict {
+    if value <= threshold {
+        Verdict::Yes
+    } else if value > CLEARLY * threshold {
+        Verdict::No
+    } else {
+        Verdict::NotTestable
+    }
+}
+
+/// Never -0, which the sum of nothing is.
+fn sum(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |sum, value| sum + value)
+}
+
+/// `max |w_x| ptp(x) > 2` of stops that matter and live, theory.md (10.37).
 fn static_loop(neurons: &[Neuron]) -> Criterion {
-    let living = |neuron: &Neuron| {
-        neuron.input_swing.filter(|_| !neuron.kinds.contains(&NeuronKind::DiesAtOnce))
-    };
-    let value = largest(neurons, living);
+    let living = neurons
+        .iter()
+        .filter(|neuron| neuron.influence >= MATTERS && !neuron.kinds.contains(&NeuronKind::DiesAtOnce));
+    let value = living.filter_map(|neuron| neuron.input_swing).fold(0.0, f64::max);
     let statement = format!("the input moves a stop by up to {value:.2}; it slips beyond {SLIPS}");
-    criterion(Property::StaticHysteresis, value, SLIPS, value > SLIPS, statement)
+    criterion(Property::StaticHysteresis, value, SLIPS, yes_if(value > SLIPS), statement)
 }
 
-/// `max |w_rate| max|rate|` of stops, the rate's share in the linear neuron, relaxation neurons, theory.md (10.38).
+/// How far the rate moves stops, times what they do; the linear neuron's and the relaxation neurons' part,
+/// theory.md (10.38).
 fn rate(probe: &Probe, inside: &Inside, neurons: &[Neuron]) -> Criterion {
-    let stops = largest(neurons, |neuron| neuron.rate_swing);
+    let moved = neurons.iter().filter_map(|neuron| Some(neuron.influence * neuron.rate_swing?.min(1.0)));
+    let stops = sum(moved);
     let relaxing = neurons.iter().filter(|neuron| neuron.relaxation_time.is_some());
-    let relaxing = relaxing.filter(|neuron| neuron.influence >= MATTERS).count();
+    let relaxing = sum(relaxing.map(|neuron| neuron.influence));
     let linear = inside.influence_of_linear_rate();
-    let value = stops.max(if linear >= MATTERS { linear } else { 0.0 }).max(relaxing as f64);
+    let value = stops + relaxing + linear;
     let statement = if probe.speeds.matter() {
+        let [stops, linear, relaxing] = [stops, linear, relaxing].map(|part| 100.0 * part);
         format!(
-            "the rate moves a stop by up to {stops:.3} of its threshold and the output past the stops by {:.2} % of its range; \
-             {relaxing} relaxation neurons matter",
-            100.0 * linear
+            "of the output's range the rate moves {stops:.2} % through stops and {linear:.2} % past them, and relaxation neurons \
+             make {relaxing:.2} %"
         )
     } else {
         "no neuron sees rate or time".into()
     };
-    criterion(Property::RateDependence, value, NO_RATE, value > NO_RATE, statement)
+    criterion(Property::RateDependence, value, NO_RATE, yes_if(value > NO_RATE), statement)
 }
 
-/// `max s/β`, theory.md (10.39).
+/// `s/β` in the mean of the stops that slip, by what they do, theory.md (10.39).
 fn wear(neurons: &[Neuron]) -> Criterion {
-    let value = largest(neurons, |neuron| neuron.wear);
-    let statement = format!("25 loops use up to {:.2} % of a stop's capacity to slip", 100.0 * value);
-    criterion(Property::Deterioration, value, WEAR, value > WEAR, statement)
+    let slips = |neuron: &&Neuron| {
+        neuron.kinds.contains(&NeuronKind::Static) || neuron.kinds.contains(&NeuronKind::Dynamic)
+    };
+    let slipping = || neurons.iter().filter(slips);
+    let worn = sum(slipping().map(|neuron| neuron.influence * neuron.wear.unwrap_or(0.0).min(1.0)));
+    let all = sum(slipping().map(|neuron| neuron.influence));
+    let value = worn / all.max(f64::MIN_POSITIVE);
+    let statement = format!("25 loops wear the stops that slip by {:.2} % in the mean", 100.0 * value);
+    criterion(Property::Deterioration, value, WEAR, yes_if(value > WEAR), statement)
 }
 
 /// How far the tanh neurons are from straight lines over their arguments; for congruency only as far as memory
@@ -141,12 +173,15 @@ fn straight_readout(inside: &Inside, property: Property, unworn: bool) -> Criter
     };
     let (c, _) = inside.output_weights();
     let neurons = c.iter().zip(inside.arguments.iter().zip(shares));
-    let value = neurons.map(|(c, neuron)| c.abs() * of_one(neuron)).sum::<f64>() / inside.height;
-    let readout =
-        if property == Property::Congruency { "the readout of the memory" } else { "the readout" };
+    let value = sum(neurons.map(|(c, neuron)| c.abs() * of_one(neuron))) / inside.height;
+    let readout = if property == Property::Congruency { "the readout of the memory" } else { "the readout" };
     let worn = if unworn { "" } else { ", and slip wears the stops" };
-    let statement = format!("{readout} is off a straight line by up to {:.1} % of the output's range{worn}", 100.0 * value);
-    criterion(property, value, CURVED, value <= CURVED && unworn, statement)
+    let statement = format!(
+        "{readout} is off a straight line by at most {:.2} % of the output's range{worn}",
+        100.0 * value
+    );
+    let verdict = if unworn { of_bound(value, STRAIGHT) } else { Verdict::No };
+    criterion(property, value, STRAIGHT, verdict, statement)
 }
 
 /// The even part of the tanh neurons, which their biases make, theory.md (10.41).
@@ -157,9 +192,8 @@ fn even_readout(inside: &Inside) -> Criterion {
     };
     let (c, _) = inside.output_weights();
     let neurons = inside.tanh_neurons().map(|(bias, _)| bias).zip(&inside.arguments);
-    let value = c.iter().zip(neurons).map(|(c, neuron)| 2.0 * c.abs() * even(neuron)).sum::<f64>()
-        / inside.height;
+    let value = sum(c.iter().zip(neurons).map(|(c, neuron)| 2.0 * c.abs() * even(neuron))) / inside.height;
     let statement =
-        format!("biases make the readout uneven by at most {:.1} % of the output's range", 100.0 * value);
-    criterion(Property::OddSymmetry, value, UNEVEN, value <= UNEVEN, statement)
+        format!("biases make the readout uneven by at most {:.2} % of the output's range", 100.0 * value);
+    criterion(Property::OddSymmetry, value, EVEN, of_bound(value, EVEN), statement)
 }
