@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 
 use hysid::classical::identification::ClassicalOptions;
+use hysid::diagnosis::model::TimeScale;
 use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
 use hysid::identification::{ModelName, Request, identify};
 use hysid::model::Model;
-use hysid::network::Sizes;
+use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
@@ -27,7 +28,11 @@ fn data() -> Dataset {
 }
 
 fn fitted(name: ModelName) -> Model {
-    let request = match Request::of(name, Some(RateMethod::Central), 3) {
+    fitted_to(&data(), name, Some(RateMethod::Central))
+}
+
+fn fitted_to(data: &Dataset, name: ModelName, rate: Option<RateMethod>) -> Model {
+    let request = match Request::of(name, rate, 3) {
         Request::Network(options) => Request::Network(FitOptions {
             sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
             starts: 1,
@@ -41,7 +46,7 @@ fn fitted(name: ModelName) -> Model {
             ..options
         }),
     };
-    identify(&data(), &request, &mut |_| ControlFlow::Continue(())).unwrap().model
+    identify(data, &request, &mut |_| ControlFlow::Continue(())).unwrap().model
 }
 
 use Property::*;
@@ -141,4 +146,31 @@ fn no_output_leaves_its_bound() {
             }
         }
     }
+}
+
+/// Further inputs are held in the middle of what was trained; a rate that has to be given is given.
+#[test]
+fn everything_that_a_model_asks_for_is_provided() {
+    let one = record(180, "a");
+    let temperature: Vec<f64> = (0..one.len()).map(|k| 20.0 + 10.0 * (0.03 * k as f64).sin()).collect();
+    let inputs = vec![one.inputs()[0].clone(), temperature.clone()];
+    let time = one.time().unwrap().to_vec();
+    let two = Record::new("two inputs", inputs, one.output().to_vec()).unwrap().with_time(time).unwrap();
+    let two = Dataset::new(ColumnNames::plain(2), vec![two]).unwrap();
+    let middle = {
+        let (low, high) = two.input_range(1);
+        0.5 * low + 0.5 * high
+    };
+    for name in ModelName::all().filter(|name| name.takes_further_inputs()) {
+        let diagnosis = ModelDiagnosis::of(&fitted_to(&two, name, Some(RateMethod::Central))).unwrap();
+        assert_eq!(diagnosis.probing.held, [middle], "{}", name.name());
+    }
+    let rate = RateMethod::Central.rate(&one).unwrap();
+    let given = Record::new("given rate", one.inputs().to_vec(), one.output().to_vec()).unwrap();
+    let names = ColumnNames { time: None, rate: Some("v".into()), ..ColumnNames::plain(1) };
+    let given = Dataset::new(names, vec![given.with_given_rate(rate).unwrap()]).unwrap();
+    let name = ModelName::Network(Family::Xpnn);
+    let diagnosis = ModelDiagnosis::of(&fitted_to(&given, name, Some(RateMethod::Given))).unwrap();
+    assert_eq!(diagnosis.probing.time_scale, TimeScale::TrainedRates);
+    assert_eq!(diagnosis.loop_widths.dynamic.len(), 4);
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::bound::{whatever_the_input, within_trained_ranges};
 use super::direct::ROUNDING;
+use super::neurons::{MATTERS, Neuron};
 use super::probe::{Probe, extent, path, times};
 use super::properties::PROTOCOL;
 use super::structure::{law_sees_rate, sees_time};
@@ -189,7 +190,8 @@ fn return_point_memory(
 ) -> Claim {
     let unworn = weights.is_some_and(|weights| {
         let wear = weights.criteria.iter().find(|criterion| criterion.property == Property::Deterioration);
-        wear.is_some_and(|criterion| criterion.value <= ROUNDING)
+        let fades = |neuron: &Neuron| neuron.relaxation_time.is_some() && neuron.influence >= MATTERS;
+        wear.is_some_and(|criterion| criterion.value <= ROUNDING) && !weights.neurons.iter().any(fades)
     });
     let measured = gap.map_or("; at a vanishing speed the output hardly moves".into(), |gap| {
         format!("; the largest gap found is {} % of the output's range", Significant(100.0 * gap))

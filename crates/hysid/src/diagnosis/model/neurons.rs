@@ -18,7 +18,7 @@ use crate::scaling::Scaling;
 pub(super) const MATTERS: f64 = 1e-3;
 
 /// Rows of a path at which outputs are compared.
-const COMPARED: usize = 400;
+const COMPARED: usize = 250;
 
 /// Turning points of the protocol until the first whole loop is done.
 const FIRST_LOOP: usize = 3;
@@ -76,7 +76,8 @@ pub(super) struct Inside<'a> {
     z: Vec<Vec<f64>>,
     /// Arguments of the tanh neurons there.
     pub arguments: Vec<Vec<f64>>,
-    y: Vec<f64>,
+    /// Outputs of the tanh neurons there.
+    hidden: Vec<Vec<f64>>,
     /// Range of the output.
     pub height: f64,
     /// Largest scaled input and rate, and how far the input swings.
@@ -114,7 +115,7 @@ impl<'a> Inside<'a> {
             first_loop: path.turns[FIRST_LOOP],
             z: Vec::new(),
             arguments: Vec::new(),
-            y: Vec::new(),
+            hidden: Vec::new(),
             height: 0.0,
             largest: [
                 low.abs().max(high.abs()) / scaling.inputs[0],
@@ -198,13 +199,16 @@ impl<'a> Inside<'a> {
             rows.clone().map(at).collect()
         };
         let arguments: Vec<Vec<f64>> = self.tanh_neurons().map(argument).collect();
+        let hidden: Vec<Vec<f64>> =
+            arguments.iter().map(|argument| argument.iter().map(|s| s.tanh()).collect()).collect();
         let (c, d) = self.output_weights();
         let at = |row: usize| {
-            let hidden: f64 = c.iter().zip(&arguments).map(|(c, s)| c * s[row].tanh()).sum();
+            let hidden: f64 = c.iter().zip(&hidden).map(|(c, h)| c * h[row]).sum();
             hidden + d.iter().zip(&self.z).map(|(d, z)| d * z[row]).sum::<f64>()
         };
-        self.y = rows.clone().map(at).collect();
-        self.height = extent(&self.y).max(f64::MIN_POSITIVE);
+        let y: Vec<f64> = rows.map(at).collect();
+        self.height = extent(&y).max(f64::MIN_POSITIVE);
+        self.hidden = hidden;
         self.arguments = arguments;
     }
 
@@ -217,8 +221,9 @@ impl<'a> Inside<'a> {
             if by == 0.0 {
                 return 0.0;
             }
-            let hidden = c.iter().zip(&weights).zip(&self.arguments);
-            let change: f64 = hidden.map(|((c, u), s)| c * ((s[row] + u * by).tanh() - s[row].tanh())).sum();
+            let arguments = self.arguments.iter().zip(&self.hidden);
+            let hidden = c.iter().zip(&weights).zip(arguments);
+            let change: f64 = hidden.map(|((c, u), (s, h))| c * ((s[row] + u * by).tanh() - h[row])).sum();
             (change + d.get(m).copied().unwrap_or(0.0) * by).powi(2)
         };
         (other.iter().enumerate().map(|(row, _)| square(row)).sum::<f64>() / other.len() as f64).sqrt()

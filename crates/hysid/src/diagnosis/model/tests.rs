@@ -85,6 +85,13 @@ fn one_stop_has_the_width_of_its_parallelogram() {
             let loops = if w.abs() > 1.0 { Verdict::Yes } else { Verdict::No };
             assert_eq!((criterion.verdict, diagnosis.verdict(Property::StaticHysteresis)), (loops, loops));
             assert_eq!(criterion.agrees, Some(true));
+            // theory.md (1.7), from v to x and from ε to y.
+            let probe = Probe::new(&model).unwrap();
+            let loops = probe.run_slowly("loops", &probe.path(&properties::WHOLE_LOOPS).x).unwrap();
+            let data = probe::data(vec![loops]).unwrap();
+            let energy = super::super::cycles::cycles(&properties::survey(&data)).last().unwrap().energy;
+            let area = 4.0 * (w.abs() - 1.0).max(0.0) * (2.0 * c * X / w);
+            assert!((energy - area).abs() < 1e-3 * X, "{w}: {energy}, not {area}");
         }
     }
 }
@@ -221,9 +228,9 @@ fn jiles_atherton_does_not_wipe_out() {
         offset: 0.0,
         permeability: 0.0,
         saturation: 1.0,
-        a: 0.5,
-        k: 0.6,
-        coupling: 0.4,
+        a: 0.2,
+        k: 0.4,
+        coupling: 0.3,
         c: 0.1,
         form: JilesAthertonForm::Original,
     };
@@ -292,7 +299,7 @@ fn a_relaxing_network_is_driven_at_its_own_times() {
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
     assert!(diagnosis.loop_widths.static_width.abs() < 1e-4 * X);
     assert!(diagnosis.loop_widths.dynamic[2].widening.abs() > 0.05 * X);
-    let weights = diagnosis.weights.unwrap();
+    let weights = diagnosis.weights.as_ref().unwrap();
     assert_eq!(weights.neurons[0].kinds, [NeuronKind::NeverSlips, NeuronKind::Idle]);
     assert_eq!(weights.neurons[1].kinds, [NeuronKind::Relaxation]);
     assert!(
@@ -301,6 +308,15 @@ fn a_relaxing_network_is_driven_at_its_own_times() {
         weights.criteria
     );
     assert_eq!(diagnosis.memory.bound.whatever_the_input, None);
+    // Without the spring beside it nothing is left to test at a vanishing speed.
+    let parameters = model.network().unwrap().parameters().to_vec();
+    let diagnosis =
+        ModelDiagnosis::of(&network(architecture, parameters, vec![0.0, 0.0, 0.0, 0.0, 0.8])).unwrap();
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::NotTestable);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    // A spring behind a dashpot takes up energy.
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::Yes);
+    assert!(!diagnosis.memory.return_point_memory.holds);
 }
 
 #[test]
