@@ -17,12 +17,15 @@ const LOOPS: [f64; 6] = [0.0, 1.0, -1.0, 1.0, -1.0, 1.0];
 /// Rows beside a turning point are this share of a step away from it.
 const SHARP: f64 = 1e-3;
 
+/// Loops that fill more than this share of their box have a width.
+const OPEN: f64 = 1e-3;
+
 /// Widths of the loop over the whole trained range of the input, in its unit. The direction in which the
 /// widest of the loops is passed counts as positive: a loop of negative width is passed the other way.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoopWidths {
-    /// `K`: at a vanishing speed.
-    pub static_width: f64,
+    /// `K`: at a vanishing speed; `None` if a branch does not pass the middle of its loop's height.
+    pub static_width: Option<f64>,
     /// `P` at several speeds, the slowest first; empty for a model that does not see the speed.
     pub dynamic: Vec<WidthAtSpeed>,
 }
@@ -32,10 +35,10 @@ pub struct LoopWidths {
 pub struct WidthAtSpeed {
     /// In the unit of the input over that of time.
     pub speed: f64,
-    /// Width of the loop.
-    pub width: f64,
+    /// Width of the loop; `None` as for `K`.
+    pub width: Option<f64>,
     /// `P`: by how much it is wider than at no speed.
-    pub widening: f64,
+    pub widening: Option<f64>,
 }
 
 impl LoopWidths {
@@ -47,20 +50,20 @@ impl LoopWidths {
             speeds.extend(probe.speeds.tried());
         }
         let x = with_sharp_turns(&probe.path(&LOOPS));
-        let width = |speed: &f64| -> Result<f64> {
+        let width = |speed: &f64| -> Result<Option<f64>> {
             let data = data(vec![probe.run("loop", &x, *speed)?])?;
-            Ok(cycles(&survey(&data)).last().map_or(0.0, signed_width))
+            Ok(cycles(&survey(&data)).last().and_then(signed_width))
         };
-        let mut widths: Vec<f64> = speeds.iter().map(width).collect::<Result<_>>()?;
-        let widest = widths.iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-        if widest < 0.0 {
-            widths.iter_mut().for_each(|width| *width = 0.0 - *width);
-        }
+        let widths: Vec<Option<f64>> = speeds.iter().map(width).collect::<Result<_>>()?;
+        let wider = |widest: f64, &width: &f64| if width.abs() > widest.abs() { width } else { widest };
+        let widest = widths.iter().flatten().fold(0.0, wider);
+        let turned = |width: f64| if widest < 0.0 { 0.0 - width } else { width };
+        let widths: Vec<Option<f64>> = widths.into_iter().map(|width| width.map(turned)).collect();
         let static_width = widths[0];
         let dynamic = speeds.iter().zip(&widths).skip(1).map(|(&speed, &width)| WidthAtSpeed {
             speed,
             width,
-            widening: width - static_width,
+            widening: width.zip(static_width).map(|(width, at_rest)| width - at_rest),
         });
         Ok(Self { static_width, dynamic: dynamic.collect() })
     }
@@ -81,6 +84,8 @@ fn with_sharp_turns(path: &Path) -> Vec<f64> {
 }
 
 /// Positive for a loop that is passed clockwise.
-fn signed_width(cycle: &Cycle) -> f64 {
-    if cycle.energy < 0.0 { 0.0 - cycle.width } else { cycle.width }
+fn signed_width(cycle: &Cycle) -> Option<f64> {
+    // An open loop without width: one of its branches stays on one side of the middle.
+    let missed = cycle.width == 0.0 && cycle.area > OPEN * cycle.swing() * cycle.height();
+    (!missed).then_some(if cycle.energy < 0.0 { 0.0 - cycle.width } else { cycle.width })
 }

@@ -180,6 +180,11 @@ impl<'a> Inside<'a> {
         self.rows.iter().map(|&row| all[row]).collect()
     }
 
+    /// Places, among those compared, after the first whole loop.
+    pub fn settled(&self) -> std::ops::Range<usize> {
+        self.rows.partition_point(|&row| row < self.first_loop)..self.rows.len()
+    }
+
     /// Bias and weights of each tanh neuron.
     pub fn tanh_neurons(&self) -> impl Iterator<Item = (f64, &[f64])> {
         let run = 1 + self.network.architecture().memory_neurons();

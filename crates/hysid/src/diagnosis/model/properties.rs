@@ -4,7 +4,7 @@
 use super::direct;
 use super::probe::{Probe, data, extent};
 use crate::diagnosis::branch::Survey;
-use crate::diagnosis::cycles::cycles;
+use crate::diagnosis::cycles::{Cycle, cycles};
 use crate::diagnosis::{
     DiagnosisOptions, Finding, Property, Verdict, congruency, deterioration, loop_closure, masing,
     orientation, saturation, static_hysteresis, wiping_out,
@@ -33,11 +33,16 @@ const REPEATS: usize = 25;
 /// An output that moves less than this share at a vanishing speed has no memory worth testing there.
 const HARDLY_MOVES: f64 = 0.01;
 
+/// Loops that fill less than this share of their box are none, as for data.
+const OPEN: f64 = 0.02;
+
 /// No smoothing: a model has no noise.
 const EXACT: DiagnosisOptions = DiagnosisOptions { smallest_reversal: 0.02, smoothing: false };
 
 const FASTER: &str =
     "the model answers to the rate of the input alone; look at its loops at the trained speeds";
+
+const LARGER: &str = "fit the model to a record with loops over a larger range of the input";
 
 /// Looks through a model's own data.
 pub(super) fn survey(data: &Dataset) -> Survey<'_> {
@@ -139,7 +144,13 @@ fn wear(probe: &Probe) -> Result<Finding> {
     let test = |speed: f64| -> Result<Finding> {
         let data = data(vec![probe.run("repeated loops", &path.x, speed)?])?;
         let survey = survey(&data);
-        let mut finding = deterioration::test(&survey, &cycles(&survey));
+        let cycles = cycles(&survey);
+        let open = |cycle: &Cycle| cycle.area > OPEN * cycle.swing() * cycle.height();
+        if !cycles.first().is_some_and(open) {
+            let statement = "there is hardly a loop that could shrink";
+            return Ok(Finding::not_testable(Property::Deterioration, statement, LARGER));
+        }
+        let mut finding = deterioration::test(&survey, &cycles);
         finding.statement += &format!(" ({REPEATS} loops over the whole range)");
         Ok(finding)
     };

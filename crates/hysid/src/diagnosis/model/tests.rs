@@ -77,7 +77,7 @@ fn one_stop_has_the_width_of_its_parallelogram() {
             let diagnosis = ModelDiagnosis::of(&model).unwrap();
             // The weight is of the input over X.
             let exact = (2.0 * X * (1.0 - 1.0 / f64::abs(w))).max(0.0);
-            let width = diagnosis.loop_widths.static_width;
+            let width = diagnosis.loop_widths.static_width.unwrap();
             assert!((width - exact).abs() < 1e-9 * X, "{w}: {width}, not {exact}");
             assert!(diagnosis.loop_widths.dynamic.is_empty());
             let criterion = &diagnosis.weights.as_ref().unwrap().criteria[0];
@@ -105,7 +105,7 @@ fn one_stop_with_rate_widens_by_the_closed_form() {
         let model = stops(true, vec![w, w_rate], vec![], vec![0.0, 2.0]);
         let diagnosis = ModelDiagnosis::of(&model).unwrap();
         let widths = &diagnosis.loop_widths;
-        assert!((widths.static_width - (2.0 * X * (1.0 - 1.0 / w)).max(0.0)).abs() < 2e-5 * X);
+        assert!((widths.static_width.unwrap() - (2.0 * X * (1.0 - 1.0 / w)).max(0.0)).abs() < 2e-5 * X);
         assert_eq!(widths.dynamic.len(), 4);
         assert!((widths.dynamic[3].speed - RATE).abs() < 1e-12);
         for at in &widths.dynamic {
@@ -113,12 +113,12 @@ fn one_stop_with_rate_widens_by_the_closed_form() {
             let exact =
                 if w + d > 1.0 { 2.0 * (w - 1.0 + 2.0 * d.max(0.0)) * X / w } else { 2.0 * d * X / w };
             assert!(
-                (at.width - exact).abs() < 2e-5 * X,
-                "{w} {w_rate} at {}: {}, not {exact}",
+                (at.width.unwrap() - exact).abs() < 2e-5 * X,
+                "{w} {w_rate} at {}: {:?}, not {exact}",
                 at.speed,
                 at.width
             );
-            assert_eq!(at.widening, at.width - widths.static_width);
+            assert_eq!(at.widening.unwrap(), at.width.unwrap() - widths.static_width.unwrap());
         }
         assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
         let kinds = &diagnosis.weights.as_ref().unwrap().neurons[0].kinds;
@@ -168,19 +168,24 @@ fn a_mixing_readout_is_not_congruent() {
         let parameters = vec![1.3, 6.0, 1.0, bias, 0.1 * gain, gain, gain];
         network(architecture, parameters, vec![0.0, 1.0 / gain])
     };
+    use Verdict::*;
     let agreement = |diagnosis: &ModelDiagnosis, expected: [Verdict; 3]| {
         assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
         let properties = [Property::Congruency, Property::Masing, Property::OddSymmetry];
         assert_eq!(properties.map(|property| diagnosis.verdict(property)), expected);
         for criterion in &diagnosis.weights.as_ref().unwrap().criteria {
-            assert_eq!(criterion.agrees, Some(true), "{criterion:?}");
+            assert_ne!(criterion.agrees, Some(false), "{criterion:?}");
+            let told = criterion.verdict != NotTestable;
+            assert!(told || [Property::Congruency, Property::Masing].contains(&criterion.property));
         }
         assert!(diagnosis.promises.iter().all(|promise| promise.agrees == Some(true)));
     };
-    use Verdict::*;
     agreement(&ModelDiagnosis::of(&of(1.0, 0.0)).unwrap(), [No, No, Yes]);
     agreement(&ModelDiagnosis::of(&of(1.0, 0.7)).unwrap(), [No, No, No]);
-    agreement(&ModelDiagnosis::of(&of(0.02, 0.0)).unwrap(), [Yes, Yes, Yes]);
+    let nearly_linear = ModelDiagnosis::of(&of(0.02, 0.0)).unwrap();
+    agreement(&nearly_linear, [Yes, Yes, Yes]);
+    let criteria = &nearly_linear.weights.as_ref().unwrap().criteria;
+    assert!(criteria.iter().all(|criterion| criterion.agrees == Some(true)), "{criteria:?}");
 }
 
 fn law(law: impl Into<crate::classical::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
@@ -249,10 +254,10 @@ fn a_damper_has_a_dynamic_loop_only() {
     let damper = BoucWen { damping: 0.2, ..BoucWen::new(1.5, 0.0, 1.0).unwrap() };
     let diagnosis = law(damper, Rival::BoucWen, true);
     let widths = &diagnosis.loop_widths;
-    assert!(widths.static_width.abs() < 1e-5);
+    assert!(widths.static_width.unwrap().abs() < 1e-5);
     for at in &widths.dynamic {
         let exact = 2.0 * 0.2 * at.speed / 1.5;
-        assert!((at.widening - exact).abs() < 1e-5 * X, "{at:?}, not {exact}");
+        assert!((at.widening.unwrap() - exact).abs() < 1e-5 * X, "{at:?}, not {exact}");
     }
     assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
@@ -273,9 +278,9 @@ fn a_rate_dependent_play_widens_by_twice_its_threshold() {
     };
     let diagnosis = law(play, Rival::RateDependentPrandtlIshlinskii, true);
     let widths = &diagnosis.loop_widths;
-    assert!((widths.static_width - 2.0 * alpha).abs() < 1e-5);
+    assert!((widths.static_width.unwrap() - 2.0 * alpha).abs() < 1e-5);
     for at in &widths.dynamic {
-        assert!((at.widening - 2.0 * beta * at.speed).abs() < 1e-5, "{at:?}");
+        assert!((at.widening.unwrap() - 2.0 * beta * at.speed).abs() < 1e-5, "{at:?}");
     }
     assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
@@ -297,8 +302,8 @@ fn a_relaxing_network_is_driven_at_its_own_times() {
     assert_eq!(diagnosis.probing.time_scale, TimeScale::RelaxationTimes);
     assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
-    assert!(diagnosis.loop_widths.static_width.abs() < 1e-4 * X);
-    assert!(diagnosis.loop_widths.dynamic[2].widening.abs() > 0.05 * X);
+    assert!(diagnosis.loop_widths.static_width.unwrap().abs() < 1e-4 * X);
+    assert!(diagnosis.loop_widths.dynamic[2].widening.unwrap().abs() > 0.05 * X);
     let weights = diagnosis.weights.as_ref().unwrap();
     assert_eq!(weights.neurons[0].kinds, [NeuronKind::NeverSlips, NeuronKind::Idle]);
     assert_eq!(weights.neurons[1].kinds, [NeuronKind::Relaxation]);
