@@ -133,8 +133,7 @@ fn sound_data_are_not_complained_of() {
 fn specimens_are_not_complained_of_without_reason() {
     use ComplaintKind::{Lag, LagChangesWithSpeed, UnclosedLoops};
     for specimen in Specimen::all() {
-        // Loops that wear out stay open. Those of the rate-dependent actuator close: there the test of loop closure is
-        // misled by noise, and the doctor repeats what it says.
+        // Loops that wear out stay open.
         let true_of_it: &[ComplaintKind] = match specimen.name {
             "reinforced-concrete-joint" => &[UnclosedLoops],
             "rate-dependent-actuator" => &[LagChangesWithSpeed],

@@ -5,6 +5,7 @@ use super::direct;
 use super::probe::{Probe, data, extent};
 use crate::diagnosis::branch::Survey;
 use crate::diagnosis::cycles::{Cycle, cycles};
+use crate::diagnosis::opening::openings;
 use crate::diagnosis::{
     DiagnosisOptions, Finding, Property, Verdict, congruency, deterioration, loop_closure, masing,
     orientation, saturation, static_hysteresis, wiping_out,
@@ -87,9 +88,8 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
 /// What a model remembers, at a vanishing speed.
 fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
     let survey = survey(memory);
-    let cycles = cycles(&survey);
     let mut findings = vec![
-        orientation::test(&survey, &cycles),
+        orientation::test(&survey, &openings(&survey)),
         direct::with_accumulated_gap(probe, wiping_out::test(&survey, false), survey.height())?,
         congruency::test(&survey, false),
         masing::test(&survey, false),
@@ -125,13 +125,13 @@ fn static_loops(probe: &Probe) -> Result<Finding> {
         probe.run("three times as fast", &path.x, 3.0 * slowest)?,
     ])?;
     let survey = survey(&data);
-    Ok(static_hysteresis::test(&survey, &cycles(&survey)))
+    Ok(static_hysteresis::test(&survey, &openings(&survey), || None))
 }
 
 fn orientation_at_speed(probe: &Probe, loops: Record) -> Result<Finding> {
     let data = data(vec![loops])?;
     let survey = survey(&data);
-    let mut finding = orientation::test(&survey, &cycles(&survey));
+    let mut finding = orientation::test(&survey, &openings(&survey));
     if probe.speeds.matter() {
         finding.statement += " (at the middle of the trained speeds)";
     }
