@@ -15,6 +15,7 @@ mod errors_table;
 mod files;
 mod identification;
 mod interrupt;
+mod lines;
 mod messages;
 mod page;
 mod plot;

@@ -7,11 +7,12 @@ use hysid::summary::Summary;
 use hysid::warning::Significant;
 
 use crate::data::Data;
+use crate::lines::{WIDTH, wrapped};
 use crate::messages::note;
 use hysid::unit;
 
-/// Lines are kept within this width.
-const WIDTH: usize = 80;
+/// Room for a label and the blank behind it.
+const LABEL: usize = 9;
 
 /// Label and text, line by line.
 pub fn understanding(
@@ -48,29 +49,12 @@ pub fn understanding(
 pub fn print(lines: &[(String, String)]) {
     for (label, text) in lines {
         let mut label = label.as_str();
-        for line in wrapped(text) {
-            note(format_args!("{label:<8} {line}"));
+        for line in wrapped(text, WIDTH - LABEL) {
+            note(format_args!("{label:<LABEL$}{line}"));
             label = "";
         }
     }
     note(format_args!(""));
-}
-
-/// The text in lines that leave room for the label.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let line = lines.last_mut().expect("there is a line");
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH - 9 {
-            lines.push(word.into());
-        } else {
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-    }
-    lines
 }
 
 /// Some names, and how many more there are.

@@ -11,11 +11,9 @@ use crate::arguments::Generate;
 use crate::csv_text::csv_text;
 use crate::files;
 use crate::identification::check_outputs;
+use crate::lines::indented;
 use crate::messages::{Usage, note, results};
 use crate::page::count;
-
-/// Characters in a line of the list.
-const LINE: usize = 80;
 
 /// Runs the command.
 pub fn run(arguments: &Generate) -> Result<Outcome> {
@@ -106,28 +104,8 @@ fn description(specimen: &Specimen) -> String {
     let mut text = format!("{} ({} of the paper)\n", specimen.name, specimen.example);
     for (what, words) in lines {
         let indent = if what.is_empty() { 2 } else { 13 };
-        text += &format!("{:<indent$}", format!("  {what}"));
-        text += &wrapped(words, indent);
-        text.push('\n');
-    }
-    text
-}
-
-/// The words in lines of [`LINE`] characters, of which the first `indent` are left free.
-fn wrapped(words: &str, indent: usize) -> String {
-    let mut text = String::new();
-    let mut column = indent;
-    for word in words.split_whitespace() {
-        let width = word.chars().count();
-        if column > indent && column + 1 + width > LINE {
-            text += &format!("\n{:indent$}", "");
-            column = indent;
-        } else if column > indent {
-            text.push(' ');
-            column += 1;
-        }
-        text += word;
-        column += width;
+        let words = indented(words, indent);
+        text += &format!("{:<indent$}{}", format!("  {what}"), words.trim_start());
     }
     text
 }

@@ -4,6 +4,7 @@ use hysid::training::Trainer;
 use hysid::warning::Significant;
 
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
+use crate::lines::{WIDTH, aligned, wrapped};
 use crate::page::{count, figure, note, paragraph, section, table, verdict, whole};
 use crate::plot::{self, Axis, Chart, Colour, Curve};
 
@@ -41,47 +42,12 @@ pub fn text(protocol: &Protocol, repetitions: &[Repetition]) -> String {
     };
     let mut lines = vec![headings.into_iter().map(|cell| cell.replace("training, ", "")).collect()];
     lines.extend(rows.into_iter().map(narrow));
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
-    let mut text = String::new();
-    for line in &lines {
-        let cells = line.iter().zip(&widths).enumerate();
-        let cells: Vec<String> = cells
-            .map(|(column, (cell, &width))| match column {
-                0 => format!("{cell:<width$}"),
-                _ => format!("{cell:>width$}"),
-            })
-            .collect();
-        text += cells.join("  ").trim_end();
-        text.push('\n');
-    }
     let words = "Medians of the seeds, in brackets the range.";
-    let paragraphs = [heading(protocol) + ".", text.trim_end().into(), words.into()];
-    let paragraphs = paragraphs.into_iter().chain([claim(repetitions), matched(repetitions)]);
-    paragraphs.map(|text| wrapped(&text) + "\n").collect::<Vec<String>>().join("\n")
-}
-
-/// Text in lines of at most 80 letters; lines that are there already are kept.
-fn wrapped(text: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for line in text.lines() {
-        if line.contains("  ") {
-            lines.push(line.into());
-            continue;
-        }
-        let mut current = String::new();
-        for word in line.split_whitespace() {
-            if !current.is_empty() && current.chars().count() + 1 + word.chars().count() > 80 {
-                lines.push(std::mem::take(&mut current));
-            }
-            if !current.is_empty() {
-                current.push(' ');
-            }
-            current += word;
-        }
-        lines.push(current);
-    }
-    lines.join("\n")
+    let paragraph = |text: &str| wrapped(text, WIDTH).join("\n") + "\n";
+    let paragraphs = [words, &claim(repetitions), &matched(repetitions)].map(paragraph);
+    let heading = paragraph(&(heading(protocol) + "."));
+    let table = aligned(&lines).join("\n") + "\n";
+    [heading, table].into_iter().chain(paragraphs).collect::<Vec<String>>().join("\n")
 }
 
 fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&Training> {

@@ -1,0 +1,66 @@
+//! Plain text for a terminal: paragraphs wrapped to its width, and tables with aligned columns.
+
+/// Letters in a line.
+pub const WIDTH: usize = 80;
+
+/// The words in lines of at most `width` letters; a longer word has a line of its own.
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines.last_mut().expect("there is a line");
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
+            lines.push(word.into());
+        } else {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines
+}
+
+/// The words in lines of [`WIDTH`] letters, of which the first `indent` are blank, the first line's too.
+pub fn indented(text: &str, indent: usize) -> String {
+    wrapped(text, WIDTH - indent).iter().map(|line| format!("{:indent$}{line}\n", "")).collect()
+}
+
+/// Rows of a table, the columns as wide as their longest cell: the first to the left, the others to the right.
+pub fn aligned(rows: &[Vec<String>]) -> Vec<String> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let letters = |row: &Vec<String>, column: usize| row.get(column).map_or(0, |cell| cell.chars().count());
+    let widths: Vec<usize> =
+        (0..columns).map(|column| rows.iter().map(|row| letters(row, column)).max().unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).enumerate();
+        let cells: Vec<String> = cells
+            .map(|(column, (cell, &width))| match column {
+                0 => format!("{cell:<width$}"),
+                _ => format!("{cell:>width$}"),
+            })
+            .collect();
+        cells.join("  ").trim_end().to_string()
+    };
+    rows.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_fill_lines_and_long_ones_stand_alone() {
+        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
+        assert_eq!(wrapped("a incomprehensible b", 5), ["a", "incomprehensible", "b"]);
+        assert_eq!(wrapped("µµµ µµµ", 7), ["µµµ µµµ"], "letters count, not bytes");
+        assert_eq!(wrapped("", 5), [""]);
+        assert_eq!(indented("one two", 75), format!("{0}one\n{0}two\n", " ".repeat(75)));
+    }
+
+    #[test]
+    fn columns_are_aligned_and_short_rows_end_early() {
+        let rows = [vec!["a", "1.5"], vec!["long", "12"], vec!["b"]];
+        let rows = rows.map(|row| row.into_iter().map(String::from).collect());
+        assert_eq!(aligned(&rows), ["a     1.5", "long   12", "b"]);
+    }
+}
