@@ -25,6 +25,12 @@ const LETTER: f64 = 7.2;
 /// Free space on the left, in pixels.
 const EDGE: f64 = 5.0;
 
+/// Distance of the legend's lines, in pixels.
+const LEGEND_LINE: f64 = 18.0;
+
+/// Room that the legend leaves free on both sides together, in pixels.
+const LEGEND_EDGE: f64 = 40.0;
+
 /// Recolours the markers; to be put into the page once.
 pub const STYLE: &str = include_str!("plot/style.css");
 
@@ -142,14 +148,18 @@ impl Chart {
     }
 
     fn draw(&self, root: &DrawingArea<SVGBackend, Shift>) -> Drawn {
-        let header = if self.title.is_empty() && self.legend.is_empty() { 8.0 } else { 26.0 };
+        let legend = self.legend_lines();
+        let header = match legend.len() {
+            0 if self.title.is_empty() => 8.0,
+            lines => 26.0 + LEGEND_LINE * lines.saturating_sub(1) as f64,
+        };
         let (top, body) = root.split_vertically(fine(header));
         let x = self.x.clone().with_ticks((self.size.0 / 90.0) as usize);
         let y = self.y.clone().with_ticks(((self.size.1 - header - 42.0) / 36.0) as usize);
         // Charts below each other share their horizontal axis, so their labels get the same room.
         let letters = if self.size.0 > 800.0 { y.longest_text().max(6) } else { y.longest_text() };
         let left = 34.0 + LETTER * letters as f64;
-        self.draw_header(&top, EDGE + left)?;
+        self.draw_header(&top, EDGE + left, &legend)?;
         let mut chart = ChartBuilder::on(&body)
             .margin_left(fine(EDGE))
             .margin_right(fine(14.0))
@@ -194,32 +204,45 @@ impl Chart {
         Ok(())
     }
 
-    /// Entries of the legend whose colour is drawn.
-    fn used_legend(&self) -> Vec<&(Colour, String)> {
+    /// Entries of the legend whose colour is drawn, in as many lines as they need.
+    fn legend_lines(&self) -> Vec<Vec<&(Colour, String)>> {
         let is_used =
             |colour| self.curves.iter().any(|curve| curve.colour == colour && !curve.points.is_empty());
-        self.legend.iter().filter(|(colour, _)| is_used(*colour)).collect()
+        let mut lines: Vec<Vec<&(Colour, String)>> = Vec::new();
+        for entry in self.legend.iter().filter(|(colour, _)| is_used(*colour)) {
+            match lines.last_mut() {
+                Some(line) if width_of(line) + entry_width(&entry.1) <= self.size.0 - LEGEND_EDGE => {
+                    line.push(entry);
+                }
+                _ => lines.push(vec![entry]),
+            }
+        }
+        lines
     }
 
-    /// Title and legend in one line.
-    fn draw_header(&self, area: &DrawingArea<SVGBackend, Shift>, left: f64) -> Drawn {
-        let middle = fine(13.0);
-        let legend = self.used_legend();
-        let legend_width: f64 = legend.iter().map(|(_, name)| entry_width(name)).sum();
-        let title = shortened(&self.title, self.size.0 - left - legend_width - 14.0);
-        area.draw(&Text::new(
-            title,
-            (fine(left), middle),
-            text_style().pos(Pos::new(HPos::Left, VPos::Center)),
-        ))?;
+    /// Title and legend; the legend goes on below where it is too long for a line.
+    fn draw_header(
+        &self,
+        area: &DrawingArea<SVGBackend, Shift>,
+        left: f64,
+        legend: &[Vec<&(Colour, String)>],
+    ) -> Drawn {
+        let middle = |line: usize| fine(13.0 + LEGEND_LINE * line as f64);
+        let style = || text_style().pos(Pos::new(HPos::Left, VPos::Center));
+        let widest = legend.iter().map(|line| width_of(line)).fold(0.0, f64::max);
+        let title = shortened(&self.title, self.size.0 - left - widest - 14.0);
+        area.draw(&Text::new(title, (fine(left), middle(0)), style()))?;
         // Without a title the legend comes first, where a narrow screen that scrolls shows it.
-        let mut x = if self.title.is_empty() { left } else { self.size.0 - 14.0 - legend_width };
-        for (colour, name) in legend {
-            let line = vec![(fine(x), middle), (fine(x + 18.0), middle)];
-            area.draw(&PathElement::new(line, colour.marker().stroke_width(fine(2.0) as u32)))?;
-            let style = text_style().pos(Pos::new(HPos::Left, VPos::Center));
-            area.draw(&Text::new(name.clone(), (fine(x + 23.0), middle), style))?;
-            x += entry_width(name);
+        let room = self.size.0 - 14.0 - widest;
+        let begin = if self.title.is_empty() { left.min(room.max(EDGE)) } else { room };
+        for (number, line) in legend.iter().enumerate() {
+            let mut x = begin;
+            for (colour, name) in line {
+                let dash = vec![(fine(x), middle(number)), (fine(x + 18.0), middle(number))];
+                area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(2.0) as u32)))?;
+                area.draw(&Text::new(name.clone(), (fine(x + 23.0), middle(number)), style()))?;
+                x += entry_width(name);
+            }
         }
         Ok(())
     }
@@ -229,6 +252,11 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 fn fine(pixels: f64) -> i32 {
     (FINE * pixels).round() as i32
+}
+
+/// Width of a line of the legend.
+fn width_of(line: &[&(Colour, String)]) -> f64 {
+    line.iter().map(|(_, name)| entry_width(name)).sum()
 }
 
 fn entry_width(name: &str) -> f64 {

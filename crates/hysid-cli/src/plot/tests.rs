@@ -68,3 +68,19 @@ fn every_marker_is_recoloured() {
         assert!(STYLE.contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
     }
 }
+
+#[test]
+fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
+    let curve =
+        |place| Curve { points: vec![(0.0, 0.0), (1.0, 1.0)], colour: Colour::Series(place), width: 1.0 };
+    let chart = Chart {
+        curves: (0..4).map(curve).collect(),
+        legend: (0..6).map(|place| (Colour::Series(place), format!("a long name, number {place}"))).collect(),
+        title: String::new(),
+        ..chart(vec![])
+    };
+    // An entry takes about 190 of 520 pixels.
+    let lines: Vec<usize> = chart.legend_lines().iter().map(Vec::len).collect();
+    assert_eq!(lines, [2, 2]);
+    assert_balanced(&chart.svg());
+}
