@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{ArgAction, Args, Parser, Subcommand};
 use hysid::classical::identification::{ClassicalOptions, Rival};
 use hysid::classical::linear_fit::Sign;
+use hysid::diagnosis::DiagnosisOptions;
 use hysid::identification::{ModelName, Request};
 use hysid::network::{Family, Sizes};
 use hysid::plant::Specimen;
@@ -35,6 +36,8 @@ pub enum Command {
     Evaluate(Evaluate),
     /// Fit every model to the same data and compare them on data that none has seen
     Compare(Compare),
+    /// What kind of hysteresis is this? Properties of measured data or of a model, each with its evidence
+    Diagnose(Diagnose),
     /// Run the paper's experiments and set our figures beside its own
     Reproduce(Reproduce),
     /// Write the data of a synthetic specimen, to train and to test on
@@ -423,6 +426,39 @@ pub struct Compare {
     /// Write no page
     #[arg(long)]
     pub no_report: bool,
+}
+
+/// Arguments of `diagnose`.
+#[derive(Debug, Args)]
+pub struct Diagnose {
+    /// Tables of measured data, CSV with a header line; or one model file of `hysid fit`
+    #[arg(value_name = "DATA.csv|MODEL.json", required = true)]
+    pub files: Vec<PathBuf>,
+    /// The page with pictures [default: first file with `.diagnosis.html`, in this folder]
+    #[arg(short, long, value_name = "PAGE.html")]
+    pub out: Option<PathBuf>,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Reversals of the input below this share of its range are no turning points
+    #[arg(long, value_name = "FRACTION", default_value_t = DiagnosisOptions::default().smallest_reversal, value_parser = fraction)]
+    pub smallest_reversal: f64,
+    /// Smooth noise out of branches before they are compared: true or false
+    #[arg(long, value_name = "BOOL", default_value_t = DiagnosisOptions::default().smoothing, action = ArgAction::Set)]
+    pub smoothing: bool,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Write no page
+    #[arg(long)]
+    pub no_report: bool,
+}
+
+impl Diagnose {
+    /// What the library is asked for.
+    pub fn options(&self) -> DiagnosisOptions {
+        DiagnosisOptions { smallest_reversal: self.smallest_reversal, smoothing: self.smoothing }
+    }
 }
 
 /// Arguments of `reproduce`.

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod compare;
 pub mod demo;
+pub mod diagnose;
 pub mod evaluate;
 pub mod fit;
 pub mod generate;
@@ -18,7 +19,11 @@ use crate::files;
 
 /// Reads a model file.
 fn read_model(path: &Path) -> Result<Model> {
-    let bytes = files::read(path)?;
+    model_from_bytes(path, files::read(path)?)
+}
+
+/// The model that a file with this content holds.
+fn model_from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Model> {
     let text = String::from_utf8(bytes)
         .map_err(|_| anyhow!("{}: this is not a Hysid model file: it is not text", path.display()))?;
     Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))

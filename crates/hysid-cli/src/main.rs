@@ -11,6 +11,7 @@ mod commands;
 mod comparison;
 mod csv_text;
 mod data;
+mod diagnosis;
 mod errors_table;
 mod files;
 mod identification;
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),

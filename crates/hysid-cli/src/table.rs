@@ -30,10 +30,17 @@ impl Table {
     /// # Errors
     /// A file that cannot be read, is no text, or is no table with a header and at least one row.
     pub fn read(path: &Path) -> Result<Self> {
+        Self::from_bytes(path, &files::read(path)?)
+    }
+
+    /// The table that a file with this content holds.
+    ///
+    /// # Errors
+    /// As of [`Table::read`].
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self> {
         let file = path.display().to_string();
-        let bytes = files::read(path)?;
-        check_kind(&bytes).map_err(|what| anyhow!("{file}: {what}"))?;
-        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+        check_kind(bytes).map_err(|what| anyhow!("{file}: {what}"))?;
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text,
             Err(error) => {
@@ -119,6 +126,11 @@ impl Table {
     }
 }
 
+/// True for the content of a file that begins like a JSON object, as model files do.
+pub fn is_json(bytes: &[u8]) -> bool {
+    bytes.trim_ascii_start().starts_with(b"{")
+}
+
 /// Refuses what is clearly no text table.
 fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
     if bytes.starts_with(b"\x1f\x8b") {
@@ -127,7 +139,7 @@ fn check_kind(bytes: &[u8]) -> Result<(), &'static str> {
         Err("is a spreadsheet or zip archive (export the table as CSV)")
     } else if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         Err("is UTF-16 text (save the file as UTF-8)")
-    } else if bytes.trim_ascii_start().starts_with(b"{") {
+    } else if is_json(bytes) {
         Err("is JSON, not CSV (a model file in the place of data?)")
     } else if bytes.contains(&0) {
         Err("is a binary file, not CSV")

@@ -14,13 +14,23 @@ use hysid::unit;
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
 
-/// Label and text, line by line.
+/// What was understood of data and request, label and text, line by line.
 pub fn understanding(
     data: &Data,
     summary: &Summary,
     request: &Request,
     model: &str,
 ) -> Vec<(String, String)> {
+    let used = request.rate().filter(|_| request.model().uses_rate());
+    let rate = rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used);
+    let model = format!("{}{model}", request.model().name());
+    let mut lines = of_data(data, summary);
+    lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
+    lines
+}
+
+/// What was understood of the data.
+pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
     let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
@@ -39,9 +49,6 @@ pub fn understanding(
     let first = &data.roles.inputs[0];
     let turning = summary.turning_points();
     say("turning", format!("{turning} turning point{} of {first}", if turning == 1 { "" } else { "s" }));
-    let used = request.rate().filter(|_| request.model().uses_rate());
-    say("rate", rate(first, data.roles.rate.as_deref(), used));
-    say("model", format!("{}{model}", request.model().name()));
     lines
 }
 

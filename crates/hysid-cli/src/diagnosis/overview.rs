@@ -1,0 +1,185 @@
+//! The record as a whole: its loops with backbone and turning points, and the way of its input.
+
+use hysid::diagnosis::Diagnosis;
+use hysid::record::{Dataset, Record};
+use hysid::turning_points::turning_points;
+
+use super::quantities::Quantities;
+use crate::page::{count, figure, note, section};
+use crate::plot::thin::{Point, thin, thin_path};
+use crate::plot::{Axis, Chart, Colour, Curve, escape};
+use crate::report::unit_label;
+
+/// Points of all loops together.
+const LOOP_POINTS: usize = 8000;
+
+/// Points of the way of an input.
+const WAY_POINTS: usize = 3000;
+
+/// Most turning points that are marked, and most records that are drawn.
+const MOST_DOTS: usize = 600;
+const MOST_RECORDS: usize = 200;
+
+/// Most records whose way is drawn.
+const MOST_WAYS: usize = 4;
+
+/// A reversal within so many standard deviations of the input's noise may be jitter.
+const JITTER: f64 = 12.0;
+
+/// The data and the rows where the input turns, record by record.
+pub struct Overview<'a> {
+    data: &'a Dataset,
+    quantities: &'a Quantities,
+    turning: Vec<Vec<usize>>,
+}
+
+impl<'a> Overview<'a> {
+    /// `smallest_reversal` is the share of the input's range below which a reversal is none.
+    pub fn new(
+        data: &'a Dataset,
+        diagnosis: &Diagnosis,
+        quantities: &'a Quantities,
+        smallest_reversal: f64,
+    ) -> Self {
+        let (low, high) = data.input_range(0);
+        let smallest = (smallest_reversal * (high - low)).max(JITTER * diagnosis.input_noise);
+        let of_record = |record: &Record| turning_points(&record.inputs()[0], smallest);
+        Self { data, quantities, turning: data.records().iter().map(of_record).collect() }
+    }
+
+    /// Loops and ways.
+    pub fn section(&self) -> String {
+        let mut content = figure(&self.loops(), true);
+        let records = self.data.records();
+        let mut longest: Vec<usize> = (0..records.len()).collect();
+        longest.sort_by_key(|&record| std::cmp::Reverse(records[record].len()));
+        longest.truncate(MOST_WAYS);
+        longest.sort_unstable();
+        for record in &longest {
+            if records.len() > 1 {
+                content += &format!("<h3>{}</h3>\n", escape(records[*record].name()));
+            }
+            content += &figure(&self.way(*record), true);
+        }
+        let mut words =
+            "The backbone joins the tips that go beyond all before them; dots are turning points of the input.".to_string();
+        if longest.len() < records.len() {
+            words += &format!(
+                " Of {} the ways of the {} longest are drawn.",
+                count(records.len(), "record"),
+                longest.len()
+            );
+        }
+        section("The data", &(content + &note(&words)))
+    }
+
+    fn loops(&self) -> String {
+        let records = self.data.records();
+        let every = records.len().div_ceil(MOST_RECORDS).max(1);
+        let shown: Vec<usize> = (0..records.len()).step_by(every).collect();
+        let most = (LOOP_POINTS / shown.len()).max(16);
+        let (mut curves, mut backbones) = (Vec::new(), Vec::new());
+        for &index in &shown {
+            let (x, y) = (&records[index].inputs()[0], records[index].output());
+            let path = thin_path(&[x, y], most);
+            let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
+            let points = path.iter().map(point).collect();
+            curves.push(Curve { points, colour: Colour::Measured, width: 1.3 });
+            let points = backbone(&self.tips(index));
+            backbones.push(Curve { points, colour: Colour::Simulated, width: 2.0 });
+        }
+        curves.extend(backbones.into_iter().filter(|curve| curve.points.len() > 2));
+        curves.push(dots(shown.iter().flat_map(|&index| self.tips(index)).collect()));
+        let (x, y) = (unit_label(&self.quantities.input), unit_label(&self.quantities.output));
+        let points = || curves.iter().flat_map(|curve| &curve.points);
+        Chart {
+            description: format!("Loops of {y} over {x}, with backbone and turning points"),
+            title: String::new(),
+            size: (860.0, 460.0),
+            x: Axis::linear(x, points().map(|point| point.0)),
+            y: Axis::linear(y, points().map(|point| point.1)),
+            curves,
+            labels: Vec::new(),
+            legend: legend(&[
+                (Colour::Measured, "measured"),
+                (Colour::Simulated, "backbone"),
+                (Colour::Error, "turning points"),
+            ]),
+        }
+        .svg()
+    }
+
+    /// Input and output where the input turns.
+    fn tips(&self, index: usize) -> Vec<Point> {
+        let record = &self.data.records()[index];
+        let tip = |&row: &usize| (record.inputs()[0][row], record.output()[row]);
+        self.turning[index].iter().map(tip).filter(|tip| tip.1.is_finite()).collect()
+    }
+
+    /// The input over time, or over the row where there is no time.
+    fn way(&self, index: usize) -> String {
+        let record = &self.data.records()[index];
+        let time = |row: usize| record.time().map_or((row + 1) as f64, |time| time[row]);
+        let x = &record.inputs()[0];
+        let way: Vec<Point> = (0..x.len()).map(|row| (time(row), x[row])).collect();
+        let turning = self.turning[index].iter().map(|&row| way[row]).collect();
+        let label = match (record.time(), &self.data.names().time) {
+            (Some(_), Some(name)) => unit_label(name),
+            (Some(_), None) => "time".into(),
+            (None, _) => "row".into(),
+        };
+        let input = unit_label(&self.quantities.input);
+        Chart {
+            description: format!("{input} over {label}, record {}", record.name()),
+            title: String::new(),
+            size: (860.0, 200.0),
+            x: Axis::linear(label, way.iter().map(|point| point.0)),
+            y: Axis::linear(input, x.iter().copied()),
+            curves: vec![
+                Curve { points: thin(&way, WAY_POINTS), colour: Colour::Input, width: 1.2 },
+                dots(turning),
+            ],
+            labels: Vec::new(),
+            legend: legend(&[(Colour::Input, "input"), (Colour::Error, "turning points")]),
+        }
+        .svg()
+    }
+}
+
+/// The tips that go beyond all before them, in the order of the input.
+fn backbone(tips: &[Point]) -> Vec<Point> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut kept: Vec<Point> = Vec::new();
+    for &tip in tips {
+        if tip.0 < low || tip.0 > high {
+            kept.push(tip);
+            low = low.min(tip.0);
+            high = high.max(tip.0);
+        }
+    }
+    kept.sort_by(|a, b| a.0.total_cmp(&b.0));
+    kept
+}
+
+/// Points as dots, evenly chosen of very many.
+fn dots(points: Vec<Point>) -> Curve {
+    let every = points.len().div_ceil(MOST_DOTS).max(1);
+    // A gap after each point makes dots of them.
+    let points = points.into_iter().step_by(every).flat_map(|point| [point, (f64::NAN, f64::NAN)]).collect();
+    Curve { points, colour: Colour::Error, width: 2.2 }
+}
+
+fn legend(entries: &[(Colour, &str)]) -> Vec<(Colour, String)> {
+    entries.iter().map(|(colour, name)| (*colour, name.to_string())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_backbone_takes_tips_beyond_all_before() {
+        let tips = [(1.0, 10.0), (-1.0, -10.0), (0.5, 4.0), (2.0, 15.0), (-1.0, -9.0), (-3.0, -20.0)];
+        assert_eq!(backbone(&tips), [(-3.0, -20.0), (-1.0, -10.0), (1.0, 10.0), (2.0, 15.0)]);
+    }
+}
