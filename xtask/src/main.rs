@@ -1,10 +1,12 @@
-//! Developer commands: `cargo xtask check | test | bench | cases | tidy`.
+//! Developer commands: `cargo xtask check | test | bench | cases | verdicts | tidy`.
 
 mod bench;
 mod cases;
 mod check;
+mod program;
 mod test;
 mod tidy;
+mod verdicts;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -25,6 +27,9 @@ Commands:
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
                  training errors, seconds. LIST, time limit and ARG are passed on to it; a case that takes longer
                  than its limit is given up; HYSID takes the place of the release build
+  verdicts DIR [--case-limit SECONDS] [--out FILE.md] [--program HYSID] [-- ARG..]
+                 `hysid diagnose` on every subfolder of DIR that has train.csv, as a table of verdicts; otherwise as
+                 `cases`
 ";
 
 /// A command line that cannot be obeyed; the exit status is 2.
@@ -59,7 +64,12 @@ fn main() -> ExitCode {
         ["test"] => test::run(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
-        ["cases", rest @ ..] => cases::Request::parse(rest).and_then(|request| cases::run(&request)),
+        ["cases", rest @ ..] => {
+            cases::Request::parse(rest, &cases::OPTIONS).and_then(|request| cases::run(&request))
+        }
+        ["verdicts", rest @ ..] => {
+            cases::Request::parse(rest, &verdicts::OPTIONS).and_then(|request| verdicts::run(&request))
+        }
         _ => {
             eprint!("{USAGE}");
             return ExitCode::from(2);

@@ -1,4 +1,4 @@
-//! `cargo xtask cases` with a stub in the place of `hysid`: a shell script that answers by the name of the case.
+//! `cargo xtask cases` and `verdicts` with a stub in the place of `hysid`: a shell script that answers by the name of the case.
 #![cfg(unix)]
 
 use std::fs;
@@ -10,10 +10,14 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
-/// `hysid compare CASE/train.csv --test CASE/test.csv ...`
+/// `hysid compare CASE/train.csv --test CASE/test.csv ...` and `hysid diagnose CASE/train.csv ...`
 const STUB: &str = r#"#!/bin/sh
 if [ "$1" = --version ]; then echo "hysid 1.2.3"; exit; fi
 echo "$@" >> "${0%/*}/asked"
+case "$1 $2" in
+diagnose*/fine/*) echo '{"properties": [{"name": "masing", "verdict": "no", "index": 0.4}], "doctor": [{"statement": "it drifts"}]}'; exit;;
+diagnose*) echo "error: train.csv, line 3: is no number" >&2; exit 1;;
+esac
 [ -f "$2" ] && [ -f "$4" ] || exit 1
 case "$2" in
 */fine/*) echo '[{"model": "pnn", "train": {"nrmse_std_percent": 1.0}, "test": {"nrmse_std_percent": 2.0}, "fit_seconds": 0.1},
@@ -58,8 +62,12 @@ impl Bench {
     }
 
     fn command(&self, arguments: &str) -> Command {
+        self.command_of("cases", arguments)
+    }
+
+    fn command_of(&self, xtask: &str, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-        command.current_dir(self.path()).arg("cases").args(arguments.split_whitespace());
+        command.current_dir(self.path()).arg(xtask).args(arguments.split_whitespace());
         command
     }
 
@@ -184,4 +192,26 @@ fn what_cannot_be_done_is_said_before_any_work() {
         assert_eq!((ran.status.code(), stdout(&ran)), (Some(status), String::new()), "{arguments}");
     }
     assert!(!bench.path().join("asked").exists());
+}
+
+#[test]
+fn verdicts_need_no_test_data() {
+    let bench = Bench::new(&["fine", "bad"]);
+    fs::remove_file(bench.path().join("data/fine/test.csv")).unwrap();
+    let ran = bench.command_of("verdicts", "data --program ./stub --out verdicts.md").output().unwrap();
+    assert_eq!(ran.status.code(), Some(0), "{}", stderr(&ran));
+    assert!(stderr(&ran).contains("2/2 fine: 1 of 1 properties told, "), "{}", stderr(&ran));
+    assert_eq!(bench.text("asked").lines().last(), Some("diagnose data/fine/train.csv --json --no-report"));
+    let tables = stdout(&ran);
+    for line in [
+        "| fine |  no 40 |",
+        "| bad  |  – (1) |",
+        "1. train.csv, line 3: is no number",
+        "- **fine**: it drifts",
+    ] {
+        assert!(tables.contains(line), "{line}: {tables}");
+    }
+    assert!(bench.text("verdicts.md").ends_with(&tables), "{tables}");
+    let refused = bench.command_of("verdicts", "data --models pnn").output().unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
 }

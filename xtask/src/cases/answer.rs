@@ -4,9 +4,9 @@
 use serde_json::Value;
 
 /// A case and what came of it: answers, or why there are none.
-pub struct Case {
+pub struct Case<T = Vec<Answer>> {
     pub name: String,
-    pub outcome: Result<Vec<Answer>, String>,
+    pub outcome: Result<T, String>,
 }
 
 /// What came of one model on one case.
@@ -33,6 +33,9 @@ pub fn parse(text: &str) -> Result<Vec<Answer>, String> {
     let value: Value =
         serde_json::from_str(text).map_err(|error| format!("the answer is not JSON: {error}"))?;
     let objects = value.as_array().ok_or("the answer is not a list")?;
+    if objects.is_empty() {
+        return Err("the answer is an empty list".into());
+    }
     objects.iter().map(answer).collect()
 }
 
@@ -77,6 +80,6 @@ mod tests {
         assert!(parse("a table").unwrap_err().starts_with("the answer is not JSON: "));
         assert_eq!(parse("{}").unwrap_err(), "the answer is not a list");
         assert_eq!(parse("[{}]").unwrap_err(), "the answer has an object without a model");
-        assert_eq!(parse("[]").unwrap(), []);
+        assert_eq!(parse("[]").unwrap_err(), "the answer is an empty list");
     }
 }

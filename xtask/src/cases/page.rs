@@ -1,12 +1,7 @@
 //! The tables as a page in Markdown, with where they come from.
 
-use std::process::Command;
-use std::time::{SystemTime, UNIX_EPOCH};
-
 use super::answer::Case;
-use super::request::Request;
 use super::table::{Measure, Reasons, table};
-use crate::workspace_root;
 
 /// The tables under their headings.
 const TABLES: [(&str, Measure); 3] = [
@@ -25,18 +20,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// The page of so many cases before the first is done. `version` is what the program says of itself.
-    pub fn new(request: &Request, version: String, cases: usize) -> Self {
-        let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-        // Of another program than the one built here the revision is unknown.
-        let revision = request.program.is_none().then(revision).flatten();
-        let revision = revision.map_or_else(String::new, |revision| format!(" ({revision})"));
-        let command: Vec<String> = request.typed.iter().map(|word| quoted(word)).collect();
-        let origin = format!(
-            "{}, {version}{revision}:\n\n```sh\ncargo xtask cases {}\n```\n",
-            date(seconds),
-            command.join(" ")
-        );
+    /// The page of so many cases before the first is done.
+    pub fn new(origin: String, cases: usize) -> Self {
         Self { cases: Vec::new(), asked: cases, origin }
     }
 
@@ -70,71 +55,17 @@ impl Page {
     }
 }
 
-/// The revision of the working copy, if git knows it.
-fn revision() -> Option<String> {
-    let git = Command::new("git")
-        .args(["describe", "--always", "--dirty"])
-        .current_dir(workspace_root())
-        .output()
-        .ok()
-        .filter(|git| git.status.success())?;
-    Some(String::from_utf8_lossy(&git.stdout).trim().to_owned())
-}
-
-/// A word as an argument of a shell command.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-+:@%,=".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
-/// The day (UTC) so many seconds after the beginning of 1970.
-fn date(seconds: u64) -> String {
-    let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
-    let (mut days, mut year) = (seconds / 86_400, 1970);
-    while days >= 365 + u64::from(leap(year)) {
-        days -= 365 + u64::from(leap(year));
-        year += 1;
-    }
-    let mut month = 1;
-    for length in [31, 28 + u64::from(leap(year)), 31, 30, 31, 30, 31, 31, 30, 31, 30] {
-        if days < length {
-            break;
-        }
-        days -= length;
-        month += 1;
-    }
-    format!("{year}-{month:02}-{:02}", days + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::answer::{Answer, Figures};
+    use super::super::{OPTIONS, Request, origin};
     use super::*;
-
-    /// Computed with `date -u -d @SECONDS +%F`.
-    #[test]
-    fn days_of_common_and_leap_years() {
-        for (seconds, day) in [
-            (0, "1970-01-01"),
-            (951_782_399, "2000-02-28"),
-            (951_782_400, "2000-02-29"),
-            (1_735_689_599, "2024-12-31"),
-            (1_735_689_600, "2025-01-01"),
-            (1_795_219_200, "2026-11-21"),
-        ] {
-            assert_eq!(date(seconds), day);
-        }
-    }
 
     #[test]
     fn the_page_tells_where_it_comes_from_and_how_far_it_got() {
         let typed = ["my data", "--models", "pnn,xpnn", "--program", "hysid"];
-        let request = Request::parse(&typed).unwrap();
-        let mut page = Page::new(&request, "hysid 9.8.7".into(), 2);
+        let request = Request::parse(&typed, &OPTIONS).unwrap();
+        let mut page = Page::new(origin("cases", &request, "hysid 9.8.7"), 2);
         let figures = Ok(Figures { test: Some(2.0), train: Some(1.0), seconds: Some(0.5) });
         let answer = |figures| Answer { model: "pnn".into(), figures };
         page.cases.push(Case { name: "a".into(), outcome: Ok(vec![answer(figures)]) });

@@ -1,4 +1,4 @@
-//! What is asked for on the command line of `cargo xtask cases`.
+//! What is asked for on the command lines of `cargo xtask cases` and `verdicts`.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -22,15 +22,15 @@ pub struct Request {
     pub case_limit: Option<Duration>,
     /// The program in the place of the one that is built.
     pub program: Option<PathBuf>,
-    /// Further arguments for `hysid compare`.
+    /// Further arguments for the program.
     pub passed_on: Vec<String>,
     /// The arguments as they were typed.
     pub typed: Vec<String>,
 }
 
 impl Request {
-    /// Reads the arguments behind `cases`.
-    pub fn parse(arguments: &[&str]) -> Result<Self> {
+    /// Reads the arguments behind the command, which has these options.
+    pub fn parse(arguments: &[&str], options: &[&str]) -> Result<Self> {
         let mut request =
             Self { typed: arguments.iter().map(ToString::to_string).collect(), ..Self::default() };
         let mut folder = None;
@@ -43,6 +43,9 @@ impl Request {
                     Some((option, value)) => (option, Some(value)),
                     None => (argument, rest.next()),
                 };
+                if !options.contains(&option) {
+                    return usage(format!("option `{option}` is unknown"));
+                }
                 request.set(option, value)?;
             } else if folder.replace(PathBuf::from(argument)).is_some() {
                 return usage(format!("one folder is enough: what is `{argument}`?"));
@@ -55,9 +58,6 @@ impl Request {
     }
 
     fn set(&mut self, option: &str, value: Option<&str>) -> Result<()> {
-        if !["--models", "--out", "--time-limit", "--case-limit", "--program"].contains(&option) {
-            return usage(format!("option `{option}` is unknown"));
-        }
         let Some(value) = value.filter(|value| !value.is_empty()) else {
             return usage(format!("{option} needs a value"));
         };
@@ -85,13 +85,14 @@ fn usage<T>(what: String) -> Result<T> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::OPTIONS;
     use super::*;
 
     #[test]
     fn options_stand_anywhere_and_the_rest_is_passed_on() {
         let typed = "--models=pnn,xpnn data --time-limit 5 --case-limit 1.5 --out a.md -- --seed 2";
         let typed: Vec<&str> = typed.split(' ').collect();
-        let request = Request::parse(&typed).unwrap();
+        let request = Request::parse(&typed, &OPTIONS).unwrap();
         let expected = Request {
             folder: "data".into(),
             models: Some("pnn,xpnn".into()),
@@ -108,7 +109,7 @@ mod tests {
     #[test]
     fn what_cannot_be_understood_is_said() {
         let refusal = |typed: &[&str]| {
-            let error = Request::parse(typed).unwrap_err();
+            let error = Request::parse(typed, &OPTIONS).unwrap_err();
             assert!(error.is::<Usage>());
             error.to_string().replace(" (`cargo xtask` alone lists the commands)", "")
         };
@@ -116,6 +117,8 @@ mod tests {
         assert_eq!(refusal(&["a", "b"]), "one folder is enough: what is `b`?");
         assert_eq!(refusal(&["a", "--seed", "2"]), "option `--seed` is unknown");
         assert_eq!(refusal(&["a", "--out"]), "--out needs a value");
+        let other = Request::parse(&["a", "--models", "pnn"], &["--out"]).unwrap_err().to_string();
+        assert!(other.starts_with("option `--models` is unknown"), "{other}");
         for (option, value) in [("--time-limit", "0"), ("--time-limit", "soon"), ("--case-limit", "inf")] {
             let expected = format!("{option} needs a number of seconds above 0, not `{value}`");
             assert_eq!(refusal(&["a", option, value]), expected);

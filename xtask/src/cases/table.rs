@@ -14,7 +14,7 @@ pub struct Reasons(Vec<String>);
 
 impl Reasons {
     /// The number of a reason, counted from 1.
-    fn number(&mut self, reason: &str) -> usize {
+    pub fn number(&mut self, reason: &str) -> usize {
         let known = self.0.iter().position(|other| other == reason);
         1 + known.unwrap_or_else(|| {
             self.0.push(reason.to_owned());
@@ -122,12 +122,13 @@ fn shown(value: f64) -> String {
     }
 }
 
-fn row(name: &str, cells: &[impl AsRef<str>]) -> Vec<String> {
+/// A row of a table from its name and its cells.
+pub fn row(name: &str, cells: &[impl AsRef<str>]) -> Vec<String> {
     iter::once(name).chain(cells.iter().map(AsRef::as_ref)).map(|cell| cell.replace('|', "\\|")).collect()
 }
 
 /// Rows as a Markdown table, the first as its heading; columns of equal width, numbers to the right.
-fn aligned(rows: &[Vec<String>]) -> String {
+pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(|column| width(column).max(3)).collect();

@@ -1,15 +1,17 @@
-//! Running `hysid compare` on one case, within its time.
+//! The program `hysid`: building it, and asking it a question that is answered within its time.
 
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 
-use super::answer::{self, Answer};
-use super::interrupted;
+use crate::cargo;
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// How often to look whether the program has ended.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -20,6 +22,25 @@ const INTERRUPTED_STATUS: i32 = 130;
 /// The longest reason that is told in full.
 const LONGEST_REASON: usize = 200;
 
+/// From now on Ctrl-C ends the question that is asked, and not us.
+pub fn listen() -> Result<()> {
+    ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::SeqCst)).context("cannot listen for Ctrl-C")
+}
+
+/// True once Ctrl-C was pressed.
+fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::SeqCst)
+}
+
+/// The release build of the program.
+pub fn build() -> Result<PathBuf> {
+    cargo(&["build", "--release", "--locked", "--package", "hysid-cli"], &[])?;
+    // We lie in a folder of cargo's target folder ourselves, wherever that was put.
+    let xtask = std::env::current_exe().context("the path of xtask is unknown")?;
+    let target = xtask.parent().and_then(Path::parent).context("xtask lies in no target folder")?;
+    Ok(target.join("release").join(format!("hysid{}", std::env::consts::EXE_SUFFIX)))
+}
+
 /// What the program says of its version.
 pub fn version(program: &Path) -> Result<String> {
     let output = Command::new(program).arg("--version").stdin(Stdio::null()).output();
@@ -27,8 +48,11 @@ pub fn version(program: &Path) -> Result<String> {
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
+/// How the program's answers are read.
+pub type Reading<T> = fn(&str) -> Result<T, String>;
+
 /// Runs the command and reads its answer; gives the reason if there is none, and `None` if Ctrl-C came first.
-pub fn run(command: &mut Command, limit: Option<Duration>) -> Option<Result<Vec<Answer>, String>> {
+pub fn ask<T>(command: &mut Command, read: Reading<T>, limit: Option<Duration>) -> Option<Result<T, String>> {
     let began = Instant::now();
     let started = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut program = match started {
@@ -56,7 +80,7 @@ pub fn run(command: &mut Command, limit: Option<Duration>) -> Option<Result<Vec<
         return None;
     }
     let [stdout, stderr] = [stdout, stderr].map(|text| text.join().unwrap_or_default());
-    Some(outcome(&stdout, &stderr, status).map_err(|reason| shortened(&reason)))
+    Some(outcome(read(&stdout), &stderr, status).map_err(|reason| shortened(&reason)))
 }
 
 /// Reads all there is in another thread.
@@ -71,19 +95,16 @@ fn gather(stream: Option<impl Read + Send + 'static>) -> JoinHandle<String> {
     })
 }
 
-/// The answer, if there is one, whatever the exit status.
-fn outcome(stdout: &str, stderr: &str, status: ExitStatus) -> Result<Vec<Answer>, String> {
-    match answer::parse(stdout) {
-        Ok(answers) if !answers.is_empty() => Ok(answers),
-        parsed if status.success() => {
-            Err(parsed.err().unwrap_or_else(|| "the answer is an empty list".into()))
+/// The answer, if there is one, whatever the exit status; otherwise what the program said last.
+fn outcome<T>(answer: Result<T, String>, stderr: &str, status: ExitStatus) -> Result<T, String> {
+    answer.map_err(|reason| {
+        if status.success() {
+            return reason;
         }
-        _ => {
-            let last = stderr.lines().map(str::trim).rfind(|line| !line.is_empty());
-            let last = last.map(|line| line.strip_prefix("error: ").unwrap_or(line));
-            Err(last.map_or_else(|| status.to_string(), str::to_owned))
-        }
-    }
+        let last = stderr.lines().map(str::trim).rfind(|line| !line.is_empty());
+        let last = last.map(|line| line.strip_prefix("error: ").unwrap_or(line));
+        last.map_or_else(|| status.to_string(), str::to_owned)
+    })
 }
 
 fn shortened(reason: &str) -> String {
