@@ -31,6 +31,8 @@ pub struct Overview<'a> {
     data: &'a Dataset,
     quantities: &'a Quantities,
     turning: Vec<Vec<usize>>,
+    /// Reversals below this are none.
+    smallest: f64,
 }
 
 impl<'a> Overview<'a> {
@@ -44,12 +46,12 @@ impl<'a> Overview<'a> {
         let (low, high) = data.input_range(0);
         let smallest = (smallest_reversal * (high - low)).max(JITTER * diagnosis.input_noise);
         let of_record = |record: &Record| turning_points(&record.inputs()[0], smallest);
-        Self { data, quantities, turning: data.records().iter().map(of_record).collect() }
+        Self { data, quantities, turning: data.records().iter().map(of_record).collect(), smallest }
     }
 
     /// Loops and ways.
     pub fn section(&self) -> String {
-        let mut content = figure(&self.loops(), true);
+        let mut content = format!("<div class=\"charts\">\n{}</div>\n", figure(&self.loops(), false));
         let records = self.data.records();
         let mut longest: Vec<usize> = (0..records.len()).collect();
         longest.sort_by_key(|&record| std::cmp::Reverse(records[record].len()));
@@ -85,7 +87,7 @@ impl<'a> Overview<'a> {
             let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
             let points = path.iter().map(point).collect();
             curves.push(Curve { points, colour: Colour::Measured, width: 1.3 });
-            let points = backbone(&self.tips(index));
+            let points = backbone(&self.tips(index), self.smallest);
             backbones.push(Curve { points, colour: Colour::Simulated, width: 2.0 });
         }
         curves.extend(backbones.into_iter().filter(|curve| curve.points.len() > 2));
@@ -95,7 +97,7 @@ impl<'a> Overview<'a> {
         Chart {
             description: format!("Loops of {y} over {x}, with backbone and turning points"),
             title: String::new(),
-            size: (860.0, 460.0),
+            size: (560.0, 400.0),
             x: Axis::linear(x, points().map(|point| point.0)),
             y: Axis::linear(y, points().map(|point| point.1)),
             curves,
@@ -146,12 +148,12 @@ impl<'a> Overview<'a> {
     }
 }
 
-/// The tips that go beyond all before them, in the order of the input.
-fn backbone(tips: &[Point]) -> Vec<Point> {
+/// The tips that go beyond all before them by this much, in the order of the input.
+fn backbone(tips: &[Point], by: f64) -> Vec<Point> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut kept: Vec<Point> = Vec::new();
     for &tip in tips {
-        if tip.0 < low || tip.0 > high {
+        if tip.0 < low - by || tip.0 > high + by {
             kept.push(tip);
             low = low.min(tip.0);
             high = high.max(tip.0);
@@ -179,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_backbone_takes_tips_beyond_all_before() {
-        let tips = [(1.0, 10.0), (-1.0, -10.0), (0.5, 4.0), (2.0, 15.0), (-1.0, -9.0), (-3.0, -20.0)];
-        assert_eq!(backbone(&tips), [(-3.0, -20.0), (-1.0, -10.0), (1.0, 10.0), (2.0, 15.0)]);
+        let tips = [(1.0, 10.0), (-1.0, -10.0), (0.5, 4.0), (2.0, 15.0), (-1.1, -9.0), (-3.0, -20.0)];
+        assert_eq!(backbone(&tips, 0.2), [(-3.0, -20.0), (-1.0, -10.0), (1.0, 10.0), (2.0, 15.0)]);
     }
 }
