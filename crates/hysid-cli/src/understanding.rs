@@ -65,7 +65,7 @@ pub fn print(lines: &[(String, String)]) {
 }
 
 /// Some names, and how many more there are.
-fn listed(names: &[&str]) -> String {
+pub fn listed(names: &[&str]) -> String {
     const SHOWN: usize = 6;
     match names.len().saturating_sub(SHOWN) {
         0 => names.join(", "),

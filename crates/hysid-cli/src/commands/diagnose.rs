@@ -3,13 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use hysid::diagnosis::DiagnosisOptions;
 use hysid::summary::Summary;
 
 use crate::Outcome;
-use crate::arguments::{Diagnose, RateOption};
+use crate::arguments::{ColumnOptions, Diagnose, RateOption};
 use crate::columns::Roles;
+use crate::commands::model_from_bytes;
 use crate::data::Data;
-use crate::diagnosis::DataDiagnosis;
+use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
 use crate::identification::check_outputs;
 use crate::messages::{Usage, note, results, warning};
 use crate::table::{Table, is_json};
@@ -25,9 +27,17 @@ struct Told {
 pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     let page = (!arguments.no_report).then(|| page_path(arguments));
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    let mut contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
     check_outputs(&page.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &inputs)?;
-    let told = of_data(arguments, &contents)?;
+    let model = contents.iter().position(|content| is_json(content));
+    let told = match (model, contents.len()) {
+        (Some(_), 1) => of_model(arguments, contents.remove(0))?,
+        (Some(place), _) => {
+            let model = inputs[place].display();
+            return Err(Usage(format!("{model} is a model: diagnose it alone, without further files")).into());
+        }
+        (None, _) => of_data(arguments, &contents)?,
+    };
     if let (Some(page), Some(text)) = (&page, &told.page) {
         files::write(page, text.as_bytes())?;
     }
@@ -43,8 +53,7 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
     let tables: Vec<Table> = tables.collect::<Result<_>>()?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let data = Data::new(tables, roles, true)?;
-    let summary = Summary::of(&data.set);
-    let understood = understanding::of_data(&data, &summary);
+    let understood = understanding::of_data(&data, &Summary::of(&data.set));
     understanding::print(&understood);
     if let [first, further @ ..] = data.roles.inputs.as_slice()
         && !further.is_empty()
@@ -57,11 +66,38 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
         ));
     }
     if matches!(arguments.columns.rate, RateOption::Method(_)) {
-        warning("diagnose has no use for --rate: speeds are taken from the turning points");
+        warning("diagnose has no use for --rate: speeds are those between turning points");
     }
     let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood)?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
     Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
+}
+
+fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
+    let path = &arguments.files[0];
+    let model = model_from_bytes(path, content)?;
+    let diagnosed = DiagnosedModel::of(path, &model)?;
+    understanding::print(&diagnosed.understood());
+    for option in useless_for_models(&arguments.columns, &arguments.options()) {
+        warning(format_args!("the diagnosis of a model has no use for {option}"));
+    }
+    let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
+    Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
+}
+
+/// Options that were asked for and that concern data only.
+fn useless_for_models(columns: &ColumnOptions, options: &DiagnosisOptions) -> Vec<&'static str> {
+    let defaults = DiagnosisOptions::default();
+    let asked = [
+        ("--record", columns.record.is_some()),
+        ("--time", columns.time.is_some()),
+        ("--input", !columns.input.is_empty()),
+        ("--output", columns.output.is_some()),
+        ("--rate", columns.rate != RateOption::Auto),
+        ("--smallest-reversal", options.smallest_reversal != defaults.smallest_reversal),
+        ("--smoothing", options.smoothing != defaults.smoothing),
+    ];
+    asked.into_iter().filter(|(_, asked)| *asked).map(|(option, _)| option).collect()
 }
 
 /// The page: as asked, or the first file's name in the present folder.

@@ -2,7 +2,7 @@
 
 use hysid::diagnosis::{Finding, Picture, Verdict};
 
-use super::findings::{meaning, place, shown};
+use super::findings::{meaning, shown};
 use super::quantities::Quantities;
 use crate::page::{count, figure};
 use crate::plot::thin::thin;
@@ -11,6 +11,10 @@ use crate::report::unit_label;
 
 /// Points of a curve in a picture.
 const POINTS: usize = 800;
+
+/// What the numbers of a card mean.
+pub const EXPLANATION: &str = "The index measures how far what should coincide does not, as a share; beyond the threshold the verdict turns. \
+     A threshold is the difference that matters in practice, or what noise may give by chance in that many comparisons, whichever is larger.";
 
 /// All verdicts, each with what was found, as links to the cards.
 pub fn verdicts(findings: &[Finding]) -> String {
@@ -26,20 +30,19 @@ pub fn verdicts(findings: &[Finding]) -> String {
     format!("<ul class=\"verdicts\">\n{}</ul>\n", findings.iter().map(item).collect::<String>())
 }
 
-/// A card for each property.
-pub fn cards(findings: &[Finding], quantities: &Quantities, several_records: bool) -> String {
-    let cards: String = findings.iter().map(|finding| card(finding, quantities, several_records)).collect();
+/// A card for each property; `place` tells where it is seen, if that means anything to the reader.
+pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Finding) -> String) -> String {
+    let cards: String = findings.iter().map(|finding| card(finding, quantities, &place(finding))).collect();
     format!("<div class=\"cards\">\n{cards}</div>\n")
 }
 
-fn card(finding: &Finding, quantities: &Quantities, several_records: bool) -> String {
+fn card(finding: &Finding, quantities: &Quantities, place: &str) -> String {
     let picture = finding.picture.as_ref().filter(|picture| is_drawn(picture));
     let drawing =
         picture.map_or_else(String::new, |picture| figure(&chart(finding, picture, quantities), false));
     let experiment = finding.experiment.as_ref().map_or_else(String::new, |experiment| {
         format!("<p><strong>To tell:</strong> {}</p>\n", escape(&sentence(experiment)))
     });
-    let place = place(&finding.evidence, several_records);
     let place = if place.is_empty() { String::new() } else { format!(" Seen in {place}.") };
     format!(
         "<article class=\"card\" id=\"{}\">\n<h3>{} {}</h3>\n<p class=\"note\">Yes means: {}.</p>\n{drawing}<p>{}</p>\n{experiment}\

@@ -1,0 +1,108 @@
+//! What is told of measured data.
+
+use anyhow::Result;
+use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
+use hysid::warning::Significant;
+use serde::Serialize;
+
+use super::cards::{EXPLANATION, cards, verdicts};
+use super::overview::Overview;
+use super::quantities::Quantities;
+use super::{findings, loops, paragraph};
+use crate::data::Data;
+use crate::page::{self, count, definitions, note, section};
+
+/// A diagnosis of measured data, and what is told with it.
+pub struct DataDiagnosis<'a> {
+    data: &'a Data,
+    diagnosis: Diagnosis,
+    smallest_reversal: f64,
+    quantities: Quantities,
+    understood: &'a [(String, String)],
+}
+
+impl<'a> DataDiagnosis<'a> {
+    /// Diagnoses data. `understood` is what was understood of them.
+    pub fn of(
+        data: &'a Data,
+        options: &DiagnosisOptions,
+        understood: &'a [(String, String)],
+    ) -> Result<Self> {
+        let diagnosis = Diagnosis::of(&data.set, options).map_err(|error| data.explain(error))?;
+        let quantities = Quantities::of(data.set.names());
+        let smallest_reversal = options.smallest_reversal;
+        Ok(Self { data, diagnosis, smallest_reversal, quantities, understood })
+    }
+
+    /// All of it within 80 columns.
+    pub fn text(&self) -> String {
+        let parts = [
+            findings::text(&self.diagnosis.properties),
+            loops::text(&self.diagnosis.cycles, &self.quantities) + &paragraph(&self.noise()),
+        ];
+        parts.join("\n")
+    }
+
+    /// How often the input turns and how much noise was found, in words.
+    fn noise(&self) -> String {
+        let names = self.data.set.names();
+        let of = |column: &str, deviation: f64, (low, high): (f64, f64)| {
+            let unit = hysid::unit::suffix(hysid::unit::of_column(column).as_deref());
+            let percent = 100.0 * deviation / (high - low);
+            format!(
+                "{column} {:.2}{unit} ({} % of its range)",
+                Significant(deviation),
+                findings::shown(percent)
+            )
+        };
+        format!(
+            "{}; standard deviation of the noise: {}, {}",
+            count(self.diagnosis.turning_points, "turning point"),
+            of(&names.inputs[0], self.diagnosis.input_noise, self.data.set.input_range(0)),
+            of(&names.output, self.diagnosis.output_noise, self.data.set.output_range()),
+        )
+    }
+
+    /// All of it as one JSON object.
+    pub fn json(&self) -> Result<String> {
+        let printed = Printed {
+            input: &self.quantities.input,
+            output: &self.quantities.output,
+            samples: self.data.set.scored(),
+            records: self.data.set.records().len(),
+            diagnosis: &self.diagnosis,
+        };
+        Ok(serde_json::to_string_pretty(&printed)? + "\n")
+    }
+
+    /// The page: verdicts at a glance, the data, each property with its picture, and the loops in numbers.
+    pub fn page(&self) -> String {
+        let Self { data, diagnosis, quantities, understood, .. } = self;
+        let several = data.set.records().len() > 1;
+        let found = &diagnosis.properties;
+        let overview = Overview::new(&data.set, diagnosis, quantities, self.smallest_reversal);
+        let cards = cards(found, quantities, |finding| findings::place(&finding.evidence, several));
+        let content = [
+            section("Verdicts", &verdicts(found)),
+            overview.section(),
+            section("Property by property", &(cards + &note(EXPLANATION))),
+            loops::cycles_section(&diagnosis.cycles, quantities, several),
+            section(
+                "What was understood of the data",
+                &(definitions(understood) + &page::paragraph(&self.noise())),
+            ),
+        ];
+        page::whole(&format!("Diagnosis: {}", data.source.tables[0].file), &content.concat())
+    }
+}
+
+/// The object that `--json` prints of data.
+#[derive(Serialize)]
+struct Printed<'a> {
+    input: &'a str,
+    output: &'a str,
+    samples: usize,
+    records: usize,
+    #[serde(flatten)]
+    diagnosis: &'a Diagnosis,
+}
