@@ -92,12 +92,10 @@ impl Source {
         };
         match (&error.problem, column) {
             (DataProblem::TooFewRows { found: 1, needed }, _) => {
-                anyhow!("{files}: only 1 row has an output: at least {needed} are needed to identify a model")
+                anyhow!("{files}: only 1 row has an output: at least {needed} are needed")
             }
             (DataProblem::TooFewRows { found, needed }, _) => {
-                anyhow!(
-                    "{files}: only {found} rows have an output: at least {needed} are needed to identify a model"
-                )
+                anyhow!("{files}: only {found} rows have an output: at least {needed} are needed")
             }
             (
                 DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,

@@ -188,17 +188,17 @@ impl<'a> DiagnosedModel<'a> {
     }
 
     fn inside_section(&self) -> String {
-        let mut table = self.inside();
+        let table = self.inside();
         if table.len() == 1 {
             return String::new();
         }
-        table[0].push("what the value is".into());
-        for (row, statement) in table[1..].iter_mut().zip(self.inside_statements()) {
-            row.push(statement.unwrap_or_default());
-        }
+        let properties = self.inside_properties().map(|property| property.name().to_string());
+        let statements = properties.zip(self.inside_statements());
+        let statements: Vec<(String, String)> =
+            statements.filter_map(|(property, statement)| Some((property, sentence(&statement?)))).collect();
         let words = "Equations decide some properties whatever the parameters; the weights of a network tell more. An ! marks where \
                      probing says otherwise.";
-        section("What equations and weights say", &(rows(&table) + &note(words)))
+        section("What equations and weights say", &(rows(&table) + &definitions(&statements) + &note(words)))
     }
 
     fn neurons_section(&self) -> String {
