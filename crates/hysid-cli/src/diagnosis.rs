@@ -1,6 +1,7 @@
 //! What `hysid diagnose` tells: text for a terminal, one JSON object, and a page with pictures.
 
 mod cards;
+mod counsel;
 mod data;
 mod findings;
 mod loops;

@@ -107,6 +107,26 @@ fn loops_of_a_plastic_stop_have_the_numbers_of_their_geometry() {
     assert_eq!(energies.split_whitespace().skip(3).collect::<Vec<_>>(), ["8", "8", "8"]);
 }
 
+#[test]
+fn the_doctor_speaks_and_the_advice_can_be_followed() {
+    let bench = Workbench::new();
+    succeeds(&bench, "generate reinforced-concrete-joint -o joint.csv");
+    let text = bench.text("joint.csv").replacen("displacement_mm", "the way, mm", 1);
+    bench.put("a joint.csv", text.replacen("the way, mm", "\"the way, mm\"", 1));
+    let ran = bench.shell("hysid diagnose 'a joint.csv' --input 'the way, mm' --no-report");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.contains("\ndata doctor"), "{}", ran.stdout);
+    assert!(
+        ran.stdout.contains("\nadvice\n    The simplest model that holds what was found is gpnn"),
+        "{}",
+        ran.stdout
+    );
+    let next = ran.stdout.lines().find(|line| line.starts_with("  hysid fit ")).unwrap();
+    assert_eq!(next, "  hysid fit 'a joint.csv' --input 'the way, mm' --model gpnn");
+    let fitted = bench.shell(&format!("{next} --starts 1 --epochs 1 --no-report"));
+    assert_eq!(fitted.status, Some(0), "{}", fitted.stderr);
+}
+
 /// The promised fields of each property.
 fn check_properties(diagnosis: &Value) {
     let properties = diagnosis["properties"].as_array().unwrap();
@@ -140,6 +160,17 @@ fn json_has_the_promised_shape_for_data_and_models() {
     check_properties(&of_data);
     assert_eq!((&of_data["input"], &of_data["output"]), (&"H_A_per_m".into(), &"B_T".into()));
     assert!(of_data["cycles"].is_array() && of_data["turning_points"].is_u64());
+    for complaint in of_data["doctor"].as_array().unwrap() {
+        for words in ["kind", "severity", "statement"] {
+            assert!(!complaint[words].as_str().unwrap().is_empty(), "{words}: {complaint}");
+        }
+        assert!(complaint["evidence"].is_array());
+    }
+    let advice = &of_data["advice"];
+    assert!(advice["model"].is_string() && !advice["statement"][0].as_str().unwrap().is_empty(), "{advice}");
+    for need in ["needs_rate", "needs_deterioration", "needs_asymmetry"] {
+        assert!(VERDICTS.contains(&advice[need].as_str().unwrap()), "{need}");
+    }
 
     succeeds(&bench, "fit sheet.csv -o sheet.json --model preisach --no-report");
     let of_model = json(&bench, "diagnose sheet.json --json --no-report");

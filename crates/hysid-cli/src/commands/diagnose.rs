@@ -68,9 +68,29 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
     if matches!(arguments.columns.rate, RateOption::Method(_)) {
         warning("diagnose has no use for --rate: speeds are those between turning points");
     }
-    let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood)?;
+    let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
     Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })
+}
+
+/// The command that fits a model to the same data.
+fn fit_command(arguments: &Diagnose) -> String {
+    let columns = &arguments.columns;
+    let rate = match &columns.rate {
+        RateOption::Column(name) => Some(name),
+        _ => None,
+    };
+    let named = [("--record", &columns.record), ("--time", &columns.time), ("--output", &columns.output)];
+    let named = named.into_iter().filter_map(|(option, name)| Some((option, name.as_ref()?)));
+    let named = named.chain(columns.input.iter().map(|name| ("--input", name)));
+    let mut command = String::from("hysid fit");
+    for file in &arguments.files {
+        command += &format!(" {}", files::shown(file));
+    }
+    for (option, name) in named.chain(rate.map(|name| ("--rate", name))) {
+        command += &format!(" {option} {}", files::shown(Path::new(name)));
+    }
+    command
 }
 
 fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {

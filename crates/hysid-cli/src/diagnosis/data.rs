@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::cards::{EXPLANATION, cards, verdicts};
 use super::overview::Overview;
 use super::quantities::Quantities;
-use super::{findings, loops, paragraph};
+use super::{counsel, findings, loops, paragraph};
 use crate::data::Data;
 use crate::page::{self, count, definitions, note, section};
 
@@ -19,19 +19,21 @@ pub struct DataDiagnosis<'a> {
     smallest_reversal: f64,
     quantities: Quantities,
     understood: &'a [(String, String)],
+    fit: String,
 }
 
 impl<'a> DataDiagnosis<'a> {
-    /// Diagnoses data. `understood` is what was understood of them.
+    /// Diagnoses data. `understood` is what was understood of them, `fit` the command that fits a model to them.
     pub fn of(
         data: &'a Data,
         options: &DiagnosisOptions,
         understood: &'a [(String, String)],
+        fit: String,
     ) -> Result<Self> {
         let diagnosis = Diagnosis::of(&data.set, options).map_err(|error| data.explain(error))?;
         let quantities = Quantities::of(data.set.names());
         let smallest_reversal = options.smallest_reversal;
-        Ok(Self { data, diagnosis, smallest_reversal, quantities, understood })
+        Ok(Self { data, diagnosis, smallest_reversal, quantities, understood, fit })
     }
 
     /// All of it within 80 columns.
@@ -39,6 +41,8 @@ impl<'a> DataDiagnosis<'a> {
         let parts = [
             findings::text(&self.diagnosis.properties),
             loops::text(&self.diagnosis.cycles, &self.quantities) + &paragraph(&self.noise()),
+            counsel::doctor_text(&self.diagnosis.doctor),
+            counsel::advice_text(&self.diagnosis.advice, &self.fit),
         ];
         parts.join("\n")
     }
@@ -83,7 +87,9 @@ impl<'a> DataDiagnosis<'a> {
         let overview = Overview::new(&data.set, diagnosis, quantities, self.smallest_reversal);
         let cards = cards(found, quantities, |finding| findings::place(&finding.evidence, several));
         let content = [
+            counsel::verdict(&diagnosis.advice),
             section("Verdicts", &verdicts(found)),
+            counsel::doctor_section(&diagnosis.doctor),
             overview.section(),
             section("Property by property", &(cards + &note(EXPLANATION))),
             loops::cycles_section(&diagnosis.cycles, quantities, several),

@@ -1,0 +1,87 @@
+//! What the data doctor complains of, and which model is advised.
+
+use hysid::diagnosis::{Advice, Complaint, Severity, Verdict};
+
+use super::cards::sentence;
+use crate::lines::indented;
+use crate::page::{self, section};
+use crate::plot::escape;
+
+/// How far words stand in under their heading.
+const INDENT: usize = 4;
+
+/// The complaints under a heading; none is told too.
+pub fn doctor_text(complaints: &[Complaint]) -> String {
+    let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
+    match complaints.len() {
+        0 => "data doctor: nothing to complain of\n".into(),
+        _ => format!("data doctor\n{told}"),
+    }
+}
+
+/// A complaint with how much it matters and whom it concerns.
+fn labelled(complaint: &Complaint) -> String {
+    format!("{}: {}", severity(complaint), complaint.statement)
+}
+
+fn severity(complaint: &Complaint) -> &'static str {
+    match complaint.severity {
+        Severity::Warning => "warning",
+        Severity::Note => "note",
+    }
+}
+
+/// The advice, and what to type to follow it: `fit` is the command that fits the default model.
+pub fn advice_text(advice: &Advice, fit: &str) -> String {
+    let said: String = advice.statement.iter().map(|line| indented(&sentence(line), INDENT)).collect();
+    let needs = indented(&needs(advice), INDENT);
+    let next =
+        advice.model.map_or_else(String::new, |model| format!("\nnext:\n  {fit} --model {}\n", model.name()));
+    format!("advice\n{said}{needs}{next}")
+}
+
+/// What the model must be able to do, in a line.
+fn needs(advice: &Advice) -> String {
+    let needs = [
+        ("rate", advice.needs_rate),
+        ("deterioration", advice.needs_deterioration),
+        ("asymmetry", advice.needs_asymmetry),
+        ("memory of time", advice.needs_memory_of_time),
+    ];
+    let of = |wanted: Verdict| -> Option<String> {
+        let names: Vec<&str> =
+            needs.iter().filter(|(_, verdict)| *verdict == wanted).map(|(name, _)| *name).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let parts = [
+        of(Verdict::Yes).map(|names| format!("needed: {names}")),
+        of(Verdict::No).map(|names| format!("not needed: {names}")),
+        of(Verdict::NotTestable).map(|names| format!("not known: {names}")),
+    ];
+    sentence(&parts.into_iter().flatten().collect::<Vec<String>>().join("; "))
+}
+
+/// The sentence that a reader of the page should take away.
+pub fn verdict(advice: &Advice) -> String {
+    let mut said = advice.statement.iter().map(|line| sentence(line));
+    let first = said.next().unwrap_or_default();
+    let rest: Vec<String> = std::iter::once(needs(advice)).chain(said).collect();
+    page::verdict(&first) + &page::note(&rest.join(" "))
+}
+
+/// The complaints on a page.
+pub fn doctor_section(complaints: &[Complaint]) -> String {
+    let item = |complaint: &Complaint| {
+        let class = match complaint.severity {
+            Severity::Warning => " class=\"warnings\"",
+            Severity::Note => "",
+        };
+        format!("<li{class}>{}</li>\n", escape(&sentence(&labelled(complaint))))
+    };
+    let items: String = complaints.iter().map(item).collect();
+    let content = match complaints.len() {
+        0 => "<p>Nothing to complain of.</p>\n".to_string(),
+        _ => format!("<ul>\n{items}</ul>\n"),
+    };
+    section("What the data doctor says", &content)
+}
