@@ -1,6 +1,6 @@
 //! Findings on a page: the list of verdicts, and a card with its picture for each property.
 
-use hysid::diagnosis::{Finding, Picture, Verdict};
+use hysid::diagnosis::{Finding, Picture, Property, Verdict};
 
 use super::findings::{meaning, shown};
 use super::quantities::Quantities;
@@ -101,9 +101,12 @@ fn is_drawn(picture: &Picture) -> bool {
 }
 
 fn chart(finding: &Finding, picture: &Picture, quantities: &Quantities) -> String {
-    let label = |label: &str, column: &str| match label {
-        "" => unit_label(column),
-        label => label.to_string(),
+    let label = |label: &str, column: &str| match (label, finding.property) {
+        ("", _) => unit_label(column),
+        (energy, Property::Deterioration) if energy == picture.y_label => {
+            unit_label(&quantities.as_energy(energy))
+        }
+        (label, _) => label.to_string(),
     };
     let (x, y) = (label(&picture.x_label, &quantities.input), label(&picture.y_label, &quantities.output));
     let (mut curves, mut legend) = (Vec::new(), Vec::new());
