@@ -8,7 +8,7 @@ pub struct Diagnosis {
     pub verdicts: Vec<Verdict>,
     /// What the data doctor complains of.
     pub complaints: Vec<String>,
-    /// Which model can hold what was found.
+    /// Which model can hold what was found; none or one.
     pub advice: Vec<String>,
 }
 
@@ -29,7 +29,8 @@ pub fn parse(text: &str) -> Result<Diagnosis, String> {
         return Err("the answer has no properties".into());
     }
     let complaints = list(&value["doctor"]).iter().filter_map(|complaint| text_of(&complaint["statement"]));
-    let advice = list(&value["advice"]["statement"]).iter().filter_map(text_of);
+    // What follows the first are assumptions, which the table shows.
+    let advice = list(&value["advice"]["statement"]).iter().take(1).filter_map(text_of);
     Ok(Diagnosis { verdicts, complaints: complaints.collect(), advice: advice.collect() })
 }
 
@@ -58,7 +59,7 @@ mod tests {
         let text = r#"{"later": 1, "properties": [
             {"name": "masing", "verdict": "no", "index": 0.4, "threshold": 0.05},
             {"name": "congruency", "verdict": "not testable", "index": null}],
-            "doctor": [{"kind": "drift", "statement": "the output drifts"}], "advice": {"statement": ["take pnn"]}}"#;
+            "doctor": [{"kind": "drift", "statement": "the output drifts"}], "advice": {"statement": ["take pnn", "masing taken as holding"]}}"#;
         let verdict = |property: &str, verdict: &str, index| Verdict {
             property: property.into(),
             verdict: verdict.into(),
