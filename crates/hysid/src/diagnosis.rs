@@ -286,7 +286,7 @@ impl Diagnosis {
         let starts = data.records().len();
         Ok(Self {
             doctor: doctor::examine(&survey, &cycles, &properties),
-            advice: advice::advise(&properties),
+            advice: advice::advise(&properties, delay.as_ref()),
             properties,
             delay,
             output_noise: survey.output_noise,

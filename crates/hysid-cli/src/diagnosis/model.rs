@@ -247,14 +247,18 @@ impl<'a> DiagnosedModel<'a> {
         let unit = unit::suffix(unit::of_column(&self.quantities.input).as_deref());
         let speed = if widths.dynamic.is_empty() { "at any speed" } else { "as the speed goes to 0" };
         let at_speed = if widths.dynamic.is_empty() { "" } else { "; P is by how much it is wider at speed" };
-        let width = Significant(widths.static_width);
-        format!("width of the loop over the whole range, {speed}: K = {width:.4}{unit}{at_speed}")
+        let width = match widths.static_width {
+            Some(width) => format!("K = {:.4}{unit}", Significant(width)),
+            None => "no K, because a branch does not pass the middle of its height".into(),
+        };
+        format!("width of the loop over the whole range, {speed}: {width}{at_speed}")
     }
 
     /// The paper's P at each speed, with headings; none for a model that does not see the speed.
     fn widths(&self, label: fn(&str) -> String) -> Vec<Vec<String>> {
         let widths = &self.diagnosis.loop_widths;
-        let shown = |value: f64| format!("{:.4}", Significant(value));
+        let shown =
+            |value: Option<f64>| value.map_or("-".into(), |value| format!("{:.4}", Significant(value)));
         let headings = [
             self.quantities.as_speed("speed"),
             self.quantities.as_input("width"),
@@ -264,7 +268,7 @@ impl<'a> DiagnosedModel<'a> {
             return Vec::new();
         }
         let mut table = vec![headings.map(|name| label(&name)).to_vec()];
-        let at_speed = |at: &WidthAtSpeed| vec![shown(at.speed), shown(at.width), shown(at.widening)];
+        let at_speed = |at: &WidthAtSpeed| vec![shown(Some(at.speed)), shown(at.width), shown(at.widening)];
         table.extend(widths.dynamic.iter().map(at_speed));
         table
     }

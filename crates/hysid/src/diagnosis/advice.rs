@@ -3,10 +3,11 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Finding, Property, Verdict};
+use super::{Delay, Finding, Property, Verdict};
 use crate::classical::identification::Rival;
 use crate::identification::ModelName;
 use crate::network::Family;
+use crate::warning::Significant;
 
 /// The simplest model that can hold what was found, and why.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -65,13 +66,19 @@ impl Found {
 }
 
 /// The simplest model that can hold what was found.
-pub(crate) fn advise(findings: &[Finding]) -> Advice {
+pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
     let found = Found::of(findings);
     let (model, reason) = simplest(&found);
     let mut statement = vec![match model {
         Some(model) => format!("the simplest model that holds what was found is {}: {reason}", model.name()),
         None => reason.to_string(),
     }];
+    if let Some(delay) = delay {
+        let shift = Significant(delay.time.abs());
+        statement.push(format!(
+            "the delay must be taken out first (shift the output by {shift:.3} in time); with it the speed matters, and xpnn is needed"
+        ));
+    }
     if model.is_some() {
         statement.extend(assumptions(&found));
     }
@@ -111,10 +118,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     }
     if found.deterioration == Yes {
         return match found.odd_symmetry {
-            No => (
-                network(Family::Xpnn),
-                "loops shrink when they are repeated, and are not symmetric (--rate none)",
-            ),
+            No => (network(Family::Xpnn), "loops shrink when they are repeated, and are not symmetric"),
             _ => (network(Family::Gpnn), "loops shrink when they are repeated"),
         };
     }
@@ -126,7 +130,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
             ),
             _ => (
                 network(Family::Xpnn),
-                "closed excursions leave a trace, without wear, and the loops are not known to be symmetric (--rate none)",
+                "closed excursions leave a trace, without wear, and the loops are not known to be symmetric",
             ),
         };
     }
@@ -137,7 +141,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
         );
     }
     if found.masing == No || found.odd_symmetry == No {
-        let reason = "branches are not all one curve, but minor loops between the same inputs are alike; \
+        let reason = "branches are not all one curve, and nothing says that minor loops between the same inputs differ; \
                       generalized-prandtl-ishlinskii is smaller where its envelopes fit";
         return (rival(Rival::Preisach), reason);
     }
@@ -156,7 +160,7 @@ fn assumptions(found: &Found) -> Vec<String> {
         }
     };
     assume(found.static_hysteresis, "whether loops remain at rest; taken as hysteresis");
-    assume(found.rate_dependence, "rate dependence; taken as none");
+    assume(found.rate_dependence, "rate dependence; taken as none (if the speed matters: xpnn)");
     if found.rate_dependence == Verdict::Yes {
         return assumed;
     }
@@ -224,7 +228,7 @@ mod tests {
             // Loops that vanish at rest are a matter of the rate, not of nothing.
             ([No, Yes, Yes, Yes, Yes, Yes, No], Some("xpnn")),
         ] {
-            let advice = advise(&findings(verdicts));
+            let advice = advise(&findings(verdicts), None);
             assert_eq!(name(&advice), expected, "{verdicts:?}");
             assert_eq!(advice.statement.len(), 1, "nothing is assumed: {:?}", advice.statement);
         }
@@ -232,14 +236,16 @@ mod tests {
 
     #[test]
     fn what_is_not_testable_is_said_to_be_assumed() {
-        let advice = advise(&findings([NotTestable; 7]));
+        let advice = advise(&findings([NotTestable; 7]), None);
         assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
         assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
         assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable here: ")));
         assert_eq!(advice.needs_rate, NotTestable);
         // What would not change the model is not mentioned.
-        let advice =
-            advise(&findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]));
+        let advice = advise(
+            &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),
+            None,
+        );
         assert_eq!(advice.statement.len(), 1, "{:?}", advice.statement);
         assert_eq!(advice.needs_memory_of_time, NotTestable);
     }

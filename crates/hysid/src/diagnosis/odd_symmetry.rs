@@ -8,7 +8,7 @@ use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the range of the output.
-const EFFECT: f64 = 0.02;
+pub(super) const EFFECT: f64 = 0.02;
 
 /// The centre is 0 if 0 is this close to the middle of the input's range, as a share of it.
 const ABOUT_ZERO: f64 = 0.1;

@@ -14,7 +14,7 @@ use super::delay::{self, Delay};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the range of the output.
-const EFFECT: f64 = 0.01;
+pub(super) const EFFECT: f64 = 0.01;
 
 /// Speeds that differ by less than this factor say nothing.
 const DIFFERENT: f64 = 1.3;

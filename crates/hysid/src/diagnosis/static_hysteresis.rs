@@ -7,7 +7,7 @@ use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, noise};
 
 /// Loops fuller than this share of their box are loops.
-const FULL: f64 = 0.02;
+pub(super) const FULL: f64 = 0.02;
 
 /// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
 const RANGE_OF_SPEEDS: f64 = 1.5;

@@ -8,7 +8,7 @@ use super::comparison::{Comparison, judge};
 use super::{Evidence, Finding, Picture, Property, Verdict};
 
 /// A gap that matters, as a share of the range of the output.
-const EFFECT: f64 = 0.01;
+pub(super) const EFFECT: f64 = 0.01;
 
 /// Excursions shorter than this share of the range of the input say nothing.
 const SHORTEST: f64 = 0.05;

@@ -34,9 +34,6 @@ const REPEATS: usize = 25;
 /// An output that moves less than this share at a vanishing speed has no memory worth testing there.
 const HARDLY_MOVES: f64 = 0.01;
 
-/// Loops that fill less than this share of their box are none, as for data.
-const OPEN: f64 = 0.02;
-
 /// No smoothing: a model has no noise.
 const EXACT: DiagnosisOptions = DiagnosisOptions { smallest_reversal: 0.02, smoothing: false };
 
@@ -145,7 +142,7 @@ fn wear(probe: &Probe) -> Result<Finding> {
         let data = data(vec![probe.run("repeated loops", &path.x, speed)?])?;
         let survey = survey(&data);
         let cycles = cycles(&survey);
-        let open = |cycle: &Cycle| cycle.area > OPEN * cycle.swing() * cycle.height();
+        let open = |cycle: &Cycle| cycle.area > static_hysteresis::FULL * cycle.swing() * cycle.height();
         if !cycles.first().is_some_and(open) {
             let statement = "there is hardly a loop that could shrink";
             return Ok(Finding::not_testable(Property::Deterioration, statement, LARGER));
