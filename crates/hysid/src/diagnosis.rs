@@ -269,8 +269,8 @@ impl Diagnosis {
         let cycles = cycles::cycles(&survey);
         let openings = opening::openings(&survey);
         let (rate, delay) = rate_dependence::test(&survey);
-        // Branches of different speed say nothing about memory where the speed matters.
-        let equal_speed = rate.verdict == Verdict::Yes;
+        // Branches of different speed say nothing about memory where the speed matters, or may matter.
+        let equal_speed = data.has_time() && rate.verdict != Verdict::No;
         let properties = vec![
             static_hysteresis::test(&survey, &openings, || doctor::longest_lag(&survey)),
             orientation::test(&survey, &openings),

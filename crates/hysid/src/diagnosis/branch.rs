@@ -313,13 +313,44 @@ fn curve(points: &Points, window: usize) -> Curve {
 /// Branches whose speeds differ by no more than this factor are of the same speed.
 const SAME_SPEED: f64 = 1.25;
 
+/// The speed at a place is that within this share of the input's range.
+const NEAR: f64 = 0.0025;
+
+/// True if two speeds are taken as one.
+pub(crate) fn is_one_speed(a: f64, b: f64) -> bool {
+    a.max(b) <= SAME_SPEED * a.min(b)
+}
+
 impl Survey<'_> {
-    /// True unless the speeds of two branches are known to differ.
-    pub fn similar_speed(&self, a: &Branch, b: &Branch) -> bool {
-        match (a.speed, b.speed) {
-            (Some(a), Some(b)) => a.max(b) <= SAME_SPEED * a.min(b),
+    /// True unless two branches are known to go through an input at different speeds, as where one of them is
+    /// about to turn.
+    pub fn similar_speed_at(&self, a: &Branch, b: &Branch, x: f64) -> bool {
+        match (self.speed_at(a, x), self.speed_at(b, x)) {
+            (Some(a), Some(b)) => is_one_speed(a, b),
             _ => true,
         }
+    }
+
+    /// True unless the mean speeds of two branches are known to differ.
+    pub fn similar_speed(&self, a: &Branch, b: &Branch) -> bool {
+        match (a.speed, b.speed) {
+            (Some(a), Some(b)) => is_one_speed(a, b),
+            _ => true,
+        }
+    }
+
+    /// Speed of the input near a place, over a short way and three rows at least; `None` without time.
+    pub fn speed_at(&self, branch: &Branch, place: f64) -> Option<f64> {
+        let record = &self.data.records()[branch.record];
+        let time = &record.time()?[branch.rows.clone()];
+        let x = &record.inputs()[0][branch.rows.clone()];
+        let sign = if branch.rises() { 1.0 } else { -1.0 };
+        let reach = NEAR * self.width() + 2.0 * self.input_noise;
+        let first = x.partition_point(|x| sign * x < sign * place - reach);
+        let last = x.partition_point(|x| sign * x <= sign * place + reach);
+        let first = first.saturating_sub(1).min(x.len().saturating_sub(3));
+        let last = last.max(first + 2).min(x.len() - 1);
+        (time[last] > time[first]).then(|| (x[last] - x[first]).abs() / (time[last] - time[first]))
     }
 
     /// Where a branch is in the data.

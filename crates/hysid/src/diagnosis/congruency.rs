@@ -41,9 +41,7 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
         let different = pairs.filter(|(a, b)| other_past(survey, &survey.branches[*a], &survey.branches[*b]));
         for (a, b) in different.take(MOST_PAIRS) {
             let (a, b) = (&survey.branches[a], &survey.branches[b]);
-            if !equal_speed || survey.similar_speed(a, b) {
-                comparisons.extend(compare(survey, a, b));
-            }
+            comparisons.extend(compare(survey, a, b, equal_speed));
         }
     }
     let Some(judgement) = judge(&comparisons, EFFECT) else {
@@ -89,13 +87,17 @@ fn other_past(survey: &Survey, a: &Branch, b: &Branch) -> bool {
     })
 }
 
-fn compare(survey: &Survey, a: &Branch, b: &Branch) -> Option<Comparison> {
+fn compare(survey: &Survey, a: &Branch, b: &Branch, equal_speed: bool) -> Option<Comparison> {
     let nearest = |a: f64, b: f64, rises: bool| if rises { a.min(b) } else { a.max(b) };
     let rises = a.rises();
     let beginning = if rises { a.from.max(b.from) } else { a.from.min(b.from) };
     let end = nearest(a.own_end()?, b.own_end()?, rises);
     let way = if rises { end - beginning } else { beginning - end };
     if way < SHORTEST * survey.width() {
+        return None;
+    }
+    let along = [0.05, 0.3, 0.6, 0.95].map(|share| beginning + share * (end - beginning));
+    if equal_speed && !along.iter().all(|&x| survey.similar_speed_at(a, b, x)) {
         return None;
     }
     let (start_a, start_b) = (a.curve.at(beginning)?, b.curve.at(beginning)?);

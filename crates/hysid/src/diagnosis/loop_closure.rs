@@ -36,14 +36,24 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
     survey.finding(Property::LoopClosure, &judgement, &comparisons, statement, EXPERIMENT)
 }
 
+/// The gap between a branch and the next that begins at the same turning point: both are then at the same speed.
 fn gap(survey: &Survey, cycle: &Cycle) -> Option<Comparison> {
     let (out, back) = (&survey.branches[cycle.branches.0], &survey.branches[cycle.branches.1]);
+    let again = survey.branches.get(cycle.branches.1 + 1).filter(|again| again.record == out.record);
+    // At the end of a record only the way back is left.
+    let after = again.filter(|again| !again.curve.is_empty()).unwrap_or(back);
     // Where the input did not come back quite to its beginning, both branches are read where it ended.
     let x = if out.rises() { out.from.max(back.to) } else { out.from.min(back.to) };
-    let (first, last) = (out.curve.at(x)?, back.curve.at(x)?);
-    let inside = (x - out.from).abs();
-    // Away from the beginning the loop has a width of its own.
-    let own = if inside > 0.0 { (out.curve.at(out.from)?.y - first.y).abs() } else { 0.0 };
+    if !survey.similar_speed_at(out, after, x) {
+        return None;
+    }
+    let (first, last) = (out.curve.at(x)?, after.curve.at(x)?);
+    // Away from its beginning a loop has a width of its own, between the ways there and back.
+    let own = if x != out.from && after.rises() != out.rises() {
+        (out.curve.at(out.from)?.y - first.y).abs()
+    } else {
+        0.0
+    };
     let height = survey.height();
     Some(Comparison {
         index: (last.y - first.y).abs() / height,

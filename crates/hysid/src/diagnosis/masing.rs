@@ -3,7 +3,7 @@
 //!
 //! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
 
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, Survey, is_one_speed};
 use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 
@@ -59,8 +59,7 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
     let comparisons: Vec<Comparison> = match parts.split_first() {
         Some((longest, others)) => {
             let shorter = others.iter().filter(|part| part.length < SAME_LENGTH * longest.length);
-            let allowed =
-                shorter.filter(|part| !equal_speed || survey.similar_speed(longest.branch, part.branch));
+            let allowed = shorter.filter(|part| !equal_speed || one_course_of_speed(survey, longest, part));
             let parts: Vec<&OwnPart> = allowed.collect();
             let step = parts.len().div_ceil(MOST).max(1);
             parts.into_iter().step_by(step).filter_map(|part| compare(survey, longest, part)).collect()
@@ -98,6 +97,16 @@ fn own_part<'b>(survey: &Survey, branch: &'b Branch) -> Option<OwnPart<'b>> {
     let length = (branch.own_end()? - branch.from).abs();
     let long_enough = length >= SHORTEST * survey.width() && !branch.curve.is_empty();
     long_enough.then_some(OwnPart { branch, length })
+}
+
+/// True if two parts are gone at the same speed at equal distances from their beginnings.
+fn one_course_of_speed(survey: &Survey, a: &OwnPart, b: &OwnPart) -> bool {
+    let speed = |part: &OwnPart, way: f64| {
+        let sign = if part.branch.rises() { 1.0 } else { -1.0 };
+        survey.speed_at(part.branch, part.branch.from + sign * way)
+    };
+    let at = |way: f64| Some((speed(a, way)?, speed(b, way)?));
+    [0.05, 0.3, 0.6, 0.95].iter().all(|share| at(share * b.length).is_none_or(|(a, b)| is_one_speed(a, b)))
 }
 
 fn compare(survey: &Survey, longest: &OwnPart, part: &OwnPart) -> Option<Comparison> {

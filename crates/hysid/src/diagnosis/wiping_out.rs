@@ -21,7 +21,8 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
     let mut comparisons = Vec::new();
     for (index, branch) in survey.branches.iter().enumerate() {
         for closing in &branch.closes {
-            if !equal_speed || survey.similar_speed(branch, &survey.branches[closing.arrived]) {
+            let arrived = &survey.branches[closing.arrived];
+            if !equal_speed || survey.similar_speed_at(branch, arrived, closing.x) {
                 comparisons.extend(gap(survey, index, closing));
             }
         }
