@@ -16,6 +16,8 @@ pub mod reinforced_concrete_joint;
 pub mod shape_memory_actuator;
 pub mod specimen;
 pub mod terfenol_actuator;
+pub mod terfenol_rod;
+pub mod two_wire_actuator;
 
 pub use concrete::{Concrete, ConcreteParameters};
 pub use ferromagnet::{Everett, Ferromagnet};

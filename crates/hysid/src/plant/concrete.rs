@@ -207,28 +207,34 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                 unloading and the stress lost after Mander, Priestley and Park",
     designed: "straight reloading up to the envelope, the rule for partial cycles, the values of the concrete and the \
                strain history",
-    training: "cycles with growing largest strain, up to 4.4 mm/m, unloaded fully or in part; a row a second",
-    testing: "the strain goes on, in part somewhat beyond the largest in training; the training part comes first, with \
-              blank outputs, so that damage is carried over",
+    training: "cycles with growing largest strain, up to 4.4 mm/m, unloaded fully or in part, then 60 \
+               pairs of turning points between 2 and 4.4 mm/m; a row a second",
+    testing: "the strain goes on to other turning points, not beyond the largest in training; the training part comes \
+              first, with blank outputs, so that damage is carried over",
     columns: Columns { time: Some("t_s"), input: "strain_mm_per_m", output: "stress_MPa" },
     train: || Ok(vec![parts()?.0]),
     test: || Ok(vec![parts()?.1]),
 };
 
-/// Turning points of the strain in mm/m to train on.
+/// Turning points of the strain in mm/m to begin training with.
 const TRAIN: [f64; 25] = [
     0.0, 0.8, 0.2, 1.2, 0.4, 1.6, 0.5, 2.0, 1.1, 1.7, 0.9, 2.4, 0.9, 2.9, 1.6, 2.5, 1.3, 3.4, 1.6, 3.9, 2.6,
     3.6, 2.0, 4.4, 2.2,
 ];
 
+/// Turning points of training that follow, all over this range in mm/m.
+const FURTHER: (usize, (f64, f64)) = (60, (2.0, 4.4));
+
 /// Turning points that follow.
-const TEST: [f64; 11] = [4.2, 3.0, 3.9, 2.5, 4.6, 2.8, 3.8, 2.6, 4.9, 3.4, 5.1];
+const TEST: [f64; 11] = [4.2, 3.0, 3.9, 2.5, 4.3, 2.8, 3.8, 2.6, 4.35, 3.4, 4.4];
 
 /// Largest step of the strain between two rows, in mm/m.
 const STEP: f64 = 0.015;
 
 fn parts() -> Result<(Record, Record)> {
-    let (strain, trained) = path::continued(&TRAIN, &TEST, STEP);
+    let (pairs, range) = FURTHER;
+    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
+    let (strain, trained) = path::continued(&train, &TEST, STEP);
     let stress = Concrete::new(ConcreteParameters::typical()).run(&strain);
     let time = path::every(1.0, strain.len());
     let whole = Record::new("cyclic compression", vec![strain], stress)?.with_time(time)?;

@@ -5,6 +5,9 @@ use crate::record::Record;
 /// Fewest steps of a swing, so that a small loop is a loop.
 const FEWEST_STEPS: f64 = 4.0;
 
+/// The plastic ratio, of which R2 takes multiples of the first two powers.
+const PLASTIC: f64 = 1.324_717_957_244_746;
+
 /// A path through the turning points, each swing in equal steps of at most `longest_step`.
 pub(super) fn through(turning: &[f64], longest_step: f64) -> Vec<f64> {
     let mut path = turning[..1].to_vec();
@@ -14,6 +17,17 @@ pub(super) fn through(turning: &[f64], longest_step: f64) -> Vec<f64> {
         path.extend((1..=steps as usize).map(|step| ends[0] + swing * (step as f64 / steps)));
     }
     path
+}
+
+/// Turning points whose swings cover the half-plane of a Preisach model evenly: up to `α` and down to
+/// `β`, both in the range, with the pairs `(α, β)` those of a sequence of low discrepancy (Roberts' R2).
+pub(super) fn covering(pairs: usize, (low, high): (f64, f64)) -> Vec<f64> {
+    let place = |k: usize, step: f64| low + (high - low) * (k as f64 * step).fract();
+    let pair = |k: usize| {
+        let (a, b) = (place(k, 1.0 / PLASTIC), place(k, 1.0 / (PLASTIC * PLASTIC)));
+        [a.max(b), a.min(b)]
+    };
+    (1..=pairs).flat_map(pair).collect()
 }
 
 /// The way from the first turning point to the last.

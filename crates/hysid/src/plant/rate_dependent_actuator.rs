@@ -74,11 +74,11 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     summary: "actuator whose loops widen with speed: a Prandtl-Ishlinskii law with thresholds that grow with the rate",
     published: "the rate-dependent Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su)",
     designed: "all values and all inputs",
-    training: "sines of 10 V at 1, 10 and 50 Hz, a record and three periods each, from the virgin state",
-    testing: "sines of 10 V at 25 and at 75 Hz, the latter faster than any in training, and a sum of tones at 5, 30 and \
-              60 Hz",
+    training: "sines of 10 V at 1, 5, 10, 20, 30, 40, 50, 60, 80 and 100 Hz, a record and three periods each, from the \
+               virgin state",
+    testing: "sines of 10 V at 25 and at 75 Hz, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
-    train: || [1.0, 10.0, 50.0].into_iter().map(sine).collect(),
+    train: || FREQUENCIES.into_iter().map(sine).collect(),
     test: || Ok(vec![sine(25.0)?, sine(75.0)?, three_tones()?]),
 };
 
@@ -88,6 +88,9 @@ struct Tone {
     frequency: f64,
     phase: f64,
 }
+
+/// Frequencies to train on, in Hz.
+const FREQUENCIES: [f64; 10] = [1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0];
 
 /// Rows of a period of a sine.
 const ROWS_PER_PERIOD: usize = 200;

@@ -250,7 +250,9 @@ impl ReinforcedConcreteJoint {
     }
 }
 
-pub(super) static SPECIMEN: Specimen = Specimen {
+pub(super) static SPECIMEN: Specimen = JOINT;
+
+const JOINT: Specimen = Specimen {
     name: "reinforced-concrete-joint",
     example: "example 2",
     summary: "beam-column joint in a slow cyclic test: strength and stiffness decline, loops pinch",
@@ -267,11 +269,23 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: || Ok(vec![halves()?.1]),
 };
 
+/// The same test, of which whole cycles are unseen.
+pub(super) static CYCLES: Specimen = Specimen {
+    name: "reinforced-concrete-joint-cycles",
+    summary: "the same beam-column joint and test; every third cycle is unseen",
+    training: "drift of 0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4 and 5 %, three cycles each, a row a second: the first two \
+               cycles at each drift; the third has blank outputs",
+    testing: "the same history with outputs in the third cycle at each drift alone",
+    train: || Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 < CYCLES_EACH)?]),
+    test: || Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 == CYCLES_EACH)?]),
+    ..JOINT
+};
+
 /// Amplitudes of the drift in percent.
 const DRIFT: [f64; 9] = [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
 
 /// Cycles at each amplitude.
-const CYCLES: usize = 3;
+const CYCLES_EACH: usize = 3;
 
 /// Storey height in mm for one percent of drift.
 const MILLIMETRES: f64 = 20.0;
@@ -282,18 +296,43 @@ const TRAINED: f64 = 0.7;
 /// Largest step of the displacement between two rows, in mm.
 const STEP: f64 = 1.6;
 
-/// The test cut in two: see [`Record::split_at_fraction`].
-fn halves() -> Result<(Record, Record)> {
+/// The whole test.
+fn whole() -> Result<Record> {
+    let displacement = path::through(&turning_points(), STEP);
+    let force = ReinforcedConcreteJoint::new(BoucWenBaberNoori::joint()).run(&displacement);
+    let time = path::every(1.0, displacement.len());
+    Record::new("cyclic test", vec![displacement], force)?.with_time(time)
+}
+
+/// Turning points of the displacement in mm.
+fn turning_points() -> Vec<f64> {
     let mut turning = vec![0.0];
     for drift in DRIFT {
-        for _ in 0..CYCLES {
+        for _ in 0..CYCLES_EACH {
             turning.extend([drift * MILLIMETRES, -drift * MILLIMETRES]);
         }
     }
     turning.push(0.0);
-    let displacement = path::through(&turning, STEP);
-    let force = ReinforcedConcreteJoint::new(BoucWenBaberNoori::joint()).run(&displacement);
-    let time = path::every(1.0, displacement.len());
-    let whole = Record::new("cyclic test", vec![displacement], force)?.with_time(time)?;
-    Ok(whole.split_at_fraction(TRAINED).expect("the test has more than two rows"))
+    turning
+}
+
+/// The test cut in two: see [`Record::split_at_fraction`].
+fn halves() -> Result<(Record, Record)> {
+    Ok(whole()?.split_at_fraction(TRAINED).expect("the test has more than two rows"))
+}
+
+/// The test with outputs in those of its cycles, counted from 0, that are wanted. A cycle begins where
+/// the displacement rises through 0.
+fn cycles(is_wanted: impl Fn(usize) -> bool) -> Result<Record> {
+    let whole = whole()?;
+    let displacement = &whole.inputs()[0];
+    let mut cycle = 0;
+    let output = whole.output().iter().enumerate().map(|(row, &force)| {
+        let begins = row > 0 && displacement[row - 1] < 0.0 && displacement[row] >= 0.0;
+        cycle += usize::from(begins);
+        if is_wanted(cycle) { force } else { f64::NAN }
+    });
+    let output = output.collect();
+    let time = whole.time().expect("the test has time stamps").to_vec();
+    Record::new(whole.name(), whole.inputs().to_vec(), output)?.with_time(time)
 }

@@ -1,4 +1,4 @@
-//! The catalogue of specimens: one for each of the paper's examples, with what is known about it and
+//! The catalogue of specimens: those of the paper's examples, with what is known about it and
 //! how it is tested.
 
 use crate::error::Result;
@@ -6,15 +6,18 @@ use crate::record::{ColumnNames, Dataset, Record};
 
 use super::{
     concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator, rate_dependent_actuator,
-    reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator,
+    reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator, terfenol_rod, two_wire_actuator,
 };
 
 /// All specimens, in the order of the paper's examples.
-static ALL: [&Specimen; 8] = [
+static ALL: [&Specimen; 11] = [
     &ferromagnet::SPECIMEN,
     &reinforced_concrete_joint::SPECIMEN,
+    &reinforced_concrete_joint::CYCLES,
     &terfenol_actuator::SPECIMEN,
+    &terfenol_rod::SPECIMEN,
     &shape_memory_actuator::SPECIMEN,
+    &two_wire_actuator::SPECIMEN,
     &concrete::SPECIMEN,
     &piezo_actuator::SPECIMEN,
     &rate_dependent_actuator::SPECIMEN,

@@ -33,7 +33,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     published: "the generalized Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su) and the range of the current, -0.7 \
                 to 1.2 A (the paper)",
     designed: "all values of the law, the turning points and the speed of the current",
-    training: "triangles between -0.7 and 1.2 A, then shrinking ones; from the virgin state, at 0.8 A/s",
+    training: "triangles between -0.7 and 1.2 A, then shrinking ones, then 60 pairs of turning points all over the range; from \
+               the virgin state, at 1.2 A/s",
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
@@ -41,21 +42,31 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: || Ok(vec![parts()?.1]),
 };
 
-/// Turning points of the current in A to train on; the first seven swings have the paper's extremes.
+/// Turning points of the current in A to begin training with; the first seven swings have the paper's extremes.
 const TRAIN: [f64; 13] = [0.0, 1.2, -0.7, 1.2, -0.7, 1.2, -0.5, 1.0, -0.3, 0.8, -0.1, 0.6, 1.2];
+
+/// Turning points of training that follow, all over the paper's range in A.
+const FURTHER: (usize, (f64, f64)) = (60, (-0.7, 1.2));
 
 /// Turning points that follow.
 const TEST: [f64; 14] = [-0.6, 0.9, -0.2, 0.5, -0.4, 1.1, 0.0, 0.7, 0.2, 1.0, -0.65, 0.3, -0.05, 1.15];
 
 /// Largest step of the current between two rows, in A.
-const STEP: f64 = 0.008;
+const STEP: f64 = 0.012;
 
 /// Time between two rows in s.
 const SAMPLING: f64 = 0.01;
 
 fn parts() -> Result<(Record, Record)> {
-    let (current, trained) = path::continued(&TRAIN, &TEST, STEP);
-    let displacement = law().run(&current);
+    driven(|current| law().run(current))
+}
+
+/// The triangles of training and of the test, with the displacements of this law.
+pub(super) fn driven(law: impl Fn(&[f64]) -> Vec<f64>) -> Result<(Record, Record)> {
+    let (pairs, range) = FURTHER;
+    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
+    let (current, trained) = path::continued(&train, &TEST, STEP);
+    let displacement = law(&current);
     let time = path::every(SAMPLING, current.len());
     let whole = Record::new("triangles", vec![current], displacement)?.with_time(time)?;
     Ok(path::cut(&whole, trained))
