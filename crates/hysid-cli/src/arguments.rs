@@ -14,6 +14,8 @@ use hysid::rate::RateMethod;
 use hysid::training::genetic::POPULATIONS;
 use hysid::training::{FitOptions, Trainer};
 
+use crate::reproduction::Experiment;
+
 /// Identify hysteresis from measured input and output, simulate it and judge the model.
 #[derive(Debug, Parser)]
 #[command(name = "hysid", version, arg_required_else_help = true)]
@@ -464,18 +466,24 @@ impl Diagnose {
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
 pub struct Reproduce {
-    /// What to run: training
-    #[arg(value_name = "EXPERIMENT", required = true, value_parser = PossibleValuesParser::new(["training"]))]
-    pub experiments: Vec<String>,
-    /// Folder for tables, figures and the page
+    /// What to run: nds, example1 to example7, table2, training [default: all, and a page of all]
+    #[arg(value_name = "EXPERIMENT", value_parser = experiment())]
+    pub experiments: Vec<Experiment>,
+    /// Folder for pages and tables; an experiment that was finished there with the same seed, version and
+    /// --quick is not run again
     #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
     pub out: PathBuf,
-    /// A tenth of the epochs, to see how it looks
+    /// A fraction of the effort, to see how it looks
     #[arg(long)]
     pub quick: bool,
-    /// Seed of the first repetition
+    /// Seed of all randomness; of several repetitions that of the first
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+}
+
+fn experiment() -> impl TypedValueParser<Value = Experiment> {
+    let names = Experiment::all().map(Experiment::name);
+    PossibleValuesParser::new(names).map(|name| Experiment::named(&name).expect("one of the possible values"))
 }
 
 /// Arguments of `generate`.

@@ -32,6 +32,11 @@ pub fn section(heading: &str, content: &str) -> String {
     }
 }
 
+/// A heading within a section.
+pub fn subheading(text: &str) -> String {
+    format!("<h3>{}</h3>\n", escape(text))
+}
+
 /// A paragraph of text.
 pub fn paragraph(text: &str) -> String {
     format!("<p>{}</p>\n", escape(text))
@@ -81,6 +86,12 @@ pub fn definitions(pairs: &[(String, String)]) -> String {
 pub fn figure(svg: &str, wide: bool) -> String {
     let attributes = if wide { "class=\"wide scroll\" tabindex=\"0\"" } else { "class=\"chart\"" };
     format!("<figure {attributes}>{svg}</figure>\n")
+}
+
+/// Small drawings side by side.
+pub fn small_figures(drawings: &[&str]) -> String {
+    let drawings: String = drawings.iter().map(|svg| figure(svg, false)).collect();
+    format!("<div class=\"charts small\">\n{drawings}</div>\n")
 }
 
 /// A number with so many significant digits, with a true minus sign.

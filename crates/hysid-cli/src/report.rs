@@ -72,6 +72,16 @@ pub fn small_loops(set: &ReportSet, title: String) -> String {
     figures::small_loops(set, title)
 }
 
+/// Training error against epoch, an `svg` element; `None` for a model that was not searched for.
+pub fn convergence_svg(model: &Model) -> Option<String> {
+    figures::convergence(model)
+}
+
+/// The unit of a column, or words for it.
+pub fn unit_of(column: &str) -> String {
+    unit::of(column)
+}
+
 /// A column's name as the label of an axis.
 pub fn unit_label(column: &str) -> String {
     unit::label(column)

@@ -8,7 +8,7 @@ use crate::Outcome;
 use crate::arguments::Reproduce;
 use crate::files;
 use crate::interrupt;
-use crate::reproduction::training;
+use crate::reproduction::{self, Settings};
 
 /// Runs the command.
 pub fn run(arguments: &Reproduce) -> Result<Outcome> {
@@ -16,6 +16,6 @@ pub fn run(arguments: &Reproduce) -> Result<Outcome> {
     fs::create_dir_all(folder)
         .map_err(|error| anyhow!("{}: cannot be made: {}", folder.display(), files::reason(&error)))?;
     interrupt::listen("stopping; what is finished is kept")?;
-    let protocol = training::Protocol::new(arguments.seed, arguments.quick);
-    training::run(&protocol, folder)
+    let settings = Settings { seed: arguments.seed, quick: arguments.quick };
+    reproduction::run(&arguments.experiments, settings, folder)
 }

@@ -118,12 +118,18 @@ fn scored_rows(record: &Record) -> std::ops::Range<usize> {
     first.zip(last).map_or(0..record.len(), |(first, last)| first..last + 1)
 }
 
-/// Error against epoch of every start and of what was trained on all data; empty for a model that was not
-/// searched for.
+/// How the training converged, with words; empty for a model that was not searched for.
 pub fn convergence_section(model: &Model) -> String {
+    let Some(chart) = convergence(model) else { return String::new() };
+    section("Convergence", &(figure(&chart, true) + &note(&convergence_words(model.provenance()))))
+}
+
+/// Error against epoch of every start and of what was trained on all data; `None` for a model that was not
+/// searched for.
+pub fn convergence(model: &Model) -> Option<String> {
     let provenance = model.provenance();
     if provenance.runs.is_empty() {
-        return String::new();
+        return None;
     }
     let is_chosen = |run: &Run| run.phase == Phase::Starts && run.start == provenance.chosen_start;
     let of_chosen = provenance.runs.iter().filter(|run| is_chosen(run));
@@ -159,7 +165,7 @@ pub fn convergence_section(model: &Model) -> String {
         curves,
         legend: convergence_legend(&provenance.runs, provenance.options.starts()),
     };
-    section("Convergence", &(figure(&chart.svg(), true) + &note(&convergence_words(provenance))))
+    Some(chart.svg())
 }
 
 fn convergence_legend(runs: &[Run], starts: usize) -> Vec<(Colour, String)> {

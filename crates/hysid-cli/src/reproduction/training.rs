@@ -4,7 +4,6 @@
 mod page;
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -15,8 +14,10 @@ use hysid::rate::RateMethod;
 use hysid::record::Dataset;
 use hysid::training::{FitOptions, Trainer, fit};
 
-use crate::messages::{note, results};
-use crate::{Outcome, files, interrupt};
+use super::Settings;
+use super::chapter::Chapter;
+use crate::interrupt;
+use crate::messages::note;
 
 /// Stands in for the paper's second example, on which it compares the trainers.
 const SPECIMEN: &str = "reinforced-concrete-joint";
@@ -35,7 +36,7 @@ const TRAINERS: [Trainer; 4] =
     [Trainer::Genetic, Trainer::Subgradient, Trainer::Hybrid, Trainer::LevenbergMarquardt];
 
 /// What is run.
-pub struct Protocol {
+struct Protocol {
     specimen: &'static Specimen,
     train: Dataset,
     test: Dataset,
@@ -74,7 +75,7 @@ struct Repetition {
 
 impl Protocol {
     /// The whole protocol, or a tenth of its epochs.
-    pub fn new(first_seed: u64, quick: bool) -> Self {
+    fn new(first_seed: u64, quick: bool) -> Self {
         let specimen = Specimen::named(SPECIMEN).expect("the specimen is in the catalogue");
         let (train, test) = (specimen.train(), specimen.test());
         Self { specimen, train, test, first_seed, epochs: if quick { EPOCHS / 10 } else { EPOCHS } }
@@ -96,24 +97,18 @@ impl Protocol {
     }
 }
 
-/// Runs the comparison and writes tables, figures and page into a folder.
-pub fn run(protocol: &Protocol, folder: &Path) -> Result<Outcome> {
+/// Runs the comparison; `None` if interrupted.
+pub fn chapter(settings: Settings) -> Result<Option<Chapter>> {
+    compared(&Protocol::new(settings.seed, settings.quick))
+}
+
+fn compared(protocol: &Protocol) -> Result<Option<Chapter>> {
     let mut repetitions = Vec::new();
     for seed in protocol.first_seed..protocol.first_seed + SEEDS {
-        let Some(repetition) = repetition(protocol, seed)? else { break };
+        let Some(repetition) = repetition(protocol, seed)? else { return Ok(None) };
         repetitions.push(repetition);
-        // What is there survives an interruption of the next.
-        for (name, content) in page::files(protocol, &repetitions) {
-            files::write(&folder.join(name), content.as_bytes())?;
-        }
     }
-    if !repetitions.is_empty() {
-        results(
-            &(page::text(protocol, &repetitions)
-                + &format!("\npage    {}\n", files::shown(&folder.join("training.html")))),
-        )?;
-    }
-    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+    Ok(Some(page::chapter(protocol, &repetitions)))
 }
 
 /// All trainers from one seed; `None` if interrupted.
@@ -122,7 +117,7 @@ fn repetition(protocol: &Protocol, seed: u64) -> Result<Option<Repetition>> {
     for trainer in TRAINERS {
         let Some(training) = training(protocol, trainer, seed)? else { return Ok(None) };
         note(format_args!(
-            "seed {seed}, {:<19} {:8.4} % of std, {:6.2} s, {:>6} evaluations",
+            "  training, seed {seed}: {:<19} {:8.4} % of std, {:6.2} s, {:>6} evaluations",
             trainer.name(),
             training.train.nrmse_std_percent.unwrap_or_default(),
             training.seconds,

@@ -207,10 +207,10 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                 unloading and the stress lost after Mander, Priestley and Park",
     designed: "straight reloading up to the envelope, the rule for partial cycles, the values of the concrete and the \
                strain history",
-    training: "cycles with growing largest strain, up to 4.4 mm/m, unloaded fully or in part, then 60 \
-               pairs of turning points between 2 and 4.4 mm/m; a row a second",
-    testing: "the strain goes on to other turning points, not beyond the largest in training; the training part comes \
-              first, with blank outputs, so that damage is carried over",
+    training: "cycles with growing largest strain, up to 4.4 mm/m, unloaded fully or in part, then 50 turning points \
+               between 2 and 4.4 mm/m; a row a second",
+    testing: "the strain goes on to 20 other turning points between 2 and 4.4 mm/m; the training part comes first, with \
+              blank outputs, so that damage is carried over",
     columns: Columns { time: Some("t_s"), input: "strain_mm_per_m", output: "stress_MPa" },
     train: || Ok(vec![parts()?.0]),
     test: || Ok(vec![parts()?.1]),
@@ -222,19 +222,20 @@ const TRAIN: [f64; 25] = [
     3.6, 2.0, 4.4, 2.2,
 ];
 
-/// Turning points of training that follow, all over this range in mm/m.
-const FURTHER: (usize, (f64, f64)) = (60, (2.0, 4.4));
+/// Range of the turning points that follow, in mm/m.
+const RANGE: (f64, f64) = (2.0, 4.4);
 
-/// Turning points that follow.
-const TEST: [f64; 11] = [4.2, 3.0, 3.9, 2.5, 4.3, 2.8, 3.8, 2.6, 4.35, 3.4, 4.4];
+/// Number of those in training, and of those in the test.
+const FURTHER: (usize, usize) = (50, 20);
 
 /// Largest step of the strain between two rows, in mm/m.
-const STEP: f64 = 0.015;
+const STEP: f64 = 0.02;
 
 fn parts() -> Result<(Record, Record)> {
-    let (pairs, range) = FURTHER;
-    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
-    let (strain, trained) = path::continued(&train, &TEST, STEP);
+    let (trained, tested) = FURTHER;
+    let further = path::wandering(trained + tested, RANGE);
+    let (train, test) = further.split_at(trained);
+    let (strain, trained) = path::continued(&[&TRAIN[..], train].concat(), test, STEP);
     let stress = Concrete::new(ConcreteParameters::typical()).run(&strain);
     let time = path::every(1.0, strain.len());
     let whole = Record::new("cyclic compression", vec![strain], stress)?.with_time(time)?;

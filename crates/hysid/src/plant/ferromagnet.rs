@@ -226,15 +226,19 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     published: "the Everett function and its parameters for M330-50A (Modelica Standard Library, \
                 HysteresisEverettParameter, in the copies of Wolfram System Modeler)",
     designed: "the path of the field",
-    training: "growing amplitudes up to 400 A/m, minor loops on both branches, then demagnetisation; about 1500 rows",
+    training: "growing amplitudes up to 400 A/m, minor loops on both branches, demagnetisation, then 25 pairs of turning points \
+               all over the range",
     testing: "a demagnetised sheet on another path: other amplitudes and other minor loops within the same range",
     columns: Columns { time: None, input: "H_A_per_m", output: "B_T" },
-    train: || Ok(vec![magnetised("growing and minor loops", &TRAIN)?]),
-    test: || Ok(vec![magnetised("other loops", &TEST)?]),
+    train: || Ok(vec![magnetised("growing and minor loops", &trained(), TRAINED_ROWS)?]),
+    test: || Ok(vec![magnetised("other loops", &TEST, ROWS)?]),
 };
 
 /// Rows of each record, about.
 const ROWS: f64 = 1500.0;
+
+/// The same of the training record, which is longer.
+const TRAINED_ROWS: f64 = 3000.0;
 
 /// Turning points of the field in the training record, in A/m.
 const TRAIN: [f64; 38] = [
@@ -243,6 +247,15 @@ const TRAIN: [f64; 38] = [
     -130.0, 130.0, -80.0, 80.0, -45.0, 45.0, -20.0, 0.0,
 ];
 
+/// Turning points of training that follow, all over the range in A/m.
+const FURTHER: (usize, (f64, f64)) = (25, (-400.0, 400.0));
+
+/// All turning points of training.
+fn trained() -> Vec<f64> {
+    let (pairs, range) = FURTHER;
+    [&TRAIN[..], &path::covering(pairs, range)].concat()
+}
+
 /// Turning points of the field in the test record, in A/m.
 const TEST: [f64; 26] = [
     0.0, 45.0, -45.0, 130.0, -130.0, 330.0, 80.0, 150.0, -20.0, 40.0, -60.0, -10.0, -330.0, -90.0, -200.0,
@@ -250,8 +263,8 @@ const TEST: [f64; 26] = [
 ];
 
 /// The sheet along a path of the field, which is rounded to 0.01 A/m.
-fn magnetised(name: &str, turning: &[f64]) -> Result<Record> {
-    let path = path::through(turning, path::travel(turning) / ROWS);
+fn magnetised(name: &str, turning: &[f64], rows: f64) -> Result<Record> {
+    let path = path::through(turning, path::travel(turning) / rows);
     let h: Vec<f64> = path.into_iter().map(|h| (100.0 * h).round() / 100.0).collect();
     let b = Ferromagnet::m330_50a().run(&h);
     Record::new(name, vec![h], b)

@@ -5,6 +5,9 @@ use crate::record::Record;
 /// Fewest steps of a swing, so that a small loop is a loop.
 const FEWEST_STEPS: f64 = 4.0;
 
+/// The golden ratio.
+const GOLDEN: f64 = 1.618_033_988_749_895;
+
 /// The plastic ratio, of which R2 takes multiples of the first two powers.
 const PLASTIC: f64 = 1.324_717_957_244_746;
 
@@ -28,6 +31,12 @@ pub(super) fn covering(pairs: usize, (low, high): (f64, f64)) -> Vec<f64> {
         [a.max(b), a.min(b)]
     };
     (1..=pairs).flat_map(pair).collect()
+}
+
+/// Turning points all over a range, with swings of between a third and two thirds of it: multiples of
+/// the golden ratio, modulo 1.
+pub(super) fn wandering(count: usize, (low, high): (f64, f64)) -> Vec<f64> {
+    (1..=count).map(|k| low + (high - low) * (k as f64 * GOLDEN).fract()).collect()
 }
 
 /// The way from the first turning point to the last.

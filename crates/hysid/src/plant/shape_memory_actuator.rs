@@ -44,7 +44,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                 Basaeri et al. 2019), and the range 0 to 2.4 V",
     designed: "the turning points of the voltage and its speed of 5 mV/s",
     training: "from 0 to 2.4, 2, 1.8, 1.7, 1.6 and 1.5 V and back each, then minor loops that start \
-               inside, then 60 pairs of turning points all over the range",
+               inside, then 40 pairs of turning points all over the range",
     testing: "the voltage goes on to other peaks and other minor loops in the same range; the training part comes \
               first, with blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "output" },
@@ -57,16 +57,16 @@ const TRAIN: [f64; 19] =
     [0.0, 2.4, 0.0, 2.0, 0.0, 1.8, 0.0, 1.7, 0.0, 1.6, 0.0, 1.5, 0.0, 2.2, 1.0, 1.6, 0.8, 2.0, 0.0];
 
 /// Turning points of training that follow, all over the range in V.
-const FURTHER: (usize, (f64, f64)) = (60, (0.0, 2.4));
+const FURTHER: (usize, (f64, f64)) = (40, (0.0, 2.4));
 
 /// Turning points that follow.
 const TEST: [f64; 14] = [1.9, 0.0, 1.75, 0.0, 1.65, 0.0, 1.55, 0.0, 2.3, 1.2, 1.5, 1.1, 1.8, 0.0];
 
 /// Largest step of the voltage between two rows, in V.
-const STEP: f64 = 0.02;
+const STEP: f64 = 0.025;
 
 /// Time between two rows in s.
-const SAMPLING: f64 = 4.0;
+const SAMPLING: f64 = 5.0;
 
 fn parts() -> Result<(Record, Record)> {
     let (pairs, range) = FURTHER;

@@ -33,8 +33,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     published: "the generalized Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su) and the range of the current, -0.7 \
                 to 1.2 A (the paper)",
     designed: "all values of the law, the turning points and the speed of the current",
-    training: "triangles between -0.7 and 1.2 A, then shrinking ones, then 60 pairs of turning points all over the range; from \
-               the virgin state, at 1.2 A/s",
+    training: "triangles between -0.7 and 1.2 A, then shrinking ones, then 40 pairs of turning points all over the range; from \
+               the virgin state, at 1.6 A/s",
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
@@ -46,13 +46,13 @@ pub(super) static SPECIMEN: Specimen = Specimen {
 const TRAIN: [f64; 13] = [0.0, 1.2, -0.7, 1.2, -0.7, 1.2, -0.5, 1.0, -0.3, 0.8, -0.1, 0.6, 1.2];
 
 /// Turning points of training that follow, all over the paper's range in A.
-const FURTHER: (usize, (f64, f64)) = (60, (-0.7, 1.2));
+const FURTHER: (usize, (f64, f64)) = (40, (-0.7, 1.2));
 
 /// Turning points that follow.
 const TEST: [f64; 14] = [-0.6, 0.9, -0.2, 0.5, -0.4, 1.1, 0.0, 0.7, 0.2, 1.0, -0.65, 0.3, -0.05, 1.15];
 
 /// Largest step of the current between two rows, in A.
-const STEP: f64 = 0.012;
+const STEP: f64 = 0.016;
 
 /// Time between two rows in s.
 const SAMPLING: f64 = 0.01;

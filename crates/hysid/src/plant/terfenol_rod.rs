@@ -3,24 +3,24 @@
 //! model can fit to the last digit; this one is outside that model, as a real rod is.
 //!
 //! ```text
-//! H = 150 + 300 I,   J = Preisach[H],   y = 26 J²                          theory.md (6.28)
+//! H = 250 + 450 I,   J = Preisach[H],   y = 26 J²                          theory.md (6.28)
 //! ```
 //!
 //! `I` is the current in A, `H` the field in A/m, `J` the polarisation in T, `y` the displacement in µm.
 //!
 //! *Published*: that the strain of such an actuator at low speed is proportional to the square of its
 //! magnetisation, which a Preisach operator describes (Tan and Baras); the Everett function of
-//! [`Ferromagnet::m800_65a`]. *Designed*: its use for Terfenol-D, the bias, both factors.
+//! [`Ferromagnet::vacoflux17`]. *Designed*: its use for Terfenol-D, the bias, both factors.
 
 use super::ferromagnet::Ferromagnet;
 use super::specimen::{Columns, Specimen};
 use super::terfenol_actuator;
 
 /// Field without current, in A/m.
-const BIAS: f64 = 150.0;
+const BIAS: f64 = 250.0;
 
 /// Field of a current of 1 A, in A/m.
-const COIL: f64 = 300.0;
+const COIL: f64 = 450.0;
 
 /// Displacement for a squared polarisation of 1 T², in µm.
 const STRAIN: f64 = 26.0;
@@ -28,7 +28,7 @@ const STRAIN: f64 = 26.0;
 /// The displacements in µm of a rod that was demagnetised before the bias was applied, at all currents
 /// in A.
 pub fn run(current: &[f64]) -> Vec<f64> {
-    let mut rod = Ferromagnet::m800_65a();
+    let mut rod = Ferromagnet::vacoflux17();
     let displacement = |&current: &f64| {
         rod.step(BIAS + COIL * current);
         STRAIN * rod.polarisation() * rod.polarisation()
@@ -40,7 +40,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     name: "terfenol-rod",
     example: "example 3",
     summary: "magnetostrictive rod under a bias: the displacement goes with the square of a Preisach model",
-    published: "the square of a Preisach model (Tan and Baras), the Everett function of M800-65A (Modelica Standard \
+    published: "the square of a Preisach model (Tan and Baras), the Everett function of Vacoflux 17 (Modelica Standard \
                 Library), the range of the current (the paper)",
     designed: "that Everett function for Terfenol-D, the bias and both factors, the turning points",
     training: "as for terfenol-actuator",

@@ -14,7 +14,7 @@
 //!
 //! *Published*: two wires against each other, heated by currents of either sign between -1 and 1 A (Gorbet,
 //! as the paper tells). *Designed*: the law of a wire, for which the Everett function of
-//! [`Ferromagnet::m800_65a`] is borrowed, and all factors; one wire is weaker than the other, so that the
+//! [`Ferromagnet::vacoflux17`] is borrowed, and all factors; one wire is weaker than the other, so that the
 //! loops are not symmetric.
 //!
 //! [`shape_memory_actuator`]: super::shape_memory_actuator
@@ -40,7 +40,7 @@ const CONTRACTED: f64 = 1.5;
 
 /// The angles in degrees at all currents in A, both wires cold at first.
 pub fn run(current: &[f64]) -> Vec<f64> {
-    let mut wires = [Ferromagnet::m800_65a(), Ferromagnet::m800_65a()];
+    let mut wires = [Ferromagnet::vacoflux17(), Ferromagnet::vacoflux17()];
     for wire in &mut wires {
         wire.step(COLD);
     }
@@ -60,7 +60,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     summary: "two shape-memory wires that pull against each other: a loop on either side, one weaker than the other",
     published: "two wires heated by currents of either sign between -1 and 1 A (Gorbet, as the paper tells)",
     designed: "the law of the wires, a borrowed Everett function, and all factors; the turning points of the current",
-    training: "from -1 to 1 A, shrinking swings, then 60 pairs of turning points all over the range; 5 mA/s",
+    training: "from -1 to 1 A, shrinking swings, then 40 pairs of turning points all over the range; 5 mA/s",
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
@@ -72,7 +72,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
 const TRAIN: [f64; 11] = [0.0, 1.0, -1.0, 1.0, -0.8, 0.8, -0.65, 0.65, -0.5, 0.5, 0.0];
 
 /// Turning points of training that follow, all over the range in A.
-const FURTHER: (usize, (f64, f64)) = (60, (-1.0, 1.0));
+const FURTHER: (usize, (f64, f64)) = (40, (-1.0, 1.0));
 
 /// Turning points of the test.
 const TEST: [f64; 20] = [
@@ -81,10 +81,10 @@ const TEST: [f64; 20] = [
 ];
 
 /// Largest step of the current between two rows, in A.
-const STEP: f64 = 0.0125;
+const STEP: f64 = 0.02;
 
 /// Time between two rows in s.
-const SAMPLING: f64 = 2.5;
+const SAMPLING: f64 = 4.0;
 
 fn parts() -> Result<(Record, Record)> {
     let (pairs, range) = FURTHER;

@@ -3,81 +3,98 @@
 use hysid::training::Trainer;
 use hysid::warning::Significant;
 
+use super::super::chapter::{Cell, Chapter, Part, Table, stands_in};
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
-use crate::lines::{WIDTH, aligned, wrapped};
-use crate::page::{count, figure, note, paragraph, section, table, verdict, whole};
+use crate::page::{count, number};
 use crate::plot::{self, Axis, Chart, Colour, Curve};
 
 /// Heading of every table: what the figures are of.
 fn heading(protocol: &Protocol) -> String {
     format!(
-        "Synthetic specimen {} in the place of the paper's measured joint (its example 2); XPNN with 10 stops and 10 tanh neurons; {} epochs",
-        protocol.specimen.name, protocol.epochs
+        "{}: XPNN with 10 stops and 10 tanh neurons; {} epochs",
+        stands_in(protocol.specimen.name, "example 2"),
+        protocol.epochs
     )
 }
 
-/// The files, by name.
-pub fn files(protocol: &Protocol, repetitions: &[Repetition]) -> Vec<(&'static str, String)> {
+/// The chapter on all repetitions.
+pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
-    vec![
-        ("training.html", html(protocol, repetitions, &[&epochs, &seconds])),
-        ("training.md", markdown(protocol, repetitions)),
-        ("training.csv", csv(repetitions)),
+    let files = [
+        ("training-seeds.csv", csv(repetitions)),
         ("training-history.csv", history(repetitions)),
         ("training-epochs.svg", plot::standalone(&epochs)),
         ("training-seconds.svg", plot::standalone(&seconds)),
-    ]
+    ];
+    let specimen = protocol.specimen;
+    let mut parts = vec![
+        Part::Table(table(protocol, repetitions, "medians of the seeds", |(_, median, _)| median.into())),
+        Part::Table(table(protocol, repetitions, "lowest to highest of the seeds", |(low, _, high)| {
+            format!("{} to {}", number(low, 3), number(high, 3)).into()
+        })),
+        Part::Paragraph(matched(repetitions)),
+        Part::Note(WORDS.into()),
+    ];
+    if protocol.epochs < EPOCHS {
+        parts.push(Part::Note("A quick run: a tenth of the paper's epochs.".into()));
+    }
+    parts.extend([
+        Part::Heading("Convergence".into()),
+        Part::Figure(epochs),
+        Part::Figure(seconds),
+        Part::Note(format!(
+            "The specimen: {}. Published: {}. Designed: {}.",
+            specimen.summary, specimen.published, specimen.designed
+        )),
+    ]);
+    Chapter {
+        name: "training".into(),
+        title: "trainers compared".into(),
+        verdict: claim(repetitions),
+        parts,
+        targets: Vec::new(),
+        files: files.map(|(name, content)| (name.to_string(), content)).into(),
+    }
 }
 
-/// The result as plain text.
-pub fn text(protocol: &Protocol, repetitions: &[Repetition]) -> String {
-    let (headings, rows) = summary(repetitions);
-    // A terminal has 80 columns: ranges are given of the MSE only, the files have all.
-    let narrow = |row: Vec<String>| {
-        let short = |(column, cell): (usize, String)| match column {
-            0 | 1 => cell,
-            _ => cell.split(" (").next().unwrap_or_default().to_string(),
-        };
-        row.into_iter().enumerate().map(short).collect::<Vec<String>>()
-    };
-    let mut lines = vec![headings.into_iter().map(|cell| cell.replace("training, ", "")).collect()];
-    lines.extend(rows.into_iter().map(narrow));
-    let words = "Medians of the seeds, in brackets the range.";
-    let paragraph = |text: &str| wrapped(text, WIDTH).join("\n") + "\n";
-    let paragraphs = [words, &claim(repetitions), &matched(repetitions)].map(paragraph);
-    let heading = paragraph(&(heading(protocol) + "."));
-    let table = aligned(&lines).join("\n") + "\n";
-    [heading, table].into_iter().chain(paragraphs).collect::<Vec<String>>().join("\n")
-}
+/// What the words of the tables mean.
+const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least squares. From the same seed the genetic algorithm and the hybrid begin with the same population, the sub-gradient method and Levenberg-Marquardt with the same random network, whose thresholds are spread out beforehand. An epoch is a generation of 50 individuals, an outer iteration of the sub-gradient method, or an iteration of Levenberg-Marquardt; a hybrid spends half of its epochs on each phase. An evaluation is one of the objective or of its gradient. Seconds are of this machine and of this run, beside whatever else ran. Unseen is the rest of the history, which nothing was fitted to.";
 
 fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&Training> {
     let all = repetitions.iter().flat_map(|repetition| &repetition.trainings);
     all.filter(|training| training.trainer == trainer).collect()
 }
 
-/// Headings and a row for each trainer.
-fn summary(repetitions: &[Repetition]) -> (Vec<String>, Vec<Vec<String>>) {
+/// A row for each trainer; `cell` is made of the lowest, median and highest of its seeds.
+fn table(
+    protocol: &Protocol,
+    repetitions: &[Repetition],
+    of_seeds: &str,
+    cell: impl Fn((f64, f64, f64)) -> Cell,
+) -> Table {
     let unit = repetitions[0].trainings[0].train.output.rsplit_once('_').map_or("", |(_, unit)| unit);
-    let headings = ["trainer".into(), format!("training MSE, {unit}²"), "training, % of std".into()];
-    let headings = headings.into_iter().chain(["unseen, %", "seconds", "evaluations"].map(String::from));
-    let rows = TRAINERS.map(|trainer| {
+    let columns = ["trainer".to_string(), format!("MSE, {unit}²")].into_iter();
+    let columns = columns.chain(["% of std", "unseen, %", "seconds", "evaluations"].map(String::from));
+    let row = |trainer: Trainer| {
         let trainings = of(repetitions, trainer);
         let spread = |value: &dyn Fn(&Training) -> f64| {
-            let values: Vec<f64> = trainings.iter().map(|training| value(training)).collect();
-            let (low, median, high) = range(&values);
-            let shown = |value| format!("{:.3}", Significant(value));
-            format!("{} ({} to {})", shown(median), shown(low), shown(high))
+            cell(range(&trainings.iter().map(|training| value(training)).collect::<Vec<f64>>()))
         };
         vec![
-            trainer.name().to_string(),
+            trainer.name().into(),
             spread(&|training| training.train.mse),
             spread(&|training| training.train.nrmse_std_percent.unwrap_or(f64::NAN)),
             spread(&|training| training.test.nrmse_std_percent.unwrap_or(f64::NAN)),
             spread(&|training| training.seconds),
             spread(&|training| training.evaluations as f64),
         ]
-    });
-    (headings.collect(), rows.into())
+    };
+    let seeds = count(repetitions.len(), "seed");
+    Table {
+        heading: format!("{}; {of_seeds} ({seeds} from {})", heading(protocol), protocol.first_seed),
+        columns: columns.collect(),
+        rows: TRAINERS.map(row).into(),
+    }
 }
 
 /// Lowest, median and highest.
@@ -209,45 +226,6 @@ fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
         }
         due.then_some(moment)
     })
-}
-
-fn html(protocol: &Protocol, repetitions: &[Repetition], charts: &[&String]) -> String {
-    let (headings, rows) = summary(repetitions);
-    let words = "Every trainer minimises the same objective on the same record, output weights by least squares. From the same seed the genetic algorithm and the hybrid begin with the same population, the sub-gradient method and Levenberg-Marquardt with the same random network, whose thresholds are spread out beforehand. An epoch is a generation of 50 individuals, an outer iteration of the sub-gradient method, or an iteration of Levenberg-Marquardt; a hybrid spends half of its epochs on each phase. An evaluation is one of the objective or of its gradient. Seconds are of this machine and of this run. Unseen is the rest of the history, which nothing was fitted to.";
-    let mut content = verdict(&claim(repetitions));
-    content += &section(
-        "Results",
-        &(note(&heading(protocol))
-            + &table(&headings, &rows)
-            + &paragraph(&matched(repetitions))
-            + &note(words)),
-    );
-    let figures: String = charts.iter().map(|chart| figure(chart, true)).collect();
-    content += &section("Convergence", &figures);
-    content += &section(
-        "The specimen",
-        &(paragraph(protocol.specimen.summary)
-            + &note(&format!("Published: {}", protocol.specimen.published))
-            + &note(&format!("Designed: {}", protocol.specimen.designed))),
-    );
-    whole("Trainers compared", &content)
-}
-
-fn markdown(protocol: &Protocol, repetitions: &[Repetition]) -> String {
-    let (headings, rows) = summary(repetitions);
-    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    let mut text = format!("# Trainers compared\n\n{}.\n\n", heading(protocol));
-    text += &line(&headings);
-    text += &format!("|---|{}\n", "---:|".repeat(headings.len() - 1));
-    text.extend(rows.iter().map(|row| line(row)));
-    let runs = format!(
-        "Median of {} (lowest to highest); hysid {}, seeds from {}.",
-        count(repetitions.len(), "seed"),
-        env!("CARGO_PKG_VERSION"),
-        protocol.first_seed
-    );
-    let quick = if protocol.epochs < EPOCHS { "\nA quick run: a tenth of the paper's epochs.\n" } else { "" };
-    text + &format!("\n{runs}\n{quick}\n{}\n\n{}\n", claim(repetitions), matched(repetitions))
 }
 
 fn csv(repetitions: &[Repetition]) -> String {

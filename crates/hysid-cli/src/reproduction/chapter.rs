@@ -1,0 +1,136 @@
+//! What an experiment comes to: a chapter of text, tables and figures, as data. It is stored as it is, and
+//! page, Markdown, CSV and plain text are made of it.
+
+mod rendering;
+
+use serde::{Deserialize, Serialize};
+
+pub use rendering::{csv, html, markdown, table_text, text};
+
+use crate::page::number;
+
+/// The result of an experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Chapter {
+    /// Name of the experiment.
+    pub name: String,
+    /// Headline.
+    pub title: String,
+    /// What a reader should take away, in a sentence.
+    pub verdict: String,
+    /// Text, tables and figures in their order.
+    pub parts: Vec<Part>,
+    /// What was to be reached, and what was.
+    pub targets: Vec<Target>,
+    /// Further files, by name.
+    pub files: Vec<(String, String)>,
+}
+
+/// A piece of a chapter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// A heading.
+    Heading(String),
+    /// A paragraph.
+    Paragraph(String),
+    /// A remark.
+    Note(String),
+    /// A table.
+    Table(Table),
+    /// A drawing over the width of the page, an `svg` element.
+    Figure(String),
+    /// Small drawings side by side.
+    Figures(Vec<String>),
+}
+
+/// A table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Table {
+    /// What the figures are of, and what stands in for the measured data.
+    pub heading: String,
+    /// Headings of the columns.
+    pub columns: Vec<String>,
+    /// Rows, each with a cell for every column; the first is the row's heading.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A cell of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Cell {
+    /// A number; the pages show three significant digits, CSV all.
+    Number(f64),
+    /// Words.
+    Words(String),
+}
+
+/// A figure that was to be reached.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Target {
+    /// Of what.
+    pub of: String,
+    /// What was asked for.
+    pub wanted: String,
+    /// What was measured.
+    pub measured: Cell,
+    /// Was it reached?
+    pub is_met: bool,
+}
+
+impl Cell {
+    /// As the pages show it.
+    pub fn shown(&self) -> String {
+        match self {
+            Cell::Number(value) => number(*value, 3),
+            Cell::Words(words) => words.clone(),
+        }
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        // What is stored must be a number.
+        if value.is_finite() { Cell::Number(value) } else { Cell::Words("–".into()) }
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        value.unwrap_or(f64::NAN).into()
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(words: &str) -> Self {
+        Cell::Words(words.into())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(words: String) -> Self {
+        Cell::Words(words)
+    }
+}
+
+/// Begins the heading of every table whose figures are of a specimen.
+pub fn stands_in(specimen: &str, of: &str) -> String {
+    format!("Synthetic specimen {specimen} in the place of the paper's measured data ({of})")
+}
+
+/// The targets of all these chapters as a table; `None` if there are none.
+pub fn targets(chapters: &[Chapter]) -> Option<Table> {
+    let rows = chapters.iter().flat_map(|chapter| {
+        chapter.targets.iter().map(|target| {
+            let verdict = if target.is_met { "met" } else { "missed" };
+            let cells = [chapter.name.clone(), target.of.clone(), target.wanted.clone()].map(Cell::Words);
+            cells.into_iter().chain([target.measured.clone(), verdict.into()]).collect()
+        })
+    });
+    let rows: Vec<Vec<Cell>> = rows.collect();
+    (!rows.is_empty()).then(|| Table {
+        heading: "What was to be reached. Synthetic specimens stand in for the paper's measured data".into(),
+        columns: ["experiment", "figure", "target", "measured", ""].map(String::from).into(),
+        rows,
+    })
+}

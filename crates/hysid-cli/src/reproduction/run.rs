@@ -1,0 +1,140 @@
+//! Experiments side by side, those that were finished before taken up again; and the pages made of them.
+
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+
+use super::chapter::{self, Chapter};
+use super::storage::{self, Finished};
+use super::{Experiment, Settings, date};
+use crate::messages::{note, results};
+use crate::{Outcome, files, interrupt};
+
+/// Name of the files of all experiments together.
+const TOGETHER: &str = "reproduction";
+
+/// Runs all experiments and writes a page of all of them.
+pub fn run(experiments: &[Experiment], settings: Settings, folder: &Path) -> Result<Outcome> {
+    let everything = experiments.is_empty();
+    let experiments: Vec<Experiment> =
+        if everything { Experiment::all().collect() } else { experiments.to_vec() };
+    let finished = finished(&experiments, settings, folder)?;
+    for one in &finished {
+        write_one(one, settings, folder)?;
+    }
+    if everything && !finished.is_empty() {
+        write_together(&finished, settings, folder)?;
+    } else {
+        let texts: Vec<String> = finished
+            .iter()
+            .map(|one| {
+                let page = folder.join(format!("{}.html", one.chapter.name));
+                format!("{}\npage    {}\n", chapter::text(&one.chapter), files::shown(&page))
+            })
+            .collect();
+        results(&texts.join("\n"))?;
+    }
+    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// All that is finished in the end, in their order.
+fn finished(experiments: &[Experiment], settings: Settings, folder: &Path) -> Result<Vec<Finished>> {
+    let places: Mutex<Vec<Option<Finished>>> = Mutex::new(
+        experiments.iter().map(|&experiment| storage::find(folder, experiment, settings)).collect(),
+    );
+    let mut left = VecDeque::new();
+    for (place, &experiment) in experiments.iter().enumerate() {
+        match &places.lock().expect("no thread panics with the lock")[place] {
+            Some(_) => note(format_args!(
+                "{}: finished before, taken from {} (delete it to run it again)",
+                experiment.name(),
+                files::shown(&storage::path(folder, experiment.name()))
+            )),
+            // The long ones come last on the page and first here, so that no thread waits for them.
+            None => left.push_front((place, experiment)),
+        }
+    }
+    let (all, to_do) = (experiments.len(), left.len());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let workers = threads.min(to_do);
+    let left = Mutex::new(left);
+    let work = || -> Result<()> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / workers.max(1)).max(1)).build();
+        let pool = pool.context("cannot start a thread")?;
+        while !interrupt::requested() {
+            let next = left.lock().expect("no thread panics with the lock").pop_front();
+            let Some((place, experiment)) = next else { break };
+            let began = Instant::now();
+            let Some(chapter) = pool.install(|| experiment.chapter(settings))? else { break };
+            let seconds = began.elapsed().as_secs_f64();
+            let one = Finished::new(settings, date::today(), seconds, chapter);
+            one.keep(folder)?;
+            let mut places = places.lock().expect("no thread panics with the lock");
+            places[place] = Some(one);
+            let done = places.iter().flatten().count();
+            note(format_args!("{done}/{all} {}: finished, {seconds:.0} s", experiment.name()));
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().expect("a worker does not panic"))
+    })?;
+    Ok(places.into_inner().expect("all threads are done").into_iter().flatten().collect())
+}
+
+/// When, by what and how these were made.
+fn made(finished: &[Finished], settings: Settings) -> String {
+    let dates = || finished.iter().map(|one| one.date.as_str());
+    let (first, last) = (dates().min().unwrap_or_default(), dates().max().unwrap_or_default());
+    let dates = if first == last { first.to_string() } else { format!("{first} to {last}") };
+    let seconds: f64 = finished.iter().map(|one| one.seconds).sum();
+    let quick = if settings.quick { " A quick run, with a fraction of the effort." } else { "" };
+    format!(
+        "Made by hysid {}, `hysid reproduce`, on {dates}, seed {}; {seconds:.0} s in all, experiments side by side counted one by one. The measured data of the paper are not public: synthetic specimens stand in for them.{quick}",
+        env!("CARGO_PKG_VERSION"),
+        settings.seed
+    )
+}
+
+/// Page, Markdown, CSV and further files of an experiment.
+fn write_one(one: &Finished, settings: Settings, folder: &Path) -> Result<()> {
+    let chapter = &one.chapter;
+    let made = made(std::slice::from_ref(one), settings);
+    write_all(folder, &chapter.name, &capitalised(&chapter.title), &made, std::slice::from_ref(chapter))?;
+    for (name, content) in &chapter.files {
+        files::write(&folder.join(name), content.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// The same of all experiments.
+fn write_together(finished: &[Finished], settings: Settings, folder: &Path) -> Result<()> {
+    let chapters: Vec<Chapter> = finished.iter().map(|one| one.chapter.clone()).collect();
+    let mut made = made(finished, settings);
+    let all = Experiment::all().count();
+    if chapters.len() < all {
+        made += &format!(" Interrupted: {} of {all} experiments.", chapters.len());
+    }
+    write_all(folder, TOGETHER, "The paper reproduced", &made, &chapters)?;
+    let targets = chapter::targets(&chapters).map(|table| chapter::table_text(&table) + "\n\n");
+    let page = files::shown(&folder.join(format!("{TOGETHER}.html")));
+    results(&(targets.unwrap_or_default() + &format!("page    {page}\n")))
+}
+
+fn write_all(folder: &Path, name: &str, title: &str, made: &str, chapters: &[Chapter]) -> Result<()> {
+    let write = |ending: &str, content: String| {
+        files::write(&folder.join(format!("{name}.{ending}")), content.as_bytes())
+    };
+    write("html", chapter::html(title, made, chapters))?;
+    write("md", chapter::markdown(title, made, chapters))?;
+    write("csv", chapter::csv(chapters))
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
