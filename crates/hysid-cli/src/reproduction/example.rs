@@ -89,7 +89,9 @@ fn play<'a>(example: &Example, case: &'a Case, settings: Settings) -> Result<Opt
         candidates.push(with_rate);
     }
     let validation: Vec<f64> = candidates.iter().map(validation).collect();
-    let has_rate = validation.len() > 1 && validation[1] < validation[0];
+    // Records at several rates need the rate; within one slow record it tells no more than the direction.
+    let is_better = |validation: &[f64]| validation[1] < validation[0];
+    let has_rate = validation.len() > 1 && (train.records().len() > 1 || is_better(&validation));
     let mut models = vec![("XPNN".to_string(), candidates[usize::from(has_rate)].clone())];
     let rival = match case.opponent {
         Opponent::Nobody => None,
@@ -249,6 +251,9 @@ impl Played<'_> {
         let [without, with] = self.validation.as_slice() else {
             return "The record has no time, so the XPNN's input is x alone.".into();
         };
+        if self.train.records().len() > 1 {
+            return "The records differ in rate, so the XPNN has x and x' as inputs.".into();
+        }
         format!(
             "The XPNN has {}: on data held out of the training data its error was {} % of std without x' and {} % with it.",
             if self.has_rate { "x and x' as inputs" } else { "x alone as input" },
