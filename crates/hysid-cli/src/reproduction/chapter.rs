@@ -68,8 +68,10 @@ pub enum Cell {
 /// A figure that was to be reached.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Target {
-    /// Of what.
-    pub of: String,
+    /// The specimen.
+    pub specimen: String,
+    /// Which of its figures.
+    pub figure: String,
     /// What was asked for.
     pub wanted: String,
     /// What was measured.
@@ -123,14 +125,19 @@ pub fn targets(chapters: &[Chapter]) -> Option<Table> {
     let rows = chapters.iter().flat_map(|chapter| {
         chapter.targets.iter().map(|target| {
             let verdict = if target.is_met { "met" } else { "missed" };
-            let cells = [chapter.name.clone(), target.of.clone(), target.wanted.clone()].map(Cell::Words);
-            cells.into_iter().chain([target.measured.clone(), verdict.into()]).collect()
+            vec![
+                format!("{}, {}", chapter.name, target.specimen).into(),
+                target.figure.as_str().into(),
+                target.wanted.as_str().into(),
+                target.measured.clone(),
+                verdict.into(),
+            ]
         })
     });
     let rows: Vec<Vec<Cell>> = rows.collect();
     (!rows.is_empty()).then(|| Table {
         heading: "What was to be reached. Synthetic specimens stand in for the paper's measured data".into(),
-        columns: ["experiment", "figure", "target", "measured", ""].map(String::from).into(),
+        columns: ["experiment", "figure", "target", "measured", "verdict"].map(String::from).into(),
         rows,
     })
 }

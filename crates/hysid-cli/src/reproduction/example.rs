@@ -178,7 +178,8 @@ impl Played<'_> {
                 false => ("at most", measured.is_some_and(|measured| measured <= wanted.limit)),
             };
             Target {
-                of: format!("{}: {}", self.specimen.name, wanted.figure.words()),
+                specimen: self.specimen.name.into(),
+                figure: wanted.figure.words(),
                 wanted: format!("{bound} {}", wanted.limit),
                 measured: measured.into(),
                 is_met,

@@ -6,7 +6,6 @@ use hysid::operator::{DeterioratingStop, Operator};
 
 use super::chapter::{Cell, Chapter, Part, Table};
 use crate::page::number;
-use crate::plot::thin::thin_path;
 use crate::plot::{Axis, Chart, Colour, Curve};
 
 /// A neuron: the stop of `weight x + rate_weight x'` with threshold 1, which deteriorates.
@@ -115,7 +114,7 @@ pub fn chapter() -> Chapter {
         parts: vec![
             Part::Table(table()),
             Part::Note(format!(
-                "The neuron is the stop of w_x x + w_x' x' with threshold 1 and capacity β. K is the width of the loop at rate 0, half-way up; P is what the width at a rate has more than that, and less if negative: both are measured on the first full cycle of a simulation from the virgin state under sin 2πft. The paper names K and P without defining them; these definitions are ours. Rates are designed. The paper lists β 25 for the third demonstration and discusses it as 50; the last row has that. A dead neuron gives 0 from then on; life is in cycles at {} Hz.",
+                "The neuron is the stop of w_x x + w_x' x' with threshold 1 and capacity β. K is the width of the loop at rate 0, half-way up; P is what the width at a rate has more than that, and less if negative: both are measured on the first full cycle of a simulation from the virgin state under sin 2πft. The paper names K and P without defining them; these definitions are ours. Rates are designed. The paper lists β 25 for the third demonstration and discusses it as 50; the last row has that. A dead neuron gives 0 from then on, which has no width (–); life is in cycles at {} Hz.",
                 RATES[0]
             )),
             Part::Heading("The input, and the six loops".into()),
@@ -203,11 +202,8 @@ fn loops(index: usize, neuron: Neuron) -> String {
     let path = in_turn(neuron);
     let curve = |rate: usize| {
         let rows = path.iter().filter(|row| row.3 == rate);
-        let (x, y): (Vec<f64>, Vec<f64>) = rows.map(|row| (row.1, row.2)).unzip();
-        let points = thin_path(&[&x, &y], 1500)
-            .into_iter()
-            .map(|row| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row])));
-        Curve { points: points.collect(), colour: Colour::Series(rate), width: 1.2 }
+        let points = rows.step_by(8).map(|row| (row.1, row.2)).collect();
+        Curve { points, colour: Colour::Series(rate), width: 1.2 }
     };
     let title = format!("{}: {}", index + 1, neuron.name());
     Chart {

@@ -74,9 +74,9 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     summary: "actuator whose loops widen with speed: a Prandtl-Ishlinskii law with thresholds that grow with the rate",
     published: "the rate-dependent Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su)",
     designed: "all values and all inputs",
-    training: "sines of 10 V at 1, 5, 10, 20, 30, 40, 50, 60, 80 and 100 Hz, a record and three periods each, from the \
-               virgin state",
-    testing: "sines of 10 V at 25 and at 75 Hz, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
+    training: "sines of 10 V at 1, 5, 10, 20, 30, 40, 50, 60, 80 and 100 Hz, a record each: a period with \
+               blank outputs, from the virgin state, then two that count",
+    testing: "sines of 10 V at 25 and at 75 Hz, likewise, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
     train: || FREQUENCIES.into_iter().map(sine).collect(),
     test: || Ok(vec![sine(25.0)?, sine(75.0)?, three_tones()?]),
@@ -104,7 +104,7 @@ const STEPS_PER_ROW: usize = 20;
 fn sine(frequency: f64) -> Result<Record> {
     let tone = Tone { amplitude: 10.0, frequency, phase: 0.0 };
     let step = 1.0 / (frequency * ROWS_PER_PERIOD as f64);
-    record(&format!("{frequency} Hz"), &[tone], step, PERIODS * ROWS_PER_PERIOD)
+    record(&format!("{frequency} Hz"), &[tone], step, PERIODS * ROWS_PER_PERIOD, ROWS_PER_PERIOD)
 }
 
 /// The tones repeat after 0.2 s; twice that at 3 kHz.
@@ -114,11 +114,11 @@ fn three_tones() -> Result<Record> {
         Tone { amplitude: 3.5, frequency: 30.0, phase: 1.0 },
         Tone { amplitude: 2.5, frequency: 60.0, phase: 2.0 },
     ];
-    record("three tones", &tones, 1.0 / 3000.0, 1200)
+    record("three tones", &tones, 1.0 / 3000.0, 1200, 0)
 }
 
-/// A record of a sum of tones, `rows` rows `step` seconds apart.
-fn record(name: &str, tones: &[Tone], step: f64, rows: usize) -> Result<Record> {
+/// A record of a sum of tones, `rows` rows `step` seconds apart, the first `blank` without output.
+fn record(name: &str, tones: &[Tone], step: f64, rows: usize, blank: usize) -> Result<Record> {
     let mut actuator = RateDependentActuator::designed();
     let (mut time, mut voltages, mut output) = (Vec::new(), Vec::new(), Vec::new());
     for row in 0..rows {
@@ -138,5 +138,6 @@ fn record(name: &str, tones: &[Tone], step: f64, rows: usize) -> Result<Record> 
         voltages.push(last.1);
         output.push(last.2);
     }
+    output[..blank].fill(f64::NAN);
     Record::new(name, vec![voltages], output)?.with_time(time)
 }

@@ -103,8 +103,12 @@ pub fn csv(chapters: &[Chapter]) -> String {
             }
         }
         if let Some(targets) = targets(std::slice::from_ref(chapter)) {
-            // The figure, not the experiment, tells the rows of this table apart.
-            let rows = targets.rows.into_iter().map(|row| row[1..].to_vec()).collect();
+            // Specimen and figure together tell the rows of this table apart.
+            let row = |row: &Vec<Cell>| {
+                let heading = format!("{}: {}", row[0].shown(), row[1].shown()).into();
+                std::iter::once(heading).chain(row[2..].iter().cloned()).collect()
+            };
+            let rows = targets.rows.iter().map(row).collect();
             add(&chapter.name, &Table { columns: targets.columns[1..].to_vec(), rows, ..targets });
         }
     }

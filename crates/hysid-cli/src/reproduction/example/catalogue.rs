@@ -77,12 +77,12 @@ impl Figure {
     /// In words.
     pub fn words(self) -> String {
         match self {
-            Self::Training => "NRMSE in training, % of std".into(),
-            Self::Unseen => "NRMSE on unseen data, % of std".into(),
-            Self::UnseenRecords(names) => format!("NRMSE on unseen {}, % of std", names.join(" and ")),
-            Self::LargestUnseen => "largest error on unseen data, % of the largest output".into(),
-            Self::TimesBelowTraining => "times the rival's MSE is larger, in training".into(),
-            Self::TimesBelowUnseen => "times the rival's MSE is larger, on unseen data".into(),
+            Self::Training => "training, % of std".into(),
+            Self::Unseen => "unseen, % of std".into(),
+            Self::UnseenRecords(names) => format!("unseen {}, % of std", names.join(" and ")),
+            Self::LargestUnseen => "largest unseen error, % of largest".into(),
+            Self::TimesBelowTraining => "rival's MSE / ours, training".into(),
+            Self::TimesBelowUnseen => "rival's MSE / ours, unseen".into(),
         }
     }
 }
