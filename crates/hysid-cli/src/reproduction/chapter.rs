@@ -120,6 +120,12 @@ pub fn stands_in(specimen: &str, of: &str) -> String {
     format!("Synthetic specimen {specimen} in the place of the paper's measured data ({of})")
 }
 
+/// The text with a large first letter.
+pub fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// The targets of all these chapters as a table; `None` if there are none.
 pub fn targets(chapters: &[Chapter]) -> Option<Table> {
     let rows = chapters.iter().flat_map(|chapter| {

@@ -9,10 +9,10 @@ use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::Model;
 use hysid::network::Family;
 use hysid::plant::Specimen;
-use hysid::record::Dataset;
+use hysid::record::{Dataset, Record};
 use hysid::training::FitOptions;
 
-use super::chapter::{Cell, Chapter, Part, Table, Target, stands_in};
+use super::chapter::{Cell, Chapter, Part, Table, Target, capitalised, stands_in};
 use super::{Settings, fitting};
 use crate::page::{count, number};
 use crate::report::unit_of;
@@ -199,6 +199,10 @@ impl Played<'_> {
             percent(&xpnn.train),
             percent(&xpnn.unseen)
         );
+        let records: Vec<&str> = self.unseen.records().iter().map(Record::name).collect();
+        if records.len() > 1 {
+            text += &format!(" ({})", records.join(", "));
+        }
         if let Some(rival) = self.rival() {
             text += &format!(
                 ", that of {} {} % and {} %",
@@ -213,8 +217,8 @@ impl Played<'_> {
     fn parts(&self, example: &Example) -> Vec<Part> {
         let specimen = self.specimen;
         let mut parts = vec![
-            Part::Heading(format!("{}: {}", specimen.name, self.case.shows)),
-            Part::Paragraph(format!("{}.", capitalised(specimen.summary))),
+            Part::Heading(specimen.name.into()),
+            Part::Paragraph(format!("{}. {}.", capitalised(specimen.summary), capitalised(self.case.shows))),
             Part::Table(self.errors_table(example)),
         ];
         parts.extend(self.records_table(example).map(Part::Table));
@@ -322,12 +326,3 @@ impl Played<'_> {
         })
     }
 }
-
-/// With a large first letter.
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-#[cfg(test)]
-mod tests;

@@ -104,7 +104,13 @@ fn made(finished: &[Finished], settings: Settings) -> String {
 fn write_one(one: &Finished, settings: Settings, folder: &Path) -> Result<()> {
     let chapter = &one.chapter;
     let made = made(std::slice::from_ref(one), settings);
-    write_all(folder, &chapter.name, &capitalised(&chapter.title), &made, std::slice::from_ref(chapter))?;
+    write_all(
+        folder,
+        &chapter.name,
+        &chapter::capitalised(&chapter.title),
+        &made,
+        std::slice::from_ref(chapter),
+    )?;
     for (name, content) in &chapter.files {
         files::write(&folder.join(name), content.as_bytes())?;
     }
@@ -132,9 +138,4 @@ fn write_all(folder: &Path, name: &str, title: &str, made: &str, chapters: &[Cha
     write("html", chapter::html(title, made, chapters))?;
     write("md", chapter::markdown(title, made, chapters))?;
     write("csv", chapter::csv(chapters))
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -7,8 +7,11 @@ use crate::plot::thin::{Point, thin, thin_path};
 use crate::plot::{Axis, Chart, Colour, Curve};
 use crate::report::unit_label;
 
-/// Points of a curve in a chart of loops or of a history.
+/// Points of a curve in a chart of a history.
 const POINTS: usize = 1600;
+
+/// The same in a chart of loops, and at least so many of every stretch without a gap.
+const LOOP_POINTS: (usize, usize) = (3000, 420);
 
 /// A history of more samples is shown from its beginning.
 const LONGEST_HISTORY: usize = 1200;
@@ -83,12 +86,12 @@ impl Scored {
 pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> String {
     let scored = Scored::of(data, lines);
     let names = data.names();
-    let most = POINTS / scored.begins.len().max(1);
+    let most = (LOOP_POINTS.0 / scored.begins.len().max(1)).max(LOOP_POINTS.1);
     let path = |values: &[f64], colour: Colour, width: f64| {
         let mut points: Vec<Point> = Vec::new();
         for stretch in scored.stretches() {
             let (x, y) = (&scored.input[stretch.clone()], &values[stretch]);
-            let rows = thin_path(&[x, y], most.max(40));
+            let rows = thin_path(&[x, y], most);
             points
                 .extend(rows.into_iter().map(|row| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]))));
             points.push((f64::NAN, f64::NAN));

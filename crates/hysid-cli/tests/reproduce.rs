@@ -1,0 +1,106 @@
+//! `hysid reproduce` as a user runs it.
+
+mod workbench;
+
+use std::fs;
+
+use workbench::Workbench;
+
+/// Names of the files in a folder of the workbench, in order.
+fn files(bench: &Workbench, folder: &str) -> Vec<String> {
+    let entries = fs::read_dir(bench.path(folder)).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn an_experiment_by_name_leaves_its_page_and_tables() {
+    let bench = Workbench::new();
+    let ran = bench.run("reproduce nds -o out");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.contains("page    out/nds.html"), "{}", ran.stdout);
+    assert_eq!(files(&bench, "out"), ["nds.csv", "nds.html", "nds.json", "nds.md"]);
+    let page = bench.text("out/nds.html");
+    assert!(!page.contains("http://") || page.contains("http://www.w3.org"), "the page needs nothing else");
+    assert_eq!(page.matches("<svg").count(), 7, "an input and six loops");
+    // K of the first neuron: 2 (1 - 1/1.42).
+    let table = bench.text("out/nds.csv");
+    let k = table.lines().find(|line| line.contains("1: w (1.42, 0)") && line.contains(",K,")).unwrap();
+    let k: f64 = k.rsplit(',').next().unwrap().parse().unwrap();
+    assert!((k - 2.0 * (1.0 - 1.0 / 1.42)).abs() < 1e-5, "{k}");
+}
+
+#[test]
+fn an_example_says_what_stands_in_for_the_measurements_and_what_was_reached() {
+    let bench = Workbench::new();
+    let ran = bench.run("reproduce example7 --quick -o out --seed 4");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let text = bench.text("out/example7.md");
+    for word in [
+        "Synthetic specimen magnetostrictive-actuator in the place of the paper's measured data (example 7)",
+        "seed 4",
+        "A quick run",
+        "| XPNN, unseen |",
+        "| unseen record |",
+        "at most 0.5",
+        "Designed:",
+    ] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    // Verdict and figure agree.
+    let targets: Vec<&str> = text.lines().filter(|line| line.contains("| at most ")).collect();
+    assert_eq!(targets.len(), 2);
+    for target in targets {
+        let cells: Vec<&str> = target.split('|').map(str::trim).collect();
+        let limit: f64 = cells[3].trim_start_matches("at most ").parse().unwrap();
+        let measured: f64 = cells[4].parse().unwrap();
+        assert_eq!(cells[5], if measured <= limit { "met" } else { "missed" }, "{target}");
+    }
+}
+
+#[test]
+fn finished_experiments_are_taken_up_if_they_were_made_in_the_same_way() {
+    let bench = Workbench::new();
+    assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
+    let (page, stored) = (bench.text("out/nds.html"), bench.text("out/nds.json"));
+    let again = bench.run("reproduce nds -o out");
+    assert!(again.stderr.contains("nds: finished before, taken from out/nds.json"), "{}", again.stderr);
+    assert_eq!((bench.text("out/nds.html"), bench.text("out/nds.json")), (page, stored.clone()));
+    // Another seed, an older version, or a broken file: it is run again.
+    let older = stored.replace(env!("CARGO_PKG_VERSION"), "0.0.0");
+    for (arguments, content) in
+        [("--seed 2", stored.clone()), ("", older), ("", stored[..stored.len() / 2].to_string())]
+    {
+        bench.put("out/nds.json", content);
+        let ran = bench.run(&format!("reproduce nds -o out {arguments}"));
+        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        assert!(ran.stderr.contains("1/1 nds: finished"), "{}", ran.stderr);
+    }
+    assert_eq!(bench.run("reproduce example8").status, Some(2));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_is_finished() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    let bench = Workbench::new();
+    // One experiment is there already; the whole takes minutes.
+    assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
+    let mut running =
+        bench.command("reproduce -o out").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let stderr = BufReader::new(running.stderr.take().unwrap());
+    let mut lines = stderr.lines();
+    let under_way = lines.by_ref().map_while(Result::ok).find(|line| line.starts_with("  "));
+    assert!(under_way.is_some(), "a fit or a training tells of itself");
+    let killed = Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let rest: Vec<String> = lines.map_while(Result::ok).collect();
+    assert_eq!(running.wait().unwrap().code(), Some(130), "{rest:?}");
+    let text = bench.text("out/reproduction.md");
+    assert!(text.contains("Interrupted: ") && text.contains("## nds: One neuron"), "{text}");
+    assert!(bench.path("out/reproduction.html").exists() && bench.path("out/reproduction.csv").exists());
+}
