@@ -4,11 +4,14 @@ mod workbench;
 
 use workbench::{Ran, Workbench};
 
-const SPECIMENS: [&str; 8] = [
+const SPECIMENS: [&str; 11] = [
     "ferromagnet",
     "reinforced-concrete-joint",
+    "reinforced-concrete-joint-cycles",
     "terfenol-actuator",
+    "terfenol-rod",
     "shape-memory-actuator",
+    "two-wire-actuator",
     "concrete",
     "piezo-actuator",
     "rate-dependent-actuator",

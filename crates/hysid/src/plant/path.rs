@@ -62,3 +62,36 @@ pub(super) fn cut(whole: &Record, end: usize) -> (Record, Record) {
 pub(super) fn every(step: f64, rows: usize) -> Vec<f64> {
     (0..rows).map(|row| row as f64 * step).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every sixteenth of the half-plane has about its share of the pairs.
+    #[test]
+    fn swings_cover_the_preisach_plane_evenly() {
+        let pairs = 400;
+        let turning = covering(pairs, (-1.0, 3.0));
+        let mut counts = [[0usize; 4]; 4];
+        for pair in turning.chunks_exact(2) {
+            assert!(-1.0 <= pair[1] && pair[1] <= pair[0] && pair[0] <= 3.0, "{pair:?}");
+            counts[(pair[0] + 1.0) as usize][(pair[1] + 1.0) as usize] += 1;
+        }
+        for (a, row) in counts.iter().enumerate() {
+            for (b, &count) in row.iter().enumerate() {
+                // A square off the diagonal is met by pairs in either order; one above it is empty.
+                let share = [2.0, 1.0, 0.0][(1 + b).saturating_sub(a).min(2)] / 16.0;
+                let share = if a == b { 1.0 / 16.0 } else { share };
+                assert!((count as f64 / pairs as f64 - share).abs() < 0.02, "{a} {b}: {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn wandering_swings_are_a_third_to_two_thirds_of_the_range() {
+        for pair in wandering(200, (0.0, 1.0)).windows(2) {
+            let swing = (pair[1] - pair[0]).abs();
+            assert!((0.38..0.62).contains(&swing), "{swing}");
+        }
+    }
+}
