@@ -8,9 +8,9 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use hysid::operator::{Operator, Play};
 use hysid::plant::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
 use hysid::plant::{
-    BoucWenBaberNoori, Concrete, ConcreteParameters, MagnetostrictiveActuator, PiezoActuator,
+    BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
     RateDependentActuator, ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator,
-    with_noise,
+    terfenol_rod, two_wire_actuator, with_noise,
 };
 use hysid::record::{Dataset, Record};
 
