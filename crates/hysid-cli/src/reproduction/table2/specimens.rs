@@ -35,10 +35,10 @@ pub static SPECIMENS: [Property; 6] = [
     },
     Property {
         name: "not Masing",
-        law: "y = Σ w tanh(3 ε_r[x]), the same r and w: a function of each stop, congruent",
+        law: "y = Σ w tanh(3 (x - ε_r[x])), the same r and w: a function of each play, hence congruent",
         paper: [false, false, true, true],
         is_mixing: false,
-        output: |motion| stops(&motion.x, |_, stop| (3.0 * stop).tanh()),
+        output: |motion| weighted(&motion.x, |x, stop| (3.0 * (x - stop)).tanh()),
     },
     Property {
         name: "asymmetric",
@@ -78,18 +78,20 @@ const STOPS: [(f64, f64); 4] = [(0.1, 1.0), (0.25, 0.7), (0.5, 0.5), (0.8, 0.3)]
 /// Capacity of those that wear out.
 const CAPACITY: f64 = 40.0;
 
-/// A weighted sum of a function of each stop, which is given its threshold and the stop's output.
-fn stops(x: &[f64], function: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+/// A weighted sum of a function of the input and each stop's output.
+fn weighted(x: &[f64], function: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let mut total = vec![0.0; x.len()];
     for (r, weight) in STOPS {
-        let outputs = Stop::new(r).expect("thresholds are above 0").run(x);
-        total.iter_mut().zip(outputs).for_each(|(total, stop)| *total += weight * function(r, stop));
+        let stop = Stop::new(r).expect("thresholds are above 0").run(x);
+        for ((total, &x), stop) in total.iter_mut().zip(x).zip(stop) {
+            *total += weight * function(x, stop);
+        }
     }
     total
 }
 
 fn sum(x: &[f64]) -> Vec<f64> {
-    stops(x, |_, stop| stop)
+    weighted(x, |_, stop| stop)
 }
 
 fn worn(x: &[f64]) -> Vec<f64> {
@@ -184,7 +186,7 @@ mod tests {
         incongruency(&outputs(property, record.time().unwrap(), &record.inputs()[0]))
     }
 
-    /// Mayergoyz: sums of functions of single stops are congruent; what mixes or wears out is not.
+    /// Mayergoyz: sums of functions of single plays are congruent; what mixes or wears out is not.
     #[test]
     fn specimens_are_congruent_or_not_as_they_say() {
         for property in &SPECIMENS {
