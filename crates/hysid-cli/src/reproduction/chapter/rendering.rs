@@ -1,10 +1,8 @@
 //! Chapters as HTML, Markdown, CSV and plain text.
 
 use super::{Cell, Chapter, Part, Table, targets};
+use crate::lines::{WIDTH, aligned, wrapped};
 use crate::page;
-
-/// Letters of a line of plain text.
-const WIDTH: usize = 80;
 
 /// A page of one chapter, or of several with a table of targets before them. `made` says when and by what.
 pub fn html(title: &str, made: &str, chapters: &[Chapter]) -> String {
@@ -134,7 +132,7 @@ pub fn text(chapter: &Chapter) -> String {
         }
     }
     paragraphs.extend(targets(std::slice::from_ref(chapter)).as_ref().map(table_text));
-    paragraphs.push(wrapped(&chapter.verdict));
+    paragraphs.push(wrapped(&chapter.verdict, WIDTH).join("\n"));
     paragraphs.join("\n\n") + "\n"
 }
 
@@ -142,32 +140,6 @@ pub fn text(chapter: &Chapter) -> String {
 pub fn table_text(table: &Table) -> String {
     let shown = table.rows.iter().map(|row| row.iter().map(Cell::shown).collect());
     let lines: Vec<Vec<String>> = std::iter::once(table.columns.clone()).chain(shown).collect();
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
-    let aligned = |line: &Vec<String>| {
-        let cells = line.iter().zip(&widths).enumerate();
-        let cells = cells.map(|(column, (cell, &width))| match column {
-            0 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        cells.collect::<Vec<String>>().join("  ").trim_end().to_string()
-    };
-    let lines: Vec<String> = lines.iter().map(aligned).collect();
-    wrapped(&format!("{}.", table.heading)) + "\n" + &lines.join("\n")
-}
-
-/// Text in lines of at most [`WIDTH`] letters.
-fn wrapped(text: &str) -> String {
-    let mut lines: Vec<String> = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.last_mut().expect("there is one from the start");
-        if last.is_empty() {
-            *last = word.into();
-        } else if last.chars().count() + 1 + word.chars().count() <= WIDTH {
-            *last += &format!(" {word}");
-        } else {
-            lines.push(word.into());
-        }
-    }
-    lines.join("\n")
+    let heading = wrapped(&format!("{}.", table.heading), WIDTH);
+    heading.into_iter().chain(aligned(&lines)).collect::<Vec<String>>().join("\n")
 }
