@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::branch::{Branch, Survey};
 use super::comparison::{Comparison, judge};
-use super::{Finding, Property, Verdict};
+use super::{Finding, PictureCurve, Property, Verdict};
 
 /// A difference of shape that matters, as a share of the height.
 const EFFECT: f64 = 0.05;
@@ -59,7 +59,11 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
         }
         Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
     };
-    survey.finding(Property::Congruency, &judgement, &comparisons, statement, EXPERIMENT)
+    let mut finding = survey.finding(Property::Congruency, &judgement, &comparisons, statement, EXPERIMENT);
+    if let Some(picture) = &mut finding.picture {
+        picture.y_label = "y - y(x_a)".into();
+    }
+    finding
 }
 
 /// Branches that begin at about the same input and go the same way. The first branch of a record is
@@ -85,6 +89,12 @@ fn other_past(survey: &Survey, a: &Branch, b: &Branch) -> bool {
         (None, None) => false,
         _ => true,
     })
+}
+
+/// A curve moved to where branches of one shape lie on each other.
+fn from_beginning(mut curve: PictureCurve, start: f64) -> PictureCurve {
+    curve.points.iter_mut().for_each(|point| point.1 -= start);
+    curve
 }
 
 fn compare(survey: &Survey, a: &Branch, b: &Branch, equal_speed: bool) -> Option<Comparison> {
@@ -129,8 +139,8 @@ fn compare(survey: &Survey, a: &Branch, b: &Branch, equal_speed: bool) -> Option
         bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
         pieces: vec![survey.piece(a), survey.piece(b)],
         curves: vec![
-            survey.curve_between("first", a, (beginning, end)),
-            survey.curve_between("second, with another past", b, (beginning, end)),
+            from_beginning(survey.curve_between("first", a, (beginning, end)), start_a.y),
+            from_beginning(survey.curve_between("second, with another past", b, (beginning, end)), start_b.y),
         ],
     })
 }

@@ -6,6 +6,7 @@ use super::branch::Survey;
 use super::cycles::repeated;
 use super::noise;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
+use crate::warning::Significant;
 
 /// A loss of energy that matters, as a share of the first cycle's.
 const EFFECT: f64 = 0.05;
@@ -133,7 +134,11 @@ fn energies(trends: &[Trend]) -> Picture {
     let mut kinds: Vec<&Trend> = trends.iter().collect();
     kinds.sort_by(|a, b| b.cycles[0].area.total_cmp(&a.cycles[0].area));
     let curve = |trend: &&Trend| PictureCurve {
-        label: format!("{:.3} to {:.3}", trend.cycles[0].input.0, trend.cycles[0].input.1),
+        label: format!(
+            "{:.3} to {:.3}",
+            Significant(trend.cycles[0].input.0),
+            Significant(trend.cycles[0].input.1)
+        ),
         points: trend.cycles.iter().enumerate().map(|(k, cycle)| ((k + 1) as f64, cycle.area)).collect(),
     };
     Picture {

@@ -49,6 +49,9 @@ fn end(survey: &Survey, rising: bool) -> Option<Finding> {
         branch.rises() == rising
             && (branch.to - edge).abs() <= survey.same_input()
             && branch.travel() >= COVERED * survey.width()
+            // All of it has an output.
+            && branch.curve.at(branch.from).is_some()
+            && branch.curve.at(branch.to).is_some()
     };
     let branches: Vec<&Branch> = survey.branches.iter().filter(reaches).collect();
     let step = branches.len().div_ceil(MOST).max(1);
