@@ -131,14 +131,16 @@ fn sound_data_are_not_complained_of() {
 
 #[test]
 fn specimens_are_not_complained_of_without_reason() {
-    use ComplaintKind::{Lag, LagChangesWithSpeed, UnclosedLoops};
+    use ComplaintKind::{Lag, LagChangesWithSpeed, NotVirgin, UnclosedLoops};
     for specimen in Specimen::all() {
         // Loops that wear out stay open.
         let true_of_it: &[ComplaintKind] = match specimen.name {
-            "reinforced-concrete-joint" => &[UnclosedLoops],
+            "reinforced-concrete-joint" | "reinforced-concrete-joint-cycles" => &[UnclosedLoops],
             "rate-dependent-actuator" => &[LagChangesWithSpeed],
             "piezo-actuator" => &[LagChangesWithSpeed],
             "magnetostrictive-actuator" => &[Lag],
+            // Under its bias its virgin curve begins below all later loops.
+            "terfenol-rod" => &[NotVirgin],
             _ => &[],
         };
         for percent in [0.0, 0.5, 2.0] {
@@ -390,7 +392,7 @@ fn beginnings() {
 #[test]
 fn unclosed_loops() {
     let (time, x, y) = sound();
-    let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.1 * t).exp() + 0.1 * t).collect();
+    let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.3 * t).exp() + 0.3 * t).collect();
     let found = doctor(&rebuilt(time, x, wearing));
     assert!(found.iter().any(|complaint| complaint.kind == ComplaintKind::UnclosedLoops), "{found:#?}");
 }

@@ -52,8 +52,8 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
             ComplaintKind::NotVirgin,
             Severity::Warning,
             format!(
-                "it begins with an output of {} at an input of {}, where later loops are between {} and {}: it had a past, or the \
-                 output was set anew; {HELP}",
+                "it begins with an output of {} at an input of {}, where later loops are between {} and {}: a virgin curve \
+                 outside of them, a past, or an output that was set anew; {HELP}",
                 units.output(y),
                 units.input(x),
                 units.output(low),
