@@ -51,7 +51,7 @@ pub fn network(family: Family, data: &Dataset, settings: Settings) -> FitOptions
 pub fn words(settings: Settings) -> String {
     let (starts, epochs) = if settings.quick { QUICK_EFFORT } else { EFFORT };
     format!(
-        "{} stops and {} tanh neurons, inputs x and, where records differ in rate or where it lowers the error on data held out of training, x'; Levenberg-Marquardt from {starts} random starts, {epochs} iterations each, ridge 1e-8 and decay 1e-9 because there is no noise. The paper trains by its hybrid of genetic algorithm and sub-gradient method, which takes longer to a larger error: see the chapter on training.",
+        "{} stops and {} tanh neurons, inputs x and, where records differ in rate or where it lowers the error on data held out of training, x'; Levenberg-Marquardt from {starts} random starts, {epochs} iterations each, ridge 1e-8 and decay 1e-9 because there is no noise. The paper trains by its hybrid of genetic algorithm and sub-gradient method; the experiment `training` compares the two. Nothing unseen was trained on, but it was not blind: architecture, penalties, some specimens and their paths were settled while errors on unseen data were looked at.",
         ARCHITECTURE.stops, ARCHITECTURE.hidden
     )
 }
