@@ -14,6 +14,12 @@ const MOST_POINTS: usize = 400;
 /// A turning point counts as reached within this share of the input's range.
 const REACHED: f64 = 0.003;
 
+/// Branches lower than this share of the output's range have no shape.
+const LOWEST: f64 = 0.05;
+
+/// Branches lower than so many deviations of the noise have none either.
+const LOWEST_IN_NOISE: f64 = 10.0;
+
 /// Turning points beneath a branch that are kept with it.
 const KEPT: usize = 4;
 
@@ -209,6 +215,11 @@ impl<'a> Survey<'a> {
     /// Range of the input.
     pub fn width(&self) -> f64 {
         self.input.1 - self.input.0
+    }
+
+    /// Branches lower than this have no shape to compare, in the unit of the output.
+    pub fn lowest_shape(&self) -> f64 {
+        (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise)
     }
 
     /// Inputs closer than this are the same.

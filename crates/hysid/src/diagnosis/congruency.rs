@@ -12,12 +12,6 @@ use super::{Finding, PictureCurve, Property, Verdict};
 /// A difference of shape that matters, as a share of the height.
 const EFFECT: f64 = 0.05;
 
-/// Branches lower than this share of the output's range have no shape.
-const LOWEST: f64 = 0.05;
-
-/// Branches lower than so many deviations of the noise have none either.
-const LOWEST_IN_NOISE: f64 = 10.0;
-
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.05;
 
@@ -127,8 +121,7 @@ fn compare(survey: &Survey, a: &Branch, b: &Branch, equal_speed: bool) -> Option
         }
     }
     let height = (high[0] - low[0]).max(high[1] - low[1]);
-    let lowest = (LOWEST * survey.height()).max(LOWEST_IN_NOISE * survey.output_noise);
-    if places < 0.8 * PLACES as f64 || height < lowest {
+    if places < 0.8 * PLACES as f64 || height < survey.lowest_shape() {
         return None;
     }
     // Of the noise, that at the beginning shifts the whole branch.

@@ -10,12 +10,6 @@ use super::{Finding, Property, Verdict};
 /// A difference that matters, as a share of the height.
 const EFFECT: f64 = 0.05;
 
-/// Branches lower than this share of the output's range have no shape.
-const LOWEST: f64 = 0.05;
-
-/// Branches lower than so many deviations of the noise have none either.
-const LOWEST_IN_NOISE: f64 = 10.0;
-
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.05;
 
@@ -124,8 +118,8 @@ fn compare(survey: &Survey, longest: &OwnPart, part: &OwnPart) -> Option<Compari
         curves[0].push((u, master.0));
         curves[1].push((u, here.0));
     }
-    let lowest = 0.5 * (LOWEST * survey.height()).max(LOWEST_IN_NOISE * survey.output_noise);
-    if places < 0.8 * PLACES as f64 || height < lowest {
+    // Heights are halved here.
+    if places < 0.8 * PLACES as f64 || height < 0.5 * survey.lowest_shape() {
         return None;
     }
     let [master, here] = curves;
