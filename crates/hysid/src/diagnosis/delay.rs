@@ -37,13 +37,11 @@ pub(crate) fn between_speeds(survey: &Survey, courses: &[Speeds]) -> Option<Dela
     if !shortest.is_finite() {
         return None;
     }
-    let remainder = |delay: f64| -> f64 {
-        let squares = courses.iter().filter_map(|speeds| mean_square(survey, speeds, delay));
-        squares.fold(0.0, f64::max)
-    };
-    let time = lowest(&remainder, LONGEST * shortest);
+    let squares = |delay: f64| courses.iter().filter_map(move |speeds| mean_square(survey, speeds, delay));
+    let time = lowest(&|delay| squares(delay).sum(), LONGEST * shortest);
+    let worst = squares(time).fold(0.0, f64::max);
     // Rows are taken with their noise, which no delay takes away.
-    let remains = (remainder(time) - survey.output_noise.powi(2)).max(0.0).sqrt();
+    let remains = (worst - survey.output_noise.powi(2)).max(0.0).sqrt();
     Some(Delay { time, remains: remains / survey.height() })
 }
 

@@ -93,8 +93,11 @@ impl Lag {
 
 /// What is said about a lag.
 pub(super) fn complaints(survey: &Survey, findings: &[Finding]) -> Vec<Complaint> {
-    let at_turns = at_turning_points(survey);
-    if at_turns.is_empty() { between_speeds(survey, findings).into_iter().collect() } else { at_turns }
+    // Whole branches at several speeds know a delay better than their ends do.
+    match between_speeds(survey, findings) {
+        Some(delay) => vec![delay],
+        None => at_turning_points(survey),
+    }
 }
 
 /// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
