@@ -17,9 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::classical::linear_fit::{
     Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic, lowest,
 };
-use crate::classical::prandtl_ishlinskii::SPREADS;
 use crate::classical::series::Series;
-use crate::classical::thresholds::{check_thresholds, check_weights, limited, spread};
+use crate::classical::thresholds::{self, check_thresholds, check_weights, limited};
 use crate::classical::turning_point_stack::{Branch, TurningPointStack};
 use crate::classical::{Dimension, Law, Parameter, Sample};
 use crate::error::{Error, Result};
@@ -119,16 +118,8 @@ impl Masing {
     pub fn fit(data: &Dataset, options: &MasingOptions) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
-        let grids: Vec<Vec<f64>> = match &options.thresholds {
-            Some(thresholds) => {
-                check_thresholds(thresholds)?;
-                vec![thresholds.clone()]
-            }
-            None => SPREADS
-                .iter()
-                .map(|&exponent| spread(options.operators, scaling.inputs[0], exponent))
-                .collect::<Result<_>>()?,
-        };
+        let grids =
+            thresholds::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
         let fits: Vec<(f64, Vec<f64>)> =
             grids.iter().map(|grid| slopes_on_grid(&series, &scaling, grid, options.sign)).collect();
         let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();

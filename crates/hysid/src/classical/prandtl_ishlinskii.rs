@@ -15,7 +15,7 @@ use crate::classical::linear_fit::{
     Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic, lowest,
 };
 use crate::classical::series::Series;
-use crate::classical::thresholds::{check_thresholds, check_weights, limited, spread};
+use crate::classical::thresholds::{self, check_thresholds, check_weights, limited};
 use crate::classical::{Dimension, Law, Parameter, Sample};
 use crate::error::{Error, Result};
 use crate::operator::play;
@@ -76,9 +76,6 @@ impl Default for PrandtlIshlinskiiOptions {
     }
 }
 
-/// Exponents that thresholds are spread with: `r_i ∝ (i/n)^exponent`. Designed.
-pub(crate) const SPREADS: [f64; 3] = [1.0, 1.5, 2.5];
-
 impl PrandtlIshlinskii {
     /// A model from its constant `c` (unit of the output), `w_0`, and the thresholds (unit of the input)
     /// and weights (output for input) of its plays.
@@ -106,16 +103,8 @@ impl PrandtlIshlinskii {
     pub fn fit(data: &Dataset, options: &PrandtlIshlinskiiOptions) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
-        let grids: Vec<Vec<f64>> = match &options.thresholds {
-            Some(thresholds) => {
-                check_thresholds(thresholds)?;
-                vec![thresholds.clone()]
-            }
-            None => SPREADS
-                .iter()
-                .map(|&exponent| spread(options.operators, scaling.inputs[0], exponent))
-                .collect::<Result<_>>()?,
-        };
+        let grids =
+            thresholds::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
         let fits: Vec<(f64, Vec<f64>)> =
             grids.iter().map(|grid| weights_on_grid(&series, &scaling, grid, options.sign)).collect();
         let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();

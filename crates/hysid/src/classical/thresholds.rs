@@ -13,11 +13,29 @@ const LARGEST_WEIGHT: f64 = 1e100;
 ///
 /// # Errors
 /// No operator, or more than 1000.
-pub(crate) fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
+fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     if !(1..=MOST_OPERATORS).contains(&count) {
         return Err(Error::Option(format!("{count} operators: choose 1 to {MOST_OPERATORS}")));
     }
     Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
+}
+
+/// Exponents that thresholds are spread with: `r_i ∝ (i/n)^exponent`. Designed.
+const SPREADS: [f64; 3] = [1.0, 1.5, 2.5];
+
+/// The sets of thresholds that a fit tries: the given one, or `count` of them spread over the range of the input
+/// in several ways.
+///
+/// # Errors
+/// As [`check_thresholds`] and [`spread`].
+pub(crate) fn candidates(given: Option<&[f64]>, count: usize, largest: f64) -> Result<Vec<Vec<f64>>> {
+    match given {
+        Some(thresholds) => {
+            check_thresholds(thresholds)?;
+            Ok(vec![thresholds.to_vec()])
+        }
+        None => SPREADS.iter().map(|&exponent| spread(count, largest, exponent)).collect(),
+    }
 }
 
 /// Refuses thresholds that are not positive, finite and rising.

@@ -18,9 +18,9 @@ use crate::classical::linear_fit::{
 use crate::classical::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
-use crate::classical::prandtl_ishlinskii::{PrandtlIshlinskii, SPREADS};
+use crate::classical::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::classical::series::Series;
-use crate::classical::thresholds::{check_thresholds, spread};
+use crate::classical::thresholds::{self, check_thresholds};
 use crate::error::{Error, Result};
 use crate::operator::play;
 use crate::record::Dataset;
@@ -74,16 +74,10 @@ impl ModifiedPrandtlIshlinskii {
             let found = options.dead_zones;
             return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
         }
-        let grids: Vec<Vec<f64>> = match &options.thresholds {
-            Some(thresholds) => {
-                check_thresholds(thresholds)?;
-                vec![thresholds.iter().map(|r| r / scaling.inputs[0]).collect()]
-            }
-            None => SPREADS
-                .iter()
-                .map(|&exponent| spread(options.operators, 1.0, exponent))
-                .collect::<Result<_>>()?,
-        };
+        options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
+        let given: Option<Vec<f64>> =
+            options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
+        let grids = thresholds::candidates(given.as_deref(), options.operators, 1.0)?;
         let problems: Vec<Problem> =
             grids.iter().map(|grid| Problem::new(&series, &scaling, grid, options.dead_zones)).collect();
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
