@@ -1,27 +1,18 @@
 //! The diagnosis of models against what their equations guarantee.
 
+mod small_models;
+
 use std::ops::ControlFlow;
 
-use hysid::classical::identification::ClassicalOptions;
 use hysid::diagnosis::model::TimeScale;
 use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
-use hysid::identification::{ModelName, Request, identify};
+use hysid::identification::{ModelName, identify};
 use hysid::model::Model;
-use hysid::network::{Family, Sizes};
-use hysid::operator::{Operator, Stop};
+use hysid::network::Family;
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::FitOptions;
 
-/// A play-like output that lags behind its input, so that every model has something to find.
-fn record(rows: usize, name: &str) -> Record {
-    let x: Vec<f64> =
-        (0..rows).map(|k| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
-    let mut stop = Stop::new(0.25).unwrap();
-    let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
-    let time = (0..rows).map(|k| 0.1 * k as f64).collect();
-    Record::new(name, vec![x], y).unwrap().with_time(time).unwrap()
-}
+use small_models::{record, small};
 
 fn data() -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![record(180, "a"), record(120, "b")]).unwrap()
@@ -32,21 +23,7 @@ fn fitted(name: ModelName) -> Model {
 }
 
 fn fitted_to(data: &Dataset, name: ModelName, rate: Option<RateMethod>) -> Model {
-    let request = match Request::of(name, rate, 3) {
-        Request::Network(options) => Request::Network(FitOptions {
-            sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
-            starts: 1,
-            epochs: 4,
-            ..options
-        }),
-        Request::Classical(options) => Request::Classical(ClassicalOptions {
-            operators: Some(8),
-            starts: options.model.is_searched().then_some(2),
-            epochs: options.model.is_searched().then_some(6),
-            ..options
-        }),
-    };
-    identify(data, &request, &mut |_| ControlFlow::Continue(())).unwrap().model
+    identify(data, &small(name, rate), &mut |_| ControlFlow::Continue(())).unwrap().model
 }
 
 use Property::*;

@@ -1,6 +1,8 @@
 //! What every model promises, whatever it is: it is found by its name, its file holds it to the last bit,
 //! stepping and simulating agree, its parameters are named, a wild input leaves it finite.
 
+mod small_models;
+
 use std::ops::ControlFlow;
 
 use hysid::classical::identification::{ClassicalOptions, Rival};
@@ -8,21 +10,12 @@ use hysid::classical::{Dimension, Law};
 use hysid::error::Error;
 use hysid::identification::{ModelName, Request, identify};
 use hysid::model::{Body, Model};
-use hysid::network::{Family, Sizes};
-use hysid::operator::{Operator, Stop};
+use hysid::network::Family;
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Fit, FitOptions};
+use hysid::training::Fit;
 
-/// A play-like output that lags behind its input, so that every model has something to find.
-fn record(rows: usize, name: &str) -> Record {
-    let x: Vec<f64> =
-        (0..rows).map(|k| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
-    let mut stop = Stop::new(0.25).unwrap();
-    let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
-    let time = (0..rows).map(|k| 0.1 * k as f64).collect();
-    Record::new(name, vec![x], y).unwrap().with_time(time).unwrap()
-}
+use small_models::{record, small};
 
 fn data() -> Dataset {
     let names = ColumnNames {
@@ -32,25 +25,6 @@ fn data() -> Dataset {
         output: "displacement_um".into(),
     };
     Dataset::new(names, vec![record(180, "a"), record(120, "b")]).unwrap()
-}
-
-/// Small, so that all of them are quick.
-fn small(model: ModelName) -> Request {
-    let rate = Some(RateMethod::Central);
-    match Request::of(model, rate, 3) {
-        Request::Network(options) => Request::Network(FitOptions {
-            sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
-            starts: 1,
-            epochs: 4,
-            ..options
-        }),
-        Request::Classical(options) => Request::Classical(ClassicalOptions {
-            operators: Some(8),
-            starts: options.model.is_searched().then_some(2),
-            epochs: options.model.is_searched().then_some(6),
-            ..options
-        }),
-    }
 }
 
 fn quietly(request: &Request) -> Fit {
@@ -77,7 +51,7 @@ fn names_are_found_and_are_different() {
 #[test]
 fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
     for name in ModelName::all() {
-        let fitted = quietly(&small(name));
+        let fitted = quietly(&small(name, Some(RateMethod::Central)));
         let model = &fitted.model;
         assert_eq!(model.name(), name);
         let text = model.to_json();
@@ -118,7 +92,7 @@ fn wild_inputs_leave_every_model_finite() {
     let time = (0..rows).map(|k| 1e-3 * k as f64).collect();
     let wild = Record::new("wild", vec![x], vec![f64::NAN; rows]).unwrap().with_time(time).unwrap();
     for name in ModelName::all() {
-        let model = quietly(&small(name)).model;
+        let model = quietly(&small(name, Some(RateMethod::Central))).model;
         let y = model.simulate(&wild).unwrap();
         assert!(y.iter().all(|y| y.is_finite()), "{name:?}: {:?}", y.iter().find(|y| !y.is_finite()));
     }
@@ -127,7 +101,7 @@ fn wild_inputs_leave_every_model_finite() {
 #[test]
 fn parameters_of_laws_are_named_within_bounds_and_in_units() {
     for rival in Rival::ALL {
-        let model = quietly(&small(ModelName::Rival(rival))).model;
+        let model = quietly(&small(ModelName::Rival(rival), Some(RateMethod::Central))).model;
         let Body::Law(law) = model.body() else {
             assert_eq!(rival, Rival::RandomStops);
             continue;

@@ -1,0 +1,37 @@
+//! A record that every model can be fitted to, and requests small enough that all of them are quick.
+
+use hysid::classical::identification::ClassicalOptions;
+use hysid::identification::{ModelName, Request};
+use hysid::network::Sizes;
+use hysid::operator::{Operator, Stop};
+use hysid::rate::RateMethod;
+use hysid::record::Record;
+use hysid::training::FitOptions;
+
+/// A play-like output that lags behind its input, so that every model has something to find.
+pub fn record(rows: usize, name: &str) -> Record {
+    let x: Vec<f64> =
+        (0..rows).map(|k| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
+    let mut stop = Stop::new(0.25).unwrap();
+    let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
+    let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+    Record::new(name, vec![x], y).unwrap().with_time(time).unwrap()
+}
+
+/// Small, so that all of them are quick.
+pub fn small(model: ModelName, rate: Option<RateMethod>) -> Request {
+    match Request::of(model, rate, 3) {
+        Request::Network(options) => Request::Network(FitOptions {
+            sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
+            starts: 1,
+            epochs: 4,
+            ..options
+        }),
+        Request::Classical(options) => Request::Classical(ClassicalOptions {
+            operators: Some(8),
+            starts: options.model.is_searched().then_some(2),
+            epochs: options.model.is_searched().then_some(6),
+            ..options
+        }),
+    }
+}
