@@ -40,7 +40,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::record::Dataset;
+use crate::record::{Dataset, Record};
 pub use advice::Advice;
 use branch::Survey;
 pub use cycles::Cycle;
@@ -217,6 +217,12 @@ pub struct Piece {
     pub rows: (usize, usize),
 }
 
+impl Piece {
+    fn of(record: &Record, rows: (usize, usize)) -> Self {
+        Self { record: record.name().into(), rows }
+    }
+}
+
 /// Curves that show a verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
@@ -250,6 +256,12 @@ pub struct Diagnosis {
     pub delay: Option<Delay>,
     /// Turning points of the first input.
     pub turning_points: usize,
+    /// The rows where they are, record by record, counted from 0 at the beginning of each.
+    #[serde(skip)]
+    pub turning_rows: Vec<Vec<usize>>,
+    /// Reversals of the first input below this are none, in its unit.
+    #[serde(skip)]
+    pub smallest_reversal: f64,
     /// Cycles of the first input with an output, in the order of the data.
     pub cycles: Vec<Cycle>,
     /// What in the data would mislead a fit, warnings first.
@@ -267,13 +279,12 @@ impl Diagnosis {
         data.check_identifiable(FEWEST_ROWS)?;
         let survey = Survey::new(data, options);
         let cycles = cycles::cycles(&survey);
-        let openings = opening::openings(&survey);
         let (rate, delay) = rate_dependence::test(&survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
         let properties = vec![
-            static_hysteresis::test(&survey, &openings, || doctor::longest_lag(&survey)),
-            orientation::test(&survey, &openings),
+            static_hysteresis::test(&survey, || doctor::longest_lag(&survey)),
+            orientation::test(&survey),
             rate,
             wiping_out::test(&survey, equal_speed),
             congruency::test(&survey, equal_speed),
@@ -283,15 +294,17 @@ impl Diagnosis {
             deterioration::test(&survey, &cycles),
             loop_closure::test(&survey, &cycles),
         ];
-        let starts = data.records().len();
+        let turning_rows = survey.turning_rows();
         Ok(Self {
-            doctor: doctor::examine(&survey, &cycles, &properties),
+            doctor: doctor::examine(&survey, &cycles, &properties, delay.as_ref()),
             advice: advice::advise(&properties, delay.as_ref()),
             properties,
             delay,
             output_noise: survey.output_noise,
             input_noise: survey.input_noise,
-            turning_points: survey.branches.len().saturating_sub(starts),
+            turning_points: turning_rows.iter().map(Vec::len).sum(),
+            turning_rows,
+            smallest_reversal: survey.smallest_reversal,
             cycles,
         })
     }

@@ -16,7 +16,6 @@ use crate::page::{self, count, definitions, note, section};
 pub struct DataDiagnosis<'a> {
     data: &'a Data,
     diagnosis: Diagnosis,
-    smallest_reversal: f64,
     quantities: Quantities,
     understood: &'a [(String, String)],
     fit: String,
@@ -32,8 +31,7 @@ impl<'a> DataDiagnosis<'a> {
     ) -> Result<Self> {
         let diagnosis = Diagnosis::of(&data.set, options).map_err(|error| data.explain(error))?;
         let quantities = Quantities::of(data.set.names());
-        let smallest_reversal = options.smallest_reversal;
-        Ok(Self { data, diagnosis, smallest_reversal, quantities, understood, fit })
+        Ok(Self { data, diagnosis, quantities, understood, fit })
     }
 
     /// All of it within 80 columns.
@@ -84,7 +82,7 @@ impl<'a> DataDiagnosis<'a> {
         let Self { data, diagnosis, quantities, understood, .. } = self;
         let several = data.set.records().len() > 1;
         let found = &diagnosis.properties;
-        let overview = Overview::new(&data.set, diagnosis, quantities, self.smallest_reversal);
+        let overview = Overview::new(&data.set, diagnosis, quantities);
         let cards = cards(found, quantities, |finding| findings::place(&finding.evidence, several));
         let content = [
             counsel::verdict(&diagnosis.advice),

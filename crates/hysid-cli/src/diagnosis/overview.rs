@@ -1,8 +1,7 @@
 //! The record as a whole: its loops with backbone and turning points, and the way of its input.
 
 use hysid::diagnosis::Diagnosis;
-use hysid::record::{Dataset, Record};
-use hysid::turning_points::turning_points;
+use hysid::record::Dataset;
 
 use super::quantities::Quantities;
 use crate::page::{count, figure, note, section};
@@ -23,30 +22,16 @@ const MOST_RECORDS: usize = 200;
 /// Most records whose way is drawn.
 const MOST_WAYS: usize = 4;
 
-/// A reversal within so many standard deviations of the input's noise may be jitter.
-const JITTER: f64 = 12.0;
-
-/// The data and the rows where the input turns, record by record.
+/// The data, and what was found in them.
 pub struct Overview<'a> {
     data: &'a Dataset,
+    diagnosis: &'a Diagnosis,
     quantities: &'a Quantities,
-    turning: Vec<Vec<usize>>,
-    /// Reversals below this are none.
-    smallest: f64,
 }
 
 impl<'a> Overview<'a> {
-    /// `smallest_reversal` is the share of the input's range below which a reversal is none.
-    pub fn new(
-        data: &'a Dataset,
-        diagnosis: &Diagnosis,
-        quantities: &'a Quantities,
-        smallest_reversal: f64,
-    ) -> Self {
-        let (low, high) = data.input_range(0);
-        let smallest = (smallest_reversal * (high - low)).max(JITTER * diagnosis.input_noise);
-        let of_record = |record: &Record| turning_points(&record.inputs()[0], smallest);
-        Self { data, quantities, turning: data.records().iter().map(of_record).collect(), smallest }
+    pub fn new(data: &'a Dataset, diagnosis: &'a Diagnosis, quantities: &'a Quantities) -> Self {
+        Self { data, diagnosis, quantities }
     }
 
     /// Loops and ways.
@@ -87,7 +72,7 @@ impl<'a> Overview<'a> {
             let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
             let points = path.iter().map(point).collect();
             curves.push(Curve { points, colour: Colour::Measured, width: 1.3 });
-            let points = backbone(&self.tips(index), self.smallest);
+            let points = backbone(&self.tips(index), self.diagnosis.smallest_reversal);
             backbones.push(Curve { points, colour: Colour::Simulated, width: 2.0 });
         }
         curves.extend(backbones.into_iter().filter(|curve| curve.points.len() > 2));
@@ -115,7 +100,7 @@ impl<'a> Overview<'a> {
     fn tips(&self, index: usize) -> Vec<Point> {
         let record = &self.data.records()[index];
         let tip = |&row: &usize| (record.inputs()[0][row], record.output()[row]);
-        self.turning[index].iter().map(tip).filter(|tip| tip.1.is_finite()).collect()
+        self.diagnosis.turning_rows[index].iter().map(tip).filter(|tip| tip.1.is_finite()).collect()
     }
 
     /// The input over time, or over the row where there is no time.
@@ -124,7 +109,7 @@ impl<'a> Overview<'a> {
         let time = |row: usize| record.time().map_or((row + 1) as f64, |time| time[row]);
         let x = &record.inputs()[0];
         let way: Vec<Point> = (0..x.len()).map(|row| (time(row), x[row])).collect();
-        let turning = self.turning[index].iter().map(|&row| way[row]).collect();
+        let turning = self.diagnosis.turning_rows[index].iter().map(|&row| way[row]).collect();
         let label = match (record.time(), &self.data.names().time) {
             (Some(_), Some(name)) => unit_label(name),
             (Some(_), None) => "time".into(),

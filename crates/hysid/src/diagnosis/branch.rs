@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::noise;
+use super::opening::{Opening, openings};
 use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use crate::record::{Dataset, Record};
@@ -179,6 +180,8 @@ pub(crate) struct Survey<'a> {
     pub window: usize,
     /// All branches, record after record.
     pub branches: Vec<Branch>,
+    /// How far each stands open to the next of its record, in their order.
+    pub openings: Vec<Opening>,
 }
 
 impl<'a> Survey<'a> {
@@ -204,7 +207,8 @@ impl<'a> Survey<'a> {
             branch.curve = curve(&points, window);
         }
         let output = data.output_range();
-        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches }
+        let openings = openings(&branches, output_noise);
+        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches, openings }
     }
 
     /// Range of the output.
@@ -215,6 +219,15 @@ impl<'a> Survey<'a> {
     /// Range of the input.
     pub fn width(&self) -> f64 {
         self.input.1 - self.input.0
+    }
+
+    /// Rows of the turning points between branches, record by record.
+    pub fn turning_rows(&self) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.data.records().len()];
+        for pair in self.branches.windows(2).filter(|pair| pair[0].record == pair[1].record) {
+            rows[pair[1].record].push(pair[1].rows.start);
+        }
+        rows
     }
 
     /// Branches lower than this have no shape to compare, in the unit of the output.
@@ -366,10 +379,7 @@ impl Survey<'_> {
 
     /// Where a branch is in the data.
     pub fn piece(&self, branch: &Branch) -> Piece {
-        Piece {
-            record: self.data.records()[branch.record].name().into(),
-            rows: (branch.rows.start, branch.rows.end - 1),
-        }
+        Piece::of(&self.data.records()[branch.record], (branch.rows.start, branch.rows.end - 1))
     }
 
     /// A branch for a picture.

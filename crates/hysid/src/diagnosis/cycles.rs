@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::Piece;
 use super::branch::{Branch, Survey};
-use super::opening::opening;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 const CLOSED: f64 = 0.02;
@@ -60,11 +59,6 @@ impl Cycle {
     pub fn piece(&self) -> Piece {
         Piece { record: self.record.clone(), rows: self.rows }
     }
-
-    /// Energy as a share of the box around the loop: 0 for a line, near 1 for dry friction.
-    pub fn fullness(&self) -> f64 {
-        self.energy / (self.swing() * self.height()).max(f64::MIN_POSITIVE)
-    }
 }
 
 /// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
@@ -87,9 +81,10 @@ fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
     let (out, back) = (&survey.branches[index], &survey.branches[index + 1]);
     let swing = out.travel().max(back.travel());
     let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise;
-    if out.record != back.record || !closed || out.curve.is_empty() || back.curve.is_empty() {
+    if out.record != back.record || !closed {
         return None;
     }
+    let place = survey.openings.binary_search_by_key(&index, |opening| opening.branch).ok()?;
     let record = &survey.data.records()[out.record];
     let rows = out.rows.start..back.rows.end;
     let (x, y) = (&record.inputs()[0][rows.clone()], &record.output()[rows.clone()]);
@@ -97,7 +92,6 @@ fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
         return None;
     }
     // The way along the loop, and straight back from its end to its beginning.
-    let opening = opening(survey, index)?;
     let n = x.len();
     let step = |row: usize| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n]);
     let energy: f64 = (0..n).map(|row| y[row] * step(row)).sum();
@@ -117,7 +111,7 @@ fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
         input,
         output,
         energy,
-        area: opening.area,
+        area: survey.openings[place].area,
         energy_deviation: survey.output_noise * squares.sqrt(),
         width: apart_along_input(middle).unwrap_or(0.0),
         secant_stiffness: (tip - 0.5 * (first + last)) / (out.to - out.from),

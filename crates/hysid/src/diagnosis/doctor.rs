@@ -14,7 +14,7 @@ mod start;
 use serde::Serialize;
 
 use super::branch::Survey;
-use super::{Cycle, Finding, Piece};
+use super::{Cycle, Delay, Finding, Piece};
 use crate::unit;
 use crate::warning::Significant;
 
@@ -106,9 +106,14 @@ impl Complaint {
 }
 
 /// Looks for all that may be wrong; warnings first.
-pub(crate) fn examine(survey: &Survey, cycles: &[Cycle], findings: &[Finding]) -> Vec<Complaint> {
+pub(crate) fn examine(
+    survey: &Survey,
+    cycles: &[Cycle],
+    findings: &[Finding],
+    delay: Option<&Delay>,
+) -> Vec<Complaint> {
     let found = [
-        lag::complaints(survey, findings),
+        lag::complaints(survey, delay),
         drift::complaints(survey, cycles),
         creep::complaints(survey),
         clipping::complaints(survey),
@@ -182,5 +187,5 @@ impl Units {
 
 /// Rows of a record as evidence.
 fn piece(survey: &Survey, record: usize, first: usize, last: usize) -> Piece {
-    Piece { record: survey.data.records()[record].name().into(), rows: (first, last) }
+    Piece::of(&survey.data.records()[record], (first, last))
 }

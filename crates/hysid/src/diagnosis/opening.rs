@@ -1,6 +1,6 @@
 //! How far a branch and the one after it stand open, whether or not they close a loop.
 
-use super::branch::Survey;
+use super::branch::{Branch, Survey};
 use super::{PictureCurve, Piece};
 
 /// Places along the inputs that both branches go through, at most.
@@ -43,14 +43,14 @@ impl Opening {
     }
 }
 
-/// The openings between all branches that follow each other.
-pub(crate) fn openings(survey: &Survey) -> Vec<Opening> {
-    (1..survey.branches.len()).filter_map(|next| opening(survey, next - 1)).collect()
+/// The openings between all branches that follow each other, in their order.
+pub(crate) fn openings(branches: &[Branch], output_noise: f64) -> Vec<Opening> {
+    (1..branches.len()).filter_map(|next| opening(branches, next - 1, output_noise)).collect()
 }
 
 /// The opening between a branch and the next.
-pub(super) fn opening(survey: &Survey, branch: usize) -> Option<Opening> {
-    let (out, back) = (&survey.branches[branch], &survey.branches[branch + 1]);
+fn opening(branches: &[Branch], branch: usize, output_noise: f64) -> Option<Opening> {
+    let (out, back) = (&branches[branch], &branches[branch + 1]);
     if out.record != back.record || out.curve.is_empty() || back.curve.is_empty() {
         return None;
     }
@@ -73,7 +73,7 @@ pub(super) fn opening(survey: &Survey, branch: usize) -> Option<Opening> {
         branch,
         signed: signed * step,
         area: area * step,
-        deviation: survey.output_noise * (to - from) * (2.0 / rows).sqrt(),
+        deviation: output_noise * (to - from) * (2.0 / rows).sqrt(),
         swing: to - from,
         height: high - low,
         speed: out.speed.zip(back.speed).map(|(a, b)| 0.5 * (a + b)),

@@ -19,13 +19,13 @@ const WIDE: f64 = 0.3;
 const EXPERIMENT: &str = "run a few closed loops over the whole range of the input";
 
 /// Tests which way loops are passed.
-pub(crate) fn test(survey: &Survey, openings: &[Opening]) -> Finding {
-    let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
+pub(crate) fn test(survey: &Survey) -> Finding {
+    let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let counts = |opening: &&Opening| {
         let open = opening.fullness() > FULL && opening.area > 5.0 * opening.deviation;
         opening.swing >= WIDE * widest && open
     };
-    let open: Vec<&Opening> = openings.iter().filter(counts).collect();
+    let open: Vec<&Opening> = survey.openings.iter().filter(counts).collect();
     let total: f64 = open.iter().map(|opening| opening.area).sum();
     let Some(largest) = open.iter().copied().max_by(|a, b| a.area.total_cmp(&b.area)) else {
         return Finding::not_testable(Property::Orientation, "no loop with an area", EXPERIMENT);

@@ -31,13 +31,10 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
 /// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`.
-pub(crate) fn test(
-    survey: &Survey,
-    openings: &[Opening],
-    longest_lag: impl FnOnce() -> Option<f64>,
-) -> Finding {
-    let widest = openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
-    let mut large: Vec<&Opening> = openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
+pub(crate) fn test(survey: &Survey, longest_lag: impl FnOnce() -> Option<f64>) -> Finding {
+    let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
+    let mut large: Vec<&Opening> =
+        survey.openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();
     if large.is_empty() {
         return Finding::not_testable(Property::StaticHysteresis, "the input never turns", EXPERIMENT);
     }

@@ -8,8 +8,8 @@ mod turn;
 use turn::{Beside, Turn, Window};
 
 use super::{Complaint, ComplaintKind, Severity, Units};
+use crate::diagnosis::Delay;
 use crate::diagnosis::branch::Survey;
-use crate::diagnosis::{Finding, Property, Verdict, delay, rate_dependence};
 
 /// Shares of the shorter branch that are taken around a turning point, the narrowest first.
 const SHARES: [f64; 7] = [0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2];
@@ -91,11 +91,11 @@ impl Lag {
     }
 }
 
-/// What is said about a lag.
-pub(super) fn complaints(survey: &Survey, findings: &[Finding]) -> Vec<Complaint> {
-    // Whole branches at several speeds know a delay better than their ends do.
-    match between_speeds(survey, findings) {
-        Some(delay) => vec![delay],
+/// What is said about a lag: of whole branches at several speeds, if a delay makes them agree, which know it better
+/// than their ends do; otherwise of turning points.
+pub(super) fn complaints(survey: &Survey, delay: Option<&Delay>) -> Vec<Complaint> {
+    match delay {
+        Some(delay) => vec![between_speeds(survey, delay)],
         None => at_turning_points(survey),
     }
 }
@@ -108,14 +108,8 @@ pub(super) fn longest(survey: &Survey) -> Option<f64> {
     Some(lag.time.abs() + SURE * lag.deviation)
 }
 
-/// A delay that makes all speeds agree, where the test of rate dependence found one, theory.md (10.14).
-fn between_speeds(survey: &Survey, findings: &[Finding]) -> Option<Complaint> {
-    let rate = findings.iter().find(|finding| finding.property == Property::RateDependence)?;
-    // The speeds differ, and it is no rate dependence: a delay explains it.
-    if rate.verdict != Verdict::No || rate.index? <= rate.threshold? {
-        return None;
-    }
-    let delay = delay::between_speeds(survey, &rate_dependence::courses(survey))?;
+/// A delay that makes all speeds agree, theory.md (10.14).
+fn between_speeds(survey: &Survey, delay: &Delay) -> Complaint {
     let units = Units::of(survey);
     let statement = format!(
         "the output is {}, the same at all speeds, and what looks like rate dependence goes with it; shift the output by {} to {} \
@@ -124,11 +118,11 @@ fn between_speeds(survey: &Survey, findings: &[Finding]) -> Option<Complaint> {
         units.time(delay.time.abs()),
         if delay.time > 0.0 { "an earlier" } else { "a later" },
     );
-    Some(Complaint {
+    Complaint {
         value: Some(delay.time),
         unit: units.time,
         ..Complaint::of_all(ComplaintKind::Lag, Severity::Warning, statement)
-    })
+    }
 }
 
 fn at_turning_points(survey: &Survey) -> Vec<Complaint> {

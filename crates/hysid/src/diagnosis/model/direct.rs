@@ -24,10 +24,6 @@ const FORGOTTEN: usize = 2;
 /// Excursions in a row.
 const EXCURSIONS: usize = 20;
 
-fn piece(record: &Record, rows: (usize, usize)) -> Piece {
-    Piece { record: record.name().into(), rows }
-}
-
 fn drawn(label: String, record: &Record, from: usize) -> PictureCurve {
     let rows = record.inputs()[0].iter().zip(record.output()).skip(from);
     PictureCurve { label, points: rows.map(|(&x, &y)| (x, y)).collect() }
@@ -57,7 +53,7 @@ pub(super) fn rate_dependence(probe: &Probe) -> Result<Finding> {
         .iter()
         .map(|record| Evidence {
             index: apart(record),
-            pieces: vec![piece(slowest, (0, rows)), piece(record, (0, rows))],
+            pieces: vec![Piece::of(slowest, (0, rows)), Piece::of(record, (0, rows))],
         })
         .collect();
     let index = evidence.iter().map(|evidence| evidence.index).fold(0.0, f64::max);
@@ -133,7 +129,7 @@ pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
         comparisons: 1,
         statement,
         experiment: None,
-        evidence: vec![Evidence { index: best.index, pieces: vec![piece(&best.record, best.rows)] }],
+        evidence: vec![Evidence { index: best.index, pieces: vec![Piece::of(&best.record, best.rows)] }],
         picture: Some(loops(best.curves)),
     })
 }
@@ -201,7 +197,7 @@ pub(super) fn with_accumulated_gap(probe: &Probe, finding: Finding, height: f64)
             "{EXCURSIONS} excursions in a row leave a gap of {:.1} % of the output's range",
             100.0 * gap
         ),
-        evidence: vec![Evidence { index: gap, pieces: vec![piece(&record, rows)] }],
+        evidence: vec![Evidence { index: gap, pieces: vec![Piece::of(&record, rows)] }],
         picture: Some(Picture { x_label: String::new(), y_label: String::new(), curves: vec![curve] }),
         ..finding
     })

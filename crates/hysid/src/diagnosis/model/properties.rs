@@ -5,7 +5,6 @@ use super::direct;
 use super::probe::{Probe, data, extent};
 use crate::diagnosis::branch::Survey;
 use crate::diagnosis::cycles::{Cycle, cycles};
-use crate::diagnosis::opening::openings;
 use crate::diagnosis::{
     DiagnosisOptions, Finding, Property, Verdict, congruency, deterioration, loop_closure, masing,
     orientation, saturation, static_hysteresis, wiping_out,
@@ -86,7 +85,7 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
 fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
     let survey = survey(memory);
     let mut findings = vec![
-        orientation::test(&survey, &openings(&survey)),
+        orientation::test(&survey),
         direct::with_accumulated_gap(probe, wiping_out::test(&survey, false), survey.height())?,
         congruency::test(&survey, false),
         masing::test(&survey, false),
@@ -122,13 +121,13 @@ fn static_loops(probe: &Probe) -> Result<Finding> {
         probe.run("three times as fast", &path.x, 3.0 * slowest)?,
     ])?;
     let survey = survey(&data);
-    Ok(static_hysteresis::test(&survey, &openings(&survey), || None))
+    Ok(static_hysteresis::test(&survey, || None))
 }
 
 fn orientation_at_speed(probe: &Probe, loops: Record) -> Result<Finding> {
     let data = data(vec![loops])?;
     let survey = survey(&data);
-    let mut finding = orientation::test(&survey, &openings(&survey));
+    let mut finding = orientation::test(&survey);
     if probe.speeds.matter() {
         finding.statement += " (at the middle of the trained speeds)";
     }
