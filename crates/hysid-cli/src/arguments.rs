@@ -1,16 +1,17 @@
-//! The command line. Every option of `fit` has the name of its field in the library's `FitOptions`.
+//! The command line. Every option of a model and its training has the name of its field in the library's
+//! `ChosenOptions`.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, Parser, Subcommand};
-use hysid::classical::identification::{ClassicalOptions, Rival};
 use hysid::classical::linear_fit::Sign;
 use hysid::diagnosis::DiagnosisOptions;
-use hysid::identification::{ModelName, Request};
-use hysid::network::{Family, Sizes};
+use hysid::identification::ModelName;
+use hysid::identification::options::{ChosenOptions, NEURONS, RateChoice, STARTS};
+use hysid::network::Sizes;
 use hysid::plant::Specimen;
-use hysid::rate::RateMethod;
 use hysid::training::genetic::POPULATIONS;
 use hysid::training::{FitOptions, Trainer};
 
@@ -80,22 +81,16 @@ pub struct ColumnOptions {
 /// What `--rate` asks for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RateOption {
-    /// Central differences if there is time and the model has a use for them.
-    Auto,
-    /// No rate.
-    None,
-    /// Computed from the time stamps.
-    Method(RateMethod),
+    /// None, computed from the time stamps, or as suits the model.
+    Choice(RateChoice),
     /// A column of this name.
     Column(String),
 }
 
 fn rate(text: &str) -> Result<RateOption, String> {
     Ok(match text {
-        "auto" => RateOption::Auto,
-        "none" => RateOption::None,
-        "central" | "backward" | "savitzky-golay" => {
-            RateOption::Method(text.parse().map_err(|error: hysid::Error| error.to_string())?)
+        "auto" | "none" | "central" | "backward" | "savitzky-golay" => {
+            RateOption::Choice(text.parse().map_err(|error: hysid::Error| error.to_string())?)
         }
         "" => return Err("a method or the name of a column is needed".into()),
         column => RateOption::Column(column.into()),
@@ -217,104 +212,30 @@ pub struct RivalOptions {
 }
 
 impl TrainingOptions {
-    /// What the library is asked for, with the rate decided.
-    pub fn request(&self, rival: &RivalOptions, rate: Option<RateMethod>) -> Request {
-        match self.model {
-            ModelName::Network(model) => Request::Network(self.fit_options(model, rate)),
-            ModelName::Rival(model) => Request::Classical(ClassicalOptions {
-                operators: rival.operators,
-                thresholds: rival.thresholds.clone(),
-                sign: rival.sign,
-                dead_zones: rival.dead_zones,
-                free_weights: rival.free_weights,
-                logarithmic_thresholds: rival.logarithmic_thresholds,
-                degradation: rival.degradation,
-                differential_form: rival.differential_form,
-                hidden: self.hidden,
-                rate,
-                starts: self.starts,
-                epochs: self.epochs,
-                seed: self.seed,
-                ..ClassicalOptions::of(model)
-            }),
+    /// All that was asked for, by the library's names.
+    pub fn chosen(&self, rival: &RivalOptions) -> ChosenOptions {
+        ChosenOptions {
+            model: Some(self.model),
+            stops: self.stops,
+            hidden: self.hidden,
+            relaxation: Some(self.relaxation),
+            no_deterioration: Some(self.no_deterioration),
+            training: Some(self.training),
+            starts: self.starts,
+            epochs: self.epochs,
+            population: self.population,
+            stall: self.stall,
+            seed: Some(self.seed),
+            validation: Some(self.validation),
+            operators: rival.operators,
+            thresholds: rival.thresholds.clone(),
+            sign: rival.sign,
+            dead_zones: rival.dead_zones,
+            free_weights: rival.free_weights,
+            logarithmic_thresholds: Some(rival.logarithmic_thresholds),
+            degradation: Some(rival.degradation),
+            differential_form: Some(rival.differential_form),
         }
-    }
-
-    fn fit_options(&self, model: Family, rate: Option<RateMethod>) -> FitOptions {
-        let defaults = FitOptions::of(self.training);
-        let sizes = Sizes::default();
-        FitOptions {
-            model,
-            sizes: Sizes {
-                stops: self.stops.unwrap_or(sizes.stops),
-                hidden: self.hidden.unwrap_or(sizes.hidden),
-                relaxation: self.relaxation,
-            },
-            no_deterioration: self.no_deterioration,
-            rate,
-            starts: self.starts.unwrap_or(defaults.starts),
-            epochs: self.epochs.unwrap_or(defaults.epochs),
-            population: self.population.unwrap_or(defaults.population),
-            stall: self.stall.unwrap_or(defaults.stall),
-            seed: self.seed,
-            validation: self.validation,
-            ..defaults
-        }
-    }
-
-    /// The trainer of a network, or the model that is fitted in its own way.
-    pub fn trained_by(&self) -> &'static str {
-        match self.model {
-            ModelName::Network(_) => self.training.name(),
-            ModelName::Rival(rival) => rival.name(),
-        }
-    }
-
-    /// Options that were asked for and that the model or its trainer has no use for.
-    pub fn useless(&self, other: &RivalOptions) -> Vec<&'static str> {
-        let is_rival = matches!(self.model, ModelName::Rival(_));
-        let is = |rival: Rival| self.model == ModelName::Rival(rival);
-        let given_thresholds =
-            is(Rival::Masing) || is(Rival::PrandtlIshlinskii) || is(Rival::ModifiedPrandtlIshlinskii);
-        let exponential =
-            is(Rival::GeneralizedPrandtlIshlinskii) || is(Rival::RateDependentPrandtlIshlinskii);
-        let has = self.training;
-        let searched = match self.model {
-            ModelName::Network(_) => true,
-            ModelName::Rival(rival) => rival.is_searched(),
-        };
-        let asked = [
-            ("--population", self.population.is_some() && (is_rival || !has.is_genetic())),
-            ("--stall", self.stall.is_some() && (is_rival || has == Trainer::LevenbergMarquardt)),
-            ("--training", is_rival && has != Trainer::default()),
-            ("--stops", self.stops.is_some() && is_rival),
-            ("--no-deterioration", self.no_deterioration && is_rival),
-            ("--starts", self.starts.is_some() && !searched),
-            ("--epochs", self.epochs.is_some() && !searched),
-            (
-                "--hidden",
-                self.hidden.is_some() && is_rival && !is(Rival::NeuroMadelung) && !is(Rival::RandomStops),
-            ),
-            (
-                "--operators",
-                other.operators.is_some()
-                    && (!is_rival
-                        || is(Rival::NeuroMadelung)
-                        || is(Rival::BoucWen)
-                        || is(Rival::JilesAtherton)),
-            ),
-            ("--thresholds", other.thresholds.is_some() && !given_thresholds),
-            ("--sign", other.sign.is_some() && !is(Rival::Preisach) && !given_thresholds),
-            ("--dead-zones", other.dead_zones.is_some() && !is(Rival::ModifiedPrandtlIshlinskii)),
-            ("--free-weights", other.free_weights.is_some() && !exponential),
-            (
-                "--logarithmic-thresholds",
-                other.logarithmic_thresholds && !is(Rival::RateDependentPrandtlIshlinskii),
-            ),
-            ("--degradation", other.degradation && !is(Rival::BoucWen)),
-            ("--differential-form", other.differential_form && !is(Rival::JilesAtherton)),
-        ];
-        asked.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
     }
 }
 
@@ -334,21 +255,22 @@ fn model(name: &str) -> Result<ModelName, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
 }
 
-fn number_within(text: &str, low: usize, high: usize) -> Result<usize, String> {
+fn number_within(text: &str, range: &RangeInclusive<usize>) -> Result<usize, String> {
+    let (low, high) = (range.start(), range.end());
     let number: usize = text.parse().map_err(|_| format!("a whole number from {low} to {high} is needed"))?;
-    if (low..=high).contains(&number) { Ok(number) } else { Err(format!("choose {low} to {high}")) }
+    if range.contains(&number) { Ok(number) } else { Err(format!("choose {low} to {high}")) }
 }
 
 fn neurons(text: &str) -> Result<usize, String> {
-    number_within(text, 1, 1000)
+    number_within(text, &NEURONS)
 }
 
 fn population(text: &str) -> Result<usize, String> {
-    number_within(text, *POPULATIONS.start(), *POPULATIONS.end())
+    number_within(text, &POPULATIONS)
 }
 
 fn starts(text: &str) -> Result<usize, String> {
-    number_within(text, 1, 10_000)
+    number_within(text, &STARTS)
 }
 
 fn fraction(text: &str) -> Result<f64, String> {
@@ -538,5 +460,17 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn options_have_the_library_s_names() {
+        let names = |command: clap::Command| -> Vec<String> {
+            let long = |option: &clap::Arg| option.get_long().map(|long| long.replace('-', "_"));
+            command.get_arguments().filter_map(long).collect()
+        };
+        let command = TrainingOptions::augment_args(clap::Command::new("fit"));
+        let mut names = names(RivalOptions::augment_args(command));
+        names.sort();
+        assert_eq!(names, ChosenOptions::names());
     }
 }

@@ -1,6 +1,7 @@
 //! Which column is what: found from the names, from options, or from a model.
 
 use anyhow::{Result, anyhow, bail, ensure};
+use hysid::identification::options::RateChoice;
 use hysid::model::Model;
 use hysid::rate::RateMethod;
 use hysid::record::ColumnNames;
@@ -174,9 +175,9 @@ fn require(table: &Table, name: &str, option: &str) -> Result<()> {
 /// The column that `--rate` names for a model with a given rate; a model's method cannot be changed.
 fn rate_of_model(model: &Model, options: &ColumnOptions) -> Result<Option<String>> {
     match (&options.rate, model.rate()) {
-        (RateOption::Auto, _) | (RateOption::None, None) => Ok(None),
+        (RateOption::Choice(RateChoice::Auto), _) | (RateOption::Choice(RateChoice::None), None) => Ok(None),
         (RateOption::Column(name), Some(RateMethod::Given)) => Ok(Some(name.clone())),
-        (RateOption::Method(asked), Some(trained)) if *asked == trained => Ok(None),
+        (RateOption::Choice(RateChoice::Method(asked)), Some(trained)) if *asked == trained => Ok(None),
         _ => {
             Err(Usage("the rate is part of the model and cannot be changed here: leave out --rate".into())
                 .into())

@@ -1,5 +1,7 @@
 //! Identification of any model by its name: a network of the family, or one of its rivals.
 
+pub mod options;
+
 use serde::{Deserialize, Serialize};
 
 use crate::classical::identification::{self as classical, ClassicalOptions, Rival};

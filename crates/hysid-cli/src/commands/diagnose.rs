@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use hysid::diagnosis::DiagnosisOptions;
+use hysid::identification::options::RateChoice;
 use hysid::summary::Summary;
 
 use crate::Outcome;
@@ -65,7 +66,7 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
             if further.len() == 1 { "is" } else { "are" },
         ));
     }
-    if matches!(arguments.columns.rate, RateOption::Method(_)) {
+    if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose has no use for --rate: speeds are those between turning points");
     }
     let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))?;
@@ -113,7 +114,7 @@ fn useless_for_models(columns: &ColumnOptions, options: &DiagnosisOptions) -> Ve
         ("--time", columns.time.is_some()),
         ("--input", !columns.input.is_empty()),
         ("--output", columns.output.is_some()),
-        ("--rate", columns.rate != RateOption::Auto),
+        ("--rate", columns.rate != RateOption::Choice(RateChoice::Auto)),
         ("--smallest-reversal", options.smallest_reversal != defaults.smallest_reversal),
         ("--smoothing", options.smoothing != defaults.smoothing),
     ];

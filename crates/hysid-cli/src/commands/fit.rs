@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use hysid::identification::options::RateChoice;
 use hysid::identification::{ModelName, Request};
 use hysid::metrics::Errors;
 use hysid::network::Architecture;
@@ -30,12 +31,13 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
+    let chosen = arguments.training.chosen(&arguments.rival);
     let request = match &begun {
         Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
         None => {
-            let rate = rate_method(&arguments.columns.rate, &roles, arguments.training.model)
+            let rate = rate_method(&arguments.columns.rate, &roles, chosen.model())
                 .with_context(|| tables[0].file.clone())?;
-            arguments.training.request(&arguments.rival, rate)
+            chosen.request(rate)
         }
     };
     if arguments.checkpoint.is_some() && matches!(request, Request::Classical(_)) {
@@ -43,8 +45,8 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
         return Err(Usage(format!("{model} has no checkpoints: only networks have")).into());
     }
     let data = Data::new(tables, roles, true)?;
-    for option in arguments.training.useless(&arguments.rival) {
-        warning(format_args!("{} has no use for {option}", arguments.training.trained_by()));
+    for option in chosen.useless() {
+        warning(format_args!("{} has no use for --{}", chosen.trained_by(), option.replace('_', "-")));
     }
     let work = Work {
         request: &request,
@@ -105,10 +107,10 @@ fn out(arguments: &Fit) -> Result<PathBuf> {
 fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
     let options = begun.options().clone();
     let agrees = match rate {
-        RateOption::Auto => true,
-        RateOption::None => options.rate.is_none(),
+        RateOption::Choice(RateChoice::Auto) => true,
+        RateOption::Choice(RateChoice::None) => options.rate.is_none(),
+        RateOption::Choice(RateChoice::Method(method)) => options.rate == Some(*method),
         RateOption::Column(_) => options.rate == Some(RateMethod::Given),
-        RateOption::Method(method) => options.rate == Some(*method),
     };
     if !agrees {
         let advice = "--rate is not what the checkpoint was made with: leave it out, or begin the fit anew";
@@ -120,13 +122,11 @@ fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
 /// The rate that `--rate` means for these columns and this model.
 pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
     Ok(match option {
-        RateOption::Auto => (roles.time.is_some() && model.uses_rate()).then_some(RateMethod::Central),
-        RateOption::None => None,
         RateOption::Column(_) => Some(RateMethod::Given),
-        RateOption::Method(_) if roles.time.is_none() => {
+        RateOption::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
             bail!("there is no time column to take the rate from (name it with --time, or use --rate none)")
         }
-        RateOption::Method(method) => Some(*method),
+        RateOption::Choice(choice) => choice.method(model, roles.time.is_some()),
     })
 }
 
