@@ -8,6 +8,7 @@ use crate::classical::identification::{self as classical, ClassicalOptions, Riva
 use crate::error::{Error, Result};
 use crate::model::{Body, Model, Provenance};
 use crate::network::Family;
+use crate::preprocessing::Seen;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::training::random_stops::{RandomStopsOptions, fit_random_stops};
@@ -153,14 +154,17 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
         seed: options.seed,
         ..defaults
     };
-    let found = fit_random_stops(data, &wanted)?;
+    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let found = fit_random_stops(&seen.data, &RandomStopsOptions { rate: seen.rate, ..wanted })?;
     let body = Body::Network { network: found.network, scaling: found.scaling };
-    finished(data, options, body, 1, Termination::Converged, Vec::new())
+    finished(data, options, &seen, body, 1, Termination::Converged, Vec::new())
 }
 
 fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
-    let found = classical::fit(data, options, &mut |progress| {
+    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
+    let found = classical::fit(&seen.data, &of_seen, &mut |progress| {
         history.push(HistoryPoint {
             epoch: progress.round,
             evaluations: progress.evaluations,
@@ -177,19 +181,20 @@ fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) 
         validation_nrmse_percent: None,
     };
     let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
-    finished(data, options, Body::Law(found.law), found.evaluations, found.termination, runs)
+    finished(data, options, &seen, Body::Law(found.law), found.evaluations, found.termination, runs)
 }
 
 fn finished(
     data: &Dataset,
     options: &ClassicalOptions,
+    seen: &Seen,
     body: Body,
     evaluations: usize,
     termination: Termination,
     runs: Vec<Run>,
 ) -> Result<Fit> {
     let request = Request::Classical(options.clone());
-    let train = body.errors(options.rate, data)?;
+    let train = body.errors(seen.rate, &seen.data)?;
     let provenance = Provenance {
         options: request,
         samples: data.scored(),
@@ -200,5 +205,5 @@ fn finished(
         validation: None,
         runs,
     };
-    Ok(Fit { model: Model::new(body, options.rate, data, provenance)?, evaluations })
+    Ok(Fit { model: Model::new(body, seen.preprocessing, options.rate, data, provenance)?, evaluations })
 }

@@ -40,6 +40,7 @@ pub mod model;
 pub mod network;
 pub mod operator;
 pub mod plant;
+pub mod preprocessing;
 pub mod rate;
 pub mod record;
 pub mod scaling;

@@ -1,18 +1,22 @@
-//! A fitted model: a network with its scaling or a classical law, what it was trained on and how. It
-//! simulates in the user's units.
+//! A fitted model: a network with its scaling, a classical law, or an ensemble of both; what it was trained
+//! on and how. It simulates in the user's units.
 
+mod band;
+mod ensemble;
 mod file;
+mod stepper;
 
 use serde::{Deserialize, Serialize};
 
 use crate::classical::identification::Rival;
 use crate::classical::series::Series;
-use crate::classical::{Classical, ClassicalState, Law, Sample};
+use crate::classical::{Classical, Law};
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::free_run::FreeRun;
 use crate::identification::{ModelName, Request};
 use crate::metrics::{ErrorSums, Errors};
-use crate::network::{Network, Simulator};
+use crate::network::Network;
+use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
 use crate::record::{ColumnNames, Dataset, Record};
 use crate::scaling::Scaling;
@@ -20,15 +24,21 @@ use crate::training::history::Run;
 use crate::training::termination::Termination;
 use crate::warning::Warning;
 
+pub use band::{Band, Prediction};
+use ensemble::{Answer, Excursion};
+pub use ensemble::{Ensemble, Member, Weights};
 pub use file::FORMAT_VERSION;
+pub use stepper::Stepper;
 
 /// A fitted model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     body: Body,
+    preprocessing: Preprocessing,
     rate: Option<RateMethod>,
     names: ColumnNames,
     trained: TrainedRanges,
+    band: Option<Band>,
     provenance: Provenance,
 }
 
@@ -44,6 +54,8 @@ pub enum Body {
     },
     /// A classical law in the user's units.
     Law(Classical),
+    /// Several models that answer together.
+    Ensemble(Ensemble),
 }
 
 impl Body {
@@ -58,6 +70,7 @@ impl Body {
                 }
                 Ok(law.run(&Series::of(record, rate)?.samples))
             }
+            Self::Ensemble(ensemble) => ensemble.simulate(record),
         }
     }
 
@@ -74,24 +87,24 @@ impl Body {
             .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
     }
 
-    /// Number of inputs.
-    fn inputs(&self) -> usize {
-        match self {
-            Self::Network { scaling, .. } => scaling.inputs.len(),
-            Self::Law(_) => 1,
-        }
-    }
-
     /// Parameters that were found from the data.
     fn parameters(&self) -> usize {
         match self {
             Self::Network { network, .. } => network.architecture().parameters(),
             Self::Law(law) => law.parameters().len(),
+            Self::Ensemble(ensemble) => {
+                ensemble.members().iter().map(|member| member.model.parameters()).sum()
+            }
         }
     }
 
-    fn relaxes(&self) -> bool {
-        matches!(self, Self::Network { network, .. } if network.architecture().relaxation > 0)
+    /// True if it needs the time between samples, apart from any rate.
+    fn needs_steps(&self) -> bool {
+        match self {
+            Self::Network { network, .. } => network.architecture().relaxation > 0,
+            Self::Law(_) => false,
+            Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.model.needs_time()),
+        }
     }
 }
 
@@ -131,8 +144,10 @@ pub struct Provenance {
 }
 
 impl Model {
+    /// A model of these data, whose body was trained on them after the preprocessing.
     pub(crate) fn new(
         body: Body,
+        preprocessing: Preprocessing,
         rate: Option<RateMethod>,
         data: &Dataset,
         provenance: Provenance,
@@ -140,10 +155,12 @@ impl Model {
         let uses_rate = match &body {
             Body::Network { network, .. } => network.architecture().rate,
             Body::Law(_) => provenance.options.model().uses_rate(),
+            Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.model.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
         let mut model = Self {
             body,
+            preprocessing,
             rate,
             names: data.names().clone(),
             trained: TrainedRanges {
@@ -151,6 +168,7 @@ impl Model {
                 rate: None,
                 output: data.output_range(),
             },
+            band: None,
             provenance,
         };
         if let Some(method) = rate {
@@ -190,19 +208,41 @@ impl Model {
         &self.body
     }
 
-    /// The network, in scaled units; `None` for a classical law.
+    /// The network, in scaled units; `None` for a classical law or an ensemble.
     pub fn network(&self) -> Option<&Network> {
         match &self.body {
             Body::Network { network, .. } => Some(network),
-            Body::Law(_) => None,
+            Body::Law(_) | Body::Ensemble(_) => None,
         }
     }
 
-    /// Factors between the user's units and the network's; `None` for a classical law, which needs none.
+    /// The ensemble; `None` for a single model.
+    pub fn ensemble(&self) -> Option<&Ensemble> {
+        match &self.body {
+            Body::Ensemble(ensemble) => Some(ensemble),
+            Body::Network { .. } | Body::Law(_) => None,
+        }
+    }
+
+    /// How the model sees its input.
+    pub fn preprocessing(&self) -> Preprocessing {
+        self.preprocessing
+    }
+
+    /// Number of inputs of a record.
+    pub(crate) fn inputs(&self) -> usize {
+        match &self.body {
+            Body::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
+            Body::Law(_) => 1,
+            Body::Ensemble(ensemble) => ensemble.members()[0].model.inputs(),
+        }
+    }
+
+    /// Factors between the user's units and the network's; `None` for all that is no network.
     pub fn scaling(&self) -> Option<&Scaling> {
         match &self.body {
             Body::Network { scaling, .. } => Some(scaling),
-            Body::Law(_) => None,
+            Body::Law(_) | Body::Ensemble(_) => None,
         }
     }
 
@@ -237,7 +277,7 @@ impl Model {
 
     /// True if the model needs time stamps.
     pub fn needs_time(&self) -> bool {
-        self.body.relaxes() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
+        self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
     /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
@@ -247,7 +287,53 @@ impl Model {
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
         self.check_time(record)?;
-        self.body.simulate(self.rate, record)
+        let (seen, rate) = self.preprocessing.record(record, self.rate)?;
+        self.body.simulate(rate, &seen)
+    }
+
+    /// Free run over a record with a band that holds the measured output with this probability, 0.5 to 0.99,
+    /// as far as new data are like those held out in training.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
+    pub fn predict(&self, record: &Record, probability: f64) -> Result<Prediction> {
+        Band::check(probability)?;
+        let Some(band) = &self.band else {
+            return Err(Error::Option(format!(
+                "this model of {} has no band: `--model auto` calibrates one where the data are enough to hold some out",
+                self.name().name()
+            )));
+        };
+        self.check_time(record)?;
+        let answers = match &self.body {
+            Body::Ensemble(ensemble) => ensemble.answers(record)?,
+            Body::Network { .. } | Body::Law(_) => {
+                let mut excursion = Excursion::beyond(self.trained.inputs[0]);
+                let output = self.simulate(record)?.into_iter();
+                let answer = |(output, x): (f64, &f64)| Answer {
+                    output,
+                    disagreement: 0.0,
+                    outside: excursion.take(*x),
+                };
+                output.zip(&record.inputs()[0]).map(answer).collect()
+            }
+        };
+        let half = |answer: &Answer| band.half_width(probability, answer.disagreement, answer.outside);
+        Ok(Prediction {
+            low: answers.iter().map(|answer| answer.output - half(answer)).collect(),
+            high: answers.iter().map(|answer| answer.output + half(answer)).collect(),
+            output: answers.into_iter().map(|answer| answer.output).collect(),
+        })
+    }
+
+    /// The calibrated band, if there is one.
+    pub fn band(&self) -> Option<&Band> {
+        self.band.as_ref()
+    }
+
+    pub(crate) fn with_band(mut self, band: Option<Band>) -> Self {
+        self.band = band;
+        self
     }
 
     /// Errors of free runs over all records.
@@ -256,7 +342,8 @@ impl Model {
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(record))?;
-        self.body.errors(self.rate, data)
+        let (seen, rate) = self.preprocessing.data(data, self.rate)?;
+        self.body.errors(rate, &seen)
     }
 
     fn check_time(&self, record: &Record) -> Result<()> {
@@ -268,13 +355,7 @@ impl Model {
 
     /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.
     pub fn stepper(&self) -> Stepper<'_> {
-        let memory = match &self.body {
-            Body::Network { network, .. } => {
-                Memory::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
-            }
-            Body::Law(law) => Memory::Law(law.virgin()),
-        };
-        Stepper { model: self, memory, last: None }
+        Stepper::new(self)
     }
 
     /// Warns of inputs and rates beyond what the model was trained on.
@@ -308,86 +389,5 @@ impl Model {
             check(name, trained, &mut rates?.into_iter().flatten());
         }
         Ok(warnings)
-    }
-}
-
-/// A model that is run sample by sample. Fed with the rates that [`Model::simulate`] would use, it
-/// gives the same outputs to the last bit.
-#[derive(Debug, Clone)]
-pub struct Stepper<'m> {
-    model: &'m Model,
-    memory: Memory,
-    /// Time and first input of the last sample.
-    last: Option<(f64, f64)>,
-}
-
-/// What a stepper knows of the past.
-#[derive(Debug, Clone)]
-enum Memory {
-    /// A network's simulator, and room for its channels.
-    Network(Box<Simulator>, Vec<f64>),
-    Law(ClassicalState),
-}
-
-impl Stepper<'_> {
-    /// The next sample: inputs and time in the user's units, `time` of no matter for a model that
-    /// needs none. `rate` is that of the first input, for a model with one; without it a backward
-    /// difference is taken (0 at the first sample).
-    ///
-    /// # Errors
-    /// Another number of inputs, a value that is not finite, or time that does not advance.
-    pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
-        let expected = self.model.body.inputs();
-        if inputs.len() != expected {
-            return Err(Error::Option(format!("{} inputs where the model has {expected}", inputs.len())));
-        }
-        let elapsed = match self.last {
-            Some((before, _)) => time - before,
-            None => 0.0,
-        };
-        if self.model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
-            return Err(Error::Option(format!("time {time} does not come after the last sample's")));
-        }
-        let rate = self.model.rate.map(|_| {
-            let backward = self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
-            rate.unwrap_or(backward)
-        });
-        if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
-            return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
-        }
-        let y = match (&self.model.body, &mut self.memory) {
-            (Body::Network { scaling, .. }, Memory::Network(simulator, u)) => {
-                let mut channels = u.iter_mut();
-                for (input, (&x, &scale)) in inputs.iter().zip(&scaling.inputs).enumerate() {
-                    *channels.next().expect("a channel for each input") = x * (1.0 / scale);
-                    if input == 0
-                        && let Some((rate, scale)) = rate.zip(scaling.rate)
-                    {
-                        *channels.next().expect("a channel for the rate") = rate * (1.0 / scale);
-                    }
-                }
-                if let Some(bad) = u.iter().find(|u| !u.is_finite()) {
-                    return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
-                }
-                scaling.output(simulator.step(u, elapsed))
-            }
-            (Body::Law(law), Memory::Law(state)) => {
-                let step = if self.model.needs_time() { elapsed } else { 0.0 };
-                law.step(state, Sample { x: inputs[0], rate: rate.unwrap_or(0.0), step })
-            }
-            _ => unreachable!("the memory was made for the body"),
-        };
-        self.last = Some((time, inputs[0]));
-        Ok(y)
-    }
-
-    /// Back to the virgin state.
-    pub fn reset(&mut self) {
-        match (&self.model.body, &mut self.memory) {
-            (Body::Law(law), Memory::Law(state)) => *state = law.virgin(),
-            (_, Memory::Network(simulator, _)) => simulator.reset(),
-            _ => unreachable!("the memory was made for the body"),
-        }
-        self.last = None;
     }
 }

@@ -24,6 +24,7 @@ use std::ops::ControlFlow;
 use crate::classical::search::SearchProgress;
 use crate::error::Result;
 use crate::model::Model;
+use crate::preprocessing::Seen;
 use crate::record::Dataset;
 pub use checkpoint::Checkpoint;
 use checkpoint::Snapshot;
@@ -98,7 +99,8 @@ pub struct Fit {
 /// # Errors
 /// Data that nothing can be identified from, or options outside their meaning.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
-    Fitting::new(data, options.clone())?.run(observer)
+    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
 /// Goes on with a fit of the same data. What comes out is, to the last bit, what the fit would have come
@@ -107,5 +109,7 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 /// # Errors
 /// A checkpoint of other data.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
-    Fitting::resume(data, checkpoint)?.run(observer)
+    let (options, state) = checkpoint.for_data(data)?;
+    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    Fitting::new(data, &seen, options)?.from(state).run(observer)
 }

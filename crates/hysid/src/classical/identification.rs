@@ -21,6 +21,7 @@ use crate::classical::rate_dependent_prandtl_ishlinskii::{
 };
 use crate::classical::search::{Identified, SearchObserver};
 use crate::error::{Error, Result};
+use crate::preprocessing::Shaping;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::training::Termination;
@@ -146,6 +147,9 @@ pub struct ClassicalOptions {
     pub hidden: Option<usize>,
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
+    /// What the model sees of the input.
+    #[serde(default, skip_serializing_if = "Shaping::is_none")]
+    pub shaping: Shaping,
     /// Starts of a search; the model's own default if `None`.
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
@@ -169,6 +173,7 @@ impl ClassicalOptions {
             differential_form: false,
             hidden: None,
             rate: None,
+            shaping: Shaping::default(),
             starts: None,
             epochs: None,
             seed: 1,

@@ -13,6 +13,7 @@ use crate::classical::linear_fit::Sign;
 use crate::error::{Error, Result};
 use crate::identification::{ModelName, Request};
 use crate::network::{Family, Sizes};
+use crate::preprocessing::Shaping;
 use crate::rate::RateMethod;
 use crate::training::genetic::POPULATIONS;
 use crate::training::{FitOptions, Trainer};
@@ -39,6 +40,13 @@ pub struct ChosenOptions {
     pub relaxation: Option<usize>,
     /// Stops do not deteriorate, whatever the family.
     pub no_deterioration: Option<bool>,
+    /// Spreads the first input about zero: the scale of the spreading, as a share of its largest magnitude.
+    pub companding: Option<f64>,
+    /// The same for the rate.
+    pub rate_companding: Option<f64>,
+    /// The largest magnitude and the path of the input so far are inputs too, for `xpnn+` and
+    /// `random-stops`.
+    pub history: Option<bool>,
     /// How a network is trained.
     #[serde(deserialize_with = "named")]
     pub training: Option<Trainer>,
@@ -149,6 +157,7 @@ impl ChosenOptions {
             },
             no_deterioration: self.no_deterioration.unwrap_or(defaults.no_deterioration),
             rate,
+            shaping: self.shaping(),
             starts: self.starts.unwrap_or(defaults.starts),
             epochs: self.epochs.unwrap_or(defaults.epochs),
             population: self.population.unwrap_or(defaults.population),
@@ -173,9 +182,18 @@ impl ChosenOptions {
             differential_form: self.differential_form.unwrap_or(defaults.differential_form),
             hidden: self.hidden,
             rate,
+            shaping: self.shaping(),
             starts: self.starts,
             epochs: self.epochs,
             seed: self.seed.unwrap_or(defaults.seed),
+        }
+    }
+
+    fn shaping(&self) -> Shaping {
+        Shaping {
+            companding: self.companding,
+            rate_companding: self.rate_companding,
+            history: self.history.unwrap_or_default(),
         }
     }
 

@@ -9,15 +9,16 @@ use serde::{Deserialize, Serialize};
 use crate::classical::Classical;
 use crate::error::{Error, Result};
 use crate::identification::ModelName;
-use crate::model::{Body, Model, Provenance, TrainedRanges};
+use crate::model::{Band, Body, Ensemble, Member, Model, Provenance, TrainedRanges, Weights};
 use crate::network::{Architecture, Layout, Network};
+use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
 use crate::record::ColumnNames;
 use crate::scaling::Scaling;
 use crate::unit;
 
 /// Version of the layout that is written.
-pub const FORMAT_VERSION: u64 = 2;
+pub const FORMAT_VERSION: u64 = 3;
 
 const FORMAT: &str = "hysid-model";
 const CHECKSUM_KEY: &str = "\"checksum\"";
@@ -32,13 +33,44 @@ struct File {
     columns: ColumnNames,
     units: Units,
     rate: Option<RateMethod>,
+    #[serde(default, skip_serializing_if = "Preprocessing::is_none")]
+    preprocessing: Preprocessing,
+    trained_ranges: TrainedRanges,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    network: Option<NetworkParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<Classical>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ensemble: Option<EnsembleParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    band: Option<Band>,
+    training: Provenance,
+    checksum: String,
+}
+
+/// The members of an ensemble, and the range beyond which the outer weights count.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EnsembleParts {
+    range: (f64, f64),
+    members: Vec<MemberParts>,
+}
+
+/// A member: a file without what it shares with the others.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MemberParts {
+    weights: Weights,
+    model: ModelName,
+    rate: Option<RateMethod>,
+    #[serde(default, skip_serializing_if = "Preprocessing::is_none")]
+    preprocessing: Preprocessing,
     trained_ranges: TrainedRanges,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkParts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     law: Option<Classical>,
     training: Provenance,
-    checksum: String,
 }
 
 /// A network and its scaling.
@@ -152,11 +184,50 @@ impl NetworkParts {
     }
 }
 
+/// The parts of a body: a network, a law or an ensemble.
+fn parts(body: &Body) -> (Option<NetworkParts>, Option<Classical>, Option<EnsembleParts>) {
+    match body {
+        Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
+        Body::Law(law) => (None, Some(law.clone()), None),
+        Body::Ensemble(ensemble) => {
+            let members = ensemble.members().iter().map(MemberParts::of).collect();
+            (None, None, Some(EnsembleParts { range: ensemble.range(), members }))
+        }
+    }
+}
+
+impl MemberParts {
+    fn of(member: &Member) -> Self {
+        let model = &member.model;
+        let (network, law, _) = parts(&model.body);
+        Self {
+            weights: member.weights,
+            model: model.name(),
+            rate: model.rate,
+            preprocessing: model.preprocessing,
+            trained_ranges: model.trained.clone(),
+            network,
+            law,
+            training: model.provenance.clone(),
+        }
+    }
+
+    fn member(self, columns: &ColumnNames) -> Result<Member> {
+        let model = Model {
+            body: single(self.network, self.law)?,
+            preprocessing: self.preprocessing,
+            rate: self.rate,
+            names: columns.clone(),
+            trained: self.trained_ranges,
+            band: None,
+            provenance: self.training,
+        };
+        Ok(Member { weights: self.weights, model: checked(model, self.model)? })
+    }
+}
+
 pub(super) fn write(model: &Model) -> String {
-    let (network, law) = match &model.body {
-        Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None),
-        Body::Law(law) => (None, Some(law.clone())),
-    };
+    let (network, law, ensemble) = parts(&model.body);
     let file = File {
         format: FORMAT.into(),
         version: FORMAT_VERSION,
@@ -165,9 +236,12 @@ pub(super) fn write(model: &Model) -> String {
         columns: model.names.clone(),
         units: Units::of(&model.names),
         rate: model.rate,
+        preprocessing: model.preprocessing,
         trained_ranges: model.trained.clone(),
         network,
         law,
+        ensemble,
+        band: model.band.clone(),
         training: model.provenance.clone(),
         checksum: "00000000".into(),
     };
@@ -248,33 +322,58 @@ fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
     value
 }
 
+fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Body> {
+    match (network, law) {
+        (Some(parts), None) => Ok(Body::Network { network: parts.network()?, scaling: parts.scaling }),
+        (None, Some(law)) => Ok(Body::Law(law.validated()?)),
+        _ => Err(Error::Option("it must have either a network or a law".into())),
+    }
+}
+
 fn assemble(file: File) -> Result<Model> {
-    let body = match (file.network, file.law) {
-        (Some(parts), None) => Body::Network { network: parts.network()?, scaling: parts.scaling },
-        (None, Some(law)) => Body::Law(law.validated()?),
-        _ => return Err(Error::Option("it must have either a network or a law".into())),
+    let body = match file.ensemble {
+        None => single(file.network, file.law)?,
+        Some(parts) if file.network.is_none() && file.law.is_none() => {
+            let members = parts.members.into_iter().map(|member| member.member(&file.columns));
+            Body::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.range)?)
+        }
+        Some(_) => return Err(Error::Option("it is an ensemble and has parts of another model".into())),
     };
-    let inputs = match &body {
-        Body::Network { network, .. } => network.architecture().inputs,
-        Body::Law(_) => 1,
-    };
-    if [body.inputs(), file.columns.inputs.len(), file.trained_ranges.inputs.len()] != [inputs; 3] {
-        return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
-    }
-    if let Body::Network { network, scaling } = &body
-        && (network.architecture().rate != file.rate.is_some()
-            || file.rate.is_some() != scaling.rate.is_some())
-    {
-        return Err(Error::Option("it has a rate in some places only".into()));
-    }
-    if file.model != file.training.options.model() {
-        return Err(Error::Option("it names two different models".into()));
-    }
-    Ok(Model {
+    let model = Model {
         body,
+        preprocessing: file.preprocessing,
         rate: file.rate,
         names: file.columns,
         trained: file.trained_ranges,
+        band: file.band.map(Band::validated).transpose()?,
         provenance: file.training,
-    })
+    };
+    checked(model, file.model)
+}
+
+/// Refuses parts that do not fit together.
+fn checked(model: Model, name: ModelName) -> Result<Model> {
+    model.preprocessing.check()?;
+    let added = model.preprocessing.added_inputs();
+    let inputs = match &model.body {
+        Body::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {
+            network.architecture().inputs.checked_sub(added).unwrap_or_default()
+        }
+        Body::Network { .. } => 0,
+        Body::Law(_) => 1 - added.min(1),
+        Body::Ensemble(_) => model.inputs(),
+    };
+    if inputs == 0 || [model.names.inputs.len(), model.trained.inputs.len()] != [inputs; 2] {
+        return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
+    }
+    if let Body::Network { network, scaling } = &model.body
+        && (network.architecture().rate != model.rate.is_some()
+            || model.rate.is_some() != scaling.rate.is_some())
+    {
+        return Err(Error::Option("it has a rate in some places only".into()));
+    }
+    if name != model.name() {
+        return Err(Error::Option("it names two different models".into()));
+    }
+    Ok(model)
 }

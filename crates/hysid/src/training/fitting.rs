@@ -13,9 +13,10 @@ use crate::identification::Request;
 use crate::metrics::Errors;
 use crate::model::{Body, Model, Provenance};
 use crate::network::{Architecture, Network};
+use crate::preprocessing::{Preprocessing, Seen};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
-use crate::training::checkpoint::{Checkpoint, Snapshot};
+use crate::training::checkpoint::Snapshot;
 use crate::training::history::{Phase, Run};
 use crate::training::objective::Objective;
 use crate::training::options::{FitOptions, Trainer};
@@ -45,6 +46,11 @@ pub(crate) struct State {
 
 /// A fit on its way.
 pub(crate) struct Fitting<'a> {
+    /// The data as measured, and what was asked for.
+    measured: &'a Dataset,
+    asked: FitOptions,
+    /// The data as the network sees them, and the options for these.
+    preprocessing: Preprocessing,
     data: &'a Dataset,
     options: FitOptions,
     architecture: Architecture,
@@ -84,22 +90,25 @@ struct Outcome {
 }
 
 impl<'a> Fitting<'a> {
-    pub fn new(data: &'a Dataset, options: FitOptions) -> Result<Self> {
-        data.check_identifiable(FEWEST_ROWS)?;
-        options.check()?;
+    /// `seen` is what the shaping of the options makes of the data measured.
+    pub fn new(measured: &'a Dataset, seen: &'a Seen<'_>, asked: FitOptions) -> Result<Self> {
+        asked.check()?;
         Ok(Self {
-            architecture: options.architecture(data)?,
-            scaling: Scaling::of(data, options.rate)?,
-            data,
-            options,
+            architecture: asked.architecture(measured)?,
+            scaling: Scaling::of(&seen.data, seen.rate)?,
+            measured,
+            options: FitOptions { rate: seen.rate, ..asked.clone() },
+            asked,
+            preprocessing: seen.preprocessing,
+            data: &seen.data,
             state: State::default(),
             stopped: false,
         })
     }
 
-    pub fn resume(data: &'a Dataset, checkpoint: Checkpoint) -> Result<Self> {
-        let (options, state) = checkpoint.for_data(data)?;
-        Ok(Self { state, ..Self::new(data, options)? })
+    /// As [`Fitting::new`], from a state on.
+    pub fn from(self, state: State) -> Self {
+        Self { state, ..self }
     }
 
     /// Goes on to the end, or until the observer says stop.
@@ -110,7 +119,7 @@ impl<'a> Fitting<'a> {
             self.choose_among_starts(observer)?
         };
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
-        let Self { data, options, scaling, stopped, .. } = self;
+        let Self { measured, asked, preprocessing, data, options, scaling, stopped, .. } = self;
         let provenance = Provenance {
             samples: data.scored(),
             records: data.records().len(),
@@ -119,10 +128,10 @@ impl<'a> Fitting<'a> {
             runs: outcome.runs,
             train: FreeRun::new(&outcome.network, &scaling, options.rate).errors(data)?,
             validation: outcome.validation,
-            options: Request::Network(options.clone()),
+            options: Request::Network(asked.clone()),
         };
         let body = Body::Network { network: outcome.network, scaling };
-        let model = Model::new(body, options.rate, data, provenance)?;
+        let model = Model::new(body, preprocessing, asked.rate, measured, provenance)?;
         Ok(Fit { model, evaluations })
     }
 
@@ -278,7 +287,7 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            snapshot: Some(Snapshot { options: &self.options, data: self.data, state: &self.state }),
+            snapshot: Some(Snapshot { options: &self.asked, data: self.measured, state: &self.state }),
         };
         self.stopped = observer(&progress).is_break();
     }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::network::{Architecture, Family, Sizes};
+use crate::preprocessing::{HISTORY_INPUTS, Shaping};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::training::genetic::POPULATIONS;
@@ -110,6 +111,9 @@ pub struct FitOptions {
     pub no_deterioration: bool,
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
+    /// What the network sees of the input.
+    #[serde(default, skip_serializing_if = "Shaping::is_none")]
+    pub shaping: Shaping,
     /// The trainer.
     #[serde(default)]
     pub training: Trainer,
@@ -161,6 +165,7 @@ impl FitOptions {
             sizes: Sizes::default(),
             no_deterioration: false,
             rate: None,
+            shaping: Shaping::default(),
             training,
             starts: training.default_starts(),
             epochs: training.default_epochs(),
@@ -178,7 +183,8 @@ impl FitOptions {
     /// # Errors
     /// Sizes or a number of inputs that the family does not have.
     pub fn architecture(&self, data: &Dataset) -> Result<Architecture> {
-        let (inputs, rate) = (data.names().inputs.len(), self.rate.is_some());
+        let added = if self.shaping.history { HISTORY_INPUTS } else { 0 };
+        let (inputs, rate) = (data.names().inputs.len() + added, self.rate.is_some());
         let mut architecture = Architecture::new(self.model, self.sizes, inputs, rate, data.has_time())?;
         architecture.deterioration &= !self.no_deterioration;
         Ok(architecture)
@@ -202,6 +208,7 @@ impl FitOptions {
                 self.population
             )));
         }
+        self.shaping.check()?;
         self.regularisation.check()
     }
 }

@@ -87,9 +87,25 @@ pub(super) fn whatever_the_input(model: &Model) -> Option<Interval> {
 }
 
 fn possible(model: &Model, inputs: &[Interval], rate: Interval) -> Interval {
+    let preprocessing = model.preprocessing();
+    let mut seen = inputs.to_vec();
+    seen[0] = seen[0].rising(|x| preprocessing.input(x));
+    if let Some((largest, _)) = preprocessing.history {
+        let farthest = inputs[0].0.abs().max(inputs[0].1.abs());
+        // The path has no end.
+        seen.extend([Interval(0.0, farthest / largest), Interval(0.0, f64::INFINITY)]);
+    }
+    let seen_rate = rate.rising(|rate| preprocessing.rate(rate));
     let exact = match model.body() {
-        Body::Network { network, scaling } => network_output(network, scaling, inputs, rate),
-        Body::Law(law) => law_output(law, inputs[0], rate),
+        Body::Network { network, scaling } => network_output(network, scaling, &seen, seen_rate),
+        Body::Law(law) => law_output(law, seen[0], seen_rate),
+        // A median lies among the values it is taken of.
+        Body::Ensemble(ensemble) => ensemble
+            .members()
+            .iter()
+            .map(|member| possible(&member.model, inputs, rate))
+            .reduce(|a, b| Interval(a.0.min(b.0), a.1.max(b.1)))
+            .unwrap_or(ALL),
     };
     let slack = ROUNDING * exact.0.abs().max(exact.1.abs());
     Interval(exact.0 - slack, exact.1 + slack)

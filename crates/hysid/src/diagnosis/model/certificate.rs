@@ -156,6 +156,7 @@ fn refine(probe: &Probe) -> Result<Refinement> {
 /// True for what consists of plays, stops and turning points, where clamps of one direction join to one.
 fn step_is_free(body: &Body) -> bool {
     match body {
+        Body::Ensemble(ensemble) => ensemble.members().iter().all(|member| step_is_free(member.model.body())),
         Body::Network { network, .. } => !sees_time(network.architecture()),
         Body::Law(Classical::BoucWen(law)) => law.n == 1.0 && law.degradation.is_none() && law.damping == 0.0,
         Body::Law(Classical::JilesAtherton(_)) => false,
@@ -163,11 +164,18 @@ fn step_is_free(body: &Body) -> bool {
     }
 }
 
-fn rate_independent(probe: &Probe, index: Option<f64>) -> Claim {
-    let sees = match probe.model.body() {
+fn sees_rate_or_time(body: &Body) -> bool {
+    match body {
         Body::Network { network, .. } => sees_time(network.architecture()),
         Body::Law(law) => law_sees_rate(law),
-    };
+        Body::Ensemble(ensemble) => {
+            ensemble.members().iter().any(|member| sees_rate_or_time(member.model.body()))
+        }
+    }
+}
+
+fn rate_independent(probe: &Probe, index: Option<f64>) -> Claim {
+    let sees = sees_rate_or_time(probe.model.body());
     let measured = index.unwrap_or(0.0);
     let (holds, basis, statement) = if !sees {
         let basis = if probe.speeds.matter() { Basis::Weights } else { Basis::Structure };

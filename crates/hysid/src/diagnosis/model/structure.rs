@@ -7,7 +7,7 @@ use super::direct::about_zero;
 use super::probe::Probe;
 use crate::classical::Classical;
 use crate::diagnosis::{Finding, Property, Verdict};
-use crate::model::Body;
+use crate::model::{Body, Ensemble, Model};
 use crate::network::Architecture;
 
 /// A property that the equations of a model decide.
@@ -25,17 +25,44 @@ pub struct Promise {
 
 /// All that is promised, with what was found.
 pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<Promise> {
-    let of_body: Vec<(Property, bool)> = match probe.model.body() {
-        Body::Network { network, .. } => of_network(network.architecture(), about_zero(probe)),
-        Body::Law(law) => of_law(law, about_zero(probe)),
-    };
+    let of_model = of_model(probe.model, about_zero(probe));
     let promise = |(property, holds): (Property, bool)| {
         let verdict = if holds { Verdict::Yes } else { Verdict::No };
         let found = findings.iter().find(|finding| finding.property == property)?.verdict;
         let agrees = (found != Verdict::NotTestable).then_some(found == verdict);
         Some(Promise { property, verdict, agrees })
     };
-    of_body.into_iter().filter_map(promise).collect()
+    of_model.into_iter().filter_map(promise).collect()
+}
+
+fn of_model(model: &Model, about_zero: bool) -> Vec<(Property, bool)> {
+    let mut all = match model.body() {
+        Body::Network { network, .. } => of_network(network.architecture(), about_zero),
+        Body::Law(law) => of_law(law, about_zero),
+        Body::Ensemble(ensemble) => return of_ensemble(ensemble, about_zero),
+    };
+    if model.preprocessing().companding.is_some() {
+        // A branch of a companded input is no initial curve doubled in the input itself.
+        all.retain(|promise| *promise != MASING);
+    }
+    if model.preprocessing().history.is_some() {
+        // The path so far is wiped out by nothing.
+        all.retain(|promise| *promise == RATE_INDEPENDENT || *promise == ODD);
+    }
+    all
+}
+
+/// What every member promises, as far as a median keeps it: it does not keep the shape of increments, which
+/// congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
+fn of_ensemble(ensemble: &Ensemble, about_zero: bool) -> Vec<(Property, bool)> {
+    let mut members = ensemble.members().iter().map(|member| of_model(&member.model, about_zero));
+    let mut all = members.next().unwrap_or_default();
+    members.for_each(|promises| all.retain(|promise| promises.contains(promise)));
+    let remembers = ensemble.members().iter().any(|member| member.weights.inside != member.weights.outside);
+    all.retain(|promise| {
+        *promise == ODD || *promise == RATE_INDEPENDENT || (WIPES_OUT.contains(promise) && !remembers)
+    });
+    all
 }
 
 /// Return-point memory, and what follows from it.

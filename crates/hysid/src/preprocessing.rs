@@ -1,0 +1,274 @@
+//! What a model sees of its input: as measured, companded, or with a summary of the past beside it.
+//!
+//! ```text
+//! u = asinh(x / s),    v = asinh(x' / s')                                   theory.md (11.1)
+//! m = max |x| so far / X,    p = ln(1 + 10 path so far / P) / ln 11         theory.md (11.2)
+//! ```
+//!
+//! A soft magnet reverses within a hundredth of the field range, a damper within a hundredth of its speeds;
+//! weights that are spread over these ranges see little of it. Since `u` grows with `x`, all laws of memory
+//! (turning points, wiping-out, Madelung's rules) hold in `u` as they hold in `x`. The largest input and the
+//! path so far tell a degrading structure's state more directly than its stops do.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::rate::RateMethod;
+use crate::record::{Dataset, Record};
+use crate::training::FEWEST_ROWS;
+
+/// What is asked for, in shares of what the data show.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Shaping {
+    /// `s` of theory.md (11.1) as a share of the largest magnitude of the first input; `None` for an input
+    /// as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub companding: Option<f64>,
+    /// `s'` as a share of the rate that 99.5 % of all rows stay below.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate_companding: Option<f64>,
+    /// The largest magnitude and the path of the first input so far are inputs too, theory.md (11.2).
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub history: bool,
+}
+
+/// How a model sees its input, in the user's units.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Preprocessing {
+    /// `s` of theory.md (11.1), in the unit of the input.
+    pub companding: Option<f64>,
+    /// `s'`, in the unit of the rate.
+    pub rate_companding: Option<f64>,
+    /// `X` and `P` of theory.md (11.2), in the unit of the input.
+    pub history: Option<(f64, f64)>,
+}
+
+/// Inputs that a summary of the past adds.
+pub(crate) const HISTORY_INPUTS: usize = 2;
+
+/// Share of the rows whose rates stay below the one that the companding of the rate is measured by.
+const ROWS_BELOW: f64 = 0.995;
+
+impl Shaping {
+    /// True if nothing is asked for.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Refuses shares that spread nothing, or everything.
+    pub(crate) fn check(&self) -> Result<()> {
+        for (name, share) in [("companding", self.companding), ("rate companding", self.rate_companding)] {
+            if share.is_some_and(|share| !(1e-6..=1e3).contains(&share)) {
+                let share = share.unwrap_or_default();
+                return Err(Error::Option(format!("{name} {share} is not between 1e-6 and 1e3")));
+            }
+        }
+        Ok(())
+    }
+
+    /// With the scales that the data have.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn of(&self, data: &Dataset, rate: Option<RateMethod>) -> Result<Preprocessing> {
+        let (low, high) = data.input_range(0);
+        let largest = low.abs().max(high.abs());
+        let rate_companding = match (self.rate_companding, rate) {
+            (Some(share), Some(method)) => Some(share * common_rate(data, method)?),
+            _ => None,
+        };
+        let longest = || data.records().iter().map(|record| path(&record.inputs()[0])).fold(0.0, f64::max);
+        Ok(Preprocessing {
+            companding: self.companding.map(|share| share * largest),
+            rate_companding,
+            history: self.history.then(|| (largest, longest())),
+        })
+    }
+}
+
+fn path(x: &[f64]) -> f64 {
+    x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
+}
+
+/// The rate that most rows stay below; 1 if all are 0.
+fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
+    let mut rates = Vec::with_capacity(data.rows());
+    for record in data.records() {
+        rates.extend(method.rate(record)?.into_iter().map(f64::abs));
+    }
+    let place = ((rates.len() - 1) as f64 * ROWS_BELOW) as usize;
+    let (_, rate, _) = rates.select_nth_unstable_by(place, f64::total_cmp);
+    Ok(if *rate > 0.0 { *rate } else { 1.0 })
+}
+
+/// Data as a model sees them, and how the rate is found there.
+pub(crate) struct Seen<'d> {
+    pub preprocessing: Preprocessing,
+    pub data: Cow<'d, Dataset>,
+    pub rate: Option<RateMethod>,
+}
+
+impl<'d> Seen<'d> {
+    /// # Errors
+    /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
+    pub fn of(data: &'d Dataset, shaping: &Shaping, rate: Option<RateMethod>) -> Result<Self> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        shaping.check()?;
+        let preprocessing = shaping.of(data, rate)?;
+        let (data, rate) = preprocessing.data(data, rate)?;
+        Ok(Self { preprocessing, data, rate })
+    }
+}
+
+/// What has been so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Past {
+    largest: f64,
+    path: f64,
+    last: Option<f64>,
+}
+
+impl Past {
+    /// Takes the next input; gives `m` and `p` of theory.md (11.2).
+    fn take(&mut self, x: f64, (largest, longest): (f64, f64)) -> [f64; HISTORY_INPUTS] {
+        self.largest = self.largest.max(x.abs());
+        self.path += self.last.map_or(0.0, |last| (x - last).abs());
+        self.last = Some(x);
+        [self.largest / largest, (10.0 * self.path / longest).ln_1p() / f64::ln(11.0)]
+    }
+}
+
+impl Preprocessing {
+    /// True if the model sees its input as it is.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Inputs that are added to those of the record.
+    pub fn added_inputs(&self) -> usize {
+        if self.history.is_some() { HISTORY_INPUTS } else { 0 }
+    }
+
+    /// The first input as the model sees it.
+    pub fn input(&self, x: f64) -> f64 {
+        self.companding.map_or(x, |scale| (x / scale).asinh())
+    }
+
+    /// The rate as the model sees it.
+    pub fn rate(&self, rate: f64) -> f64 {
+        self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
+    }
+
+    /// All inputs of a sample as the model sees them, into `seen`.
+    pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
+        seen.clear();
+        seen.push(self.input(inputs[0]));
+        seen.extend_from_slice(&inputs[1..]);
+        if let Some(scales) = self.history {
+            seen.extend(past.take(inputs[0], scales));
+        }
+    }
+
+    /// A record as the model sees it, and how the rate is found there.
+    pub(crate) fn record<'r>(
+        &self,
+        record: &'r Record,
+        rate: Option<RateMethod>,
+    ) -> Result<(Cow<'r, Record>, Option<RateMethod>)> {
+        if self.is_none() {
+            return Ok((Cow::Borrowed(record), rate));
+        }
+        let x = &record.inputs()[0];
+        let mut inputs = vec![x.iter().map(|&x| self.input(x)).collect()];
+        inputs.extend_from_slice(&record.inputs()[1..]);
+        if let Some(scales) = self.history {
+            let mut past = Past::default();
+            let (largest, path) = x.iter().map(|&x| past.take(x, scales).into()).unzip();
+            inputs.extend([largest, path]);
+        }
+        let mut seen = Record::new(record.name(), inputs, record.output().to_vec())?;
+        if let Some(time) = record.time() {
+            seen = seen.with_time(time.to_vec())?;
+        }
+        if let Some(method) = rate {
+            seen =
+                seen.with_given_rate(method.rate(record)?.into_iter().map(|rate| self.rate(rate)).collect())?;
+        }
+        Ok((Cow::Owned(seen), rate.map(|_| RateMethod::Given)))
+    }
+
+    /// Data as the model sees them, and how the rate is found there.
+    pub(crate) fn data<'d>(
+        &self,
+        data: &'d Dataset,
+        rate: Option<RateMethod>,
+    ) -> Result<(Cow<'d, Dataset>, Option<RateMethod>)> {
+        if self.is_none() {
+            return Ok((Cow::Borrowed(data), rate));
+        }
+        let seen = |record| Ok(self.record(record, rate)?.0.into_owned());
+        let records = data.records().iter().map(seen).collect::<Result<_>>()?;
+        let mut names = data.names().clone();
+        names.inputs.extend((0..self.added_inputs()).map(|added| format!("history {}", added + 1)));
+        Ok((Cow::Owned(Dataset::new(names, records)?), rate.map(|_| RateMethod::Given)))
+    }
+
+    /// Refuses scales of a file that are none.
+    pub(crate) fn check(&self) -> Result<()> {
+        let scales =
+            [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
+        if scales.into_iter().flatten().all(|scale| scale > 0.0 && scale.is_finite()) {
+            return Ok(());
+        }
+        Err(Error::Option("its preprocessing has a scale that is none".into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::ColumnNames;
+
+    fn data() -> Dataset {
+        let x = vec![0.0, 1.0, -2.0, 0.5];
+        let record = Record::new("r", vec![x], vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        let record = record.with_time(vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    }
+
+    #[test]
+    fn every_row_follows_the_formulas() {
+        let data = data();
+        let shaping = Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true };
+        let rate = Some(RateMethod::Backward);
+        let preprocessing = shaping.of(&data, rate).unwrap();
+        let (seen, method) = preprocessing.data(&data, rate).unwrap();
+        assert_eq!(method, Some(RateMethod::Given));
+        let record = &seen.records()[0];
+        // s = 0.2, X = 2, P = 1 + 3 + 2.5; the rates are 0, 1, -3, 2.5 and 99.5 % of three rows stay below 2.5.
+        let [u, m, p] = record.inputs() else { panic!("three inputs") };
+        assert_eq!(u[2], f64::asinh(-10.0));
+        assert_eq!(m, &[0.0, 0.5, 1.0, 1.0]);
+        assert!((p[2] - f64::ln(1.0 + 10.0 * 4.0 / 6.5) / f64::ln(11.0)).abs() < 1e-15);
+        assert!((p[3] - 1.0).abs() < 1e-15);
+        assert!((record.given_rate().unwrap()[2] - f64::asinh(-3.0 / 1.25)).abs() < 1e-15);
+
+        let (mut past, mut sample) = (Past::default(), Vec::new());
+        for (row, &x) in data.records()[0].inputs()[0].iter().enumerate() {
+            preprocessing.sample(&[x], &mut past, &mut sample);
+            assert_eq!(sample, [u[row], m[row], p[row]]);
+        }
+    }
+
+    #[test]
+    fn nothing_asked_for_is_nothing_done() {
+        let data = data();
+        let preprocessing = Shaping::default().of(&data, None).unwrap();
+        assert!(preprocessing.is_none());
+        assert!(matches!(preprocessing.data(&data, None).unwrap().0, Cow::Borrowed(_)));
+    }
+}
