@@ -49,6 +49,7 @@ pub mod summary;
 pub mod training;
 pub mod turning_points;
 pub mod unit;
+pub mod validation;
 pub mod warning;
 
 pub use error::{Error, Result};

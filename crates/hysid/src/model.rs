@@ -26,7 +26,7 @@ use crate::warning::Warning;
 
 pub use band::{Band, Prediction};
 use ensemble::{Answer, Excursion};
-pub use ensemble::{Ensemble, Member, Weights};
+pub use ensemble::{Ensemble, Group, Voice, Weights};
 pub use file::FORMAT_VERSION;
 pub use stepper::Stepper;
 
@@ -92,9 +92,7 @@ impl Body {
         match self {
             Self::Network { network, .. } => network.architecture().parameters(),
             Self::Law(law) => law.parameters().len(),
-            Self::Ensemble(ensemble) => {
-                ensemble.members().iter().map(|member| member.model.parameters()).sum()
-            }
+            Self::Ensemble(ensemble) => ensemble.members().iter().map(|member| member.parameters()).sum(),
         }
     }
 
@@ -103,7 +101,7 @@ impl Body {
         match self {
             Self::Network { network, .. } => network.architecture().relaxation > 0,
             Self::Law(_) => false,
-            Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.model.needs_time()),
+            Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.needs_time()),
         }
     }
 }
@@ -155,7 +153,7 @@ impl Model {
         let uses_rate = match &body {
             Body::Network { network, .. } => network.architecture().rate,
             Body::Law(_) => provenance.options.model().uses_rate(),
-            Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.model.rate.is_some()),
+            Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
         let mut model = Self {
@@ -234,7 +232,7 @@ impl Model {
         match &self.body {
             Body::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
             Body::Law(_) => 1,
-            Body::Ensemble(ensemble) => ensemble.members()[0].model.inputs(),
+            Body::Ensemble(ensemble) => ensemble.members()[0].inputs(),
         }
     }
 

@@ -136,17 +136,29 @@ impl Record {
         }
         let kept = (fraction * scored.len() as f64).round() as usize;
         let end = scored[kept.clamp(1, scored.len() - 1)];
+        Some((self.rows_up_to(end), self.clone().scored_where(|row| row >= end)))
+    }
+
+    /// The beginning of the record, without the row at `end` and those behind it.
+    pub(crate) fn rows_up_to(&self, end: usize) -> Record {
         let cut = |column: &Vec<f64>| column[..end].to_vec();
-        let head = Record {
+        Record {
             name: self.name.clone(),
             time: self.time.as_ref().map(cut),
             inputs: self.inputs.iter().map(cut).collect(),
             given_rate: self.given_rate.as_ref().map(cut),
             output: cut(&self.output),
-        };
-        let mut tail = self.clone();
-        tail.output[..end].fill(f64::NAN);
-        Some((head, tail))
+        }
+    }
+
+    /// The same record with its other outputs blanked.
+    pub(crate) fn scored_where(mut self, is_scored: impl Fn(usize) -> bool) -> Record {
+        for (row, y) in self.output.iter_mut().enumerate() {
+            if !is_scored(row) {
+                *y = f64::NAN;
+            }
+        }
+        self
     }
 }
 
@@ -250,16 +262,30 @@ impl Dataset {
         range(self.records.iter().flat_map(|record| &record.output))
     }
 
+    /// Those records that are chosen by their place, and the others.
+    pub(crate) fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
+        let pick = |chosen: bool| {
+            let records = self.records.iter().enumerate();
+            let picked = records.filter(|(index, _)| is_chosen(*index) == chosen);
+            Dataset { names: self.names.clone(), records: picked.map(|(_, record)| record.clone()).collect() }
+        };
+        (pick(true), pick(false))
+    }
+
+    /// A record with the same channels, alone.
+    pub(crate) fn of_record(&self, record: Record) -> Dataset {
+        Dataset { names: self.names.clone(), records: vec![record] }
+    }
+
     /// Splits for validation: from several records some are held out; a single record is cut at the
     /// fraction `1 - held_out`, with the memory carried over into its tail.
     ///
     /// The records held out are those in the middle when ordered by the range of the first input, so
     /// that what is judged lies between what is trained on. `None` if the data are too few to split.
     pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
-        let part = |records| Dataset { names: self.names.clone(), records };
         if let [record] = self.records.as_slice() {
             let (head, tail) = record.split_at_fraction(1.0 - held_out)?;
-            return Some((part(vec![head]), part(vec![tail])));
+            return Some((self.of_record(head), self.of_record(tail)));
         }
         let mut order: Vec<usize> =
             (0..self.records.len()).filter(|&i| self.records[i].scored() > 0).collect();
@@ -274,13 +300,8 @@ impl Dataset {
         let count = ((held_out * order.len() as f64).round() as usize).clamp(1, order.len() - 1);
         let first = (order.len() - count) / 2;
         let chosen = &order[first..first + count];
-        let pick = |held: bool| {
-            (0..self.records.len())
-                .filter(|index| chosen.contains(index) == held)
-                .map(|index| self.records[index].clone())
-                .collect()
-        };
-        Some((part(pick(false)), part(pick(true))))
+        let (held, kept) = self.partition(|index| chosen.contains(&index));
+        Some((kept, held))
     }
 
     /// Refuses what no model can be identified from: a constant input, a constant or blank output,

@@ -63,6 +63,11 @@ impl Progress<'_> {
         self.snapshot.map(|snapshot| snapshot.checkpoint())
     }
 
+    /// The same without the state, of a fit that is only a part of the work.
+    pub(crate) fn of_part(&self, done: f64) -> Progress<'static> {
+        Progress { done, snapshot: None, ..self.clone() }
+    }
+
     /// Of a classical model's search.
     pub(crate) fn of_search(progress: &SearchProgress) -> Self {
         Self {

@@ -1,12 +1,13 @@
-//! Ensembles: several models that answer together by their weighted median.
+//! Ensembles: several models that answer together by weighted medians.
 //!
 //! ```text
-//! y = M(y_1 .. y_n; w_1 .. w_n),    w_i = a_i^{1-o} b_i^o                  theory.md (11.2), (11.3)
+//! y = M(y_1 .. y_n; w_1 .. w_n),    w_i = a_i^{1-o} b_i^o                  theory.md (11.3), (11.4)
 //! ```
 //!
-//! The median, not the mean: a single fit that runs away does not move it. A member that is good inside the
-//! range it was trained on need not be good outside, so it has two weights, and `o` tells how far outside
-//! the record has been.
+//! The median, not the mean: a single fit that runs away does not move it. Voices come in groups that first
+//! agree among themselves (fits of one kind from several starts, kinds of one family), so that a kind does
+//! not win by being many. A voice that is good inside the range it was trained on need not be good outside,
+//! so it has two weights, and `o` tells how far outside the record has been.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,23 +20,35 @@ use crate::record::Record;
 /// Designed.
 const WAY_OUT: f64 = 0.06;
 
+/// Groups within groups, at most.
+const DEEPEST: usize = 8;
+
 /// Several models that answer together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ensemble {
-    members: Vec<Member>,
+    group: Group,
     range: (f64, f64),
 }
 
-/// A model in an ensemble.
+/// Voices that agree on one answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Member {
-    /// The model.
-    pub model: Model,
-    /// Its weights.
-    pub weights: Weights,
+pub struct Group {
+    /// What they have in common.
+    pub name: String,
+    /// The voices.
+    pub voices: Vec<(Weights, Voice)>,
 }
 
-/// What a member counts, next to 1 for the best of them.
+/// One that is heard.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Voice {
+    /// A single model.
+    Model(Box<Model>),
+    /// The answer of a group.
+    Group(Group),
+}
+
+/// What a voice counts in its group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
@@ -46,6 +59,11 @@ pub struct Weights {
 }
 
 impl Weights {
+    /// The same inside and outside.
+    pub fn equal() -> Self {
+        Self { inside: 1.0, outside: 1.0 }
+    }
+
     /// The weight of a record that has been outside by this degree, 0 to 1: theory.md (11.3).
     pub(super) fn at(&self, outside: f64) -> f64 {
         if outside == 0.0 {
@@ -120,35 +138,34 @@ impl Ensemble {
     /// were trained on.
     ///
     /// # Errors
-    /// No member, an ensemble as a member, members of different inputs, weights that are negative, not
-    /// finite or all 0.
-    pub fn new(members: Vec<Member>, range: (f64, f64)) -> Result<Self> {
-        let Some(first) = members.first() else {
-            return Err(Error::Option("an ensemble needs at least one member".into()));
-        };
-        let inputs = first.model.inputs();
-        if members.iter().any(|member| member.model.ensemble().is_some()) {
+    /// A group without voices, an ensemble as a member, members of different inputs, weights that are
+    /// negative, not finite or all 0.
+    pub fn new(group: Group, range: (f64, f64)) -> Result<Self> {
+        group.check(DEEPEST)?;
+        let ensemble = Self { group, range };
+        let members = ensemble.members();
+        if members.iter().any(|member| member.ensemble().is_some()) {
             return Err(Error::Option("an ensemble cannot be a member of another".into()));
         }
-        if members.iter().any(|member| member.model.inputs() != inputs) {
+        if members.iter().any(|member| member.inputs() != members[0].inputs()) {
             return Err(Error::Option("the members of an ensemble do not have the same inputs".into()));
-        }
-        for weight in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
-            let all: Vec<f64> = members.iter().map(|member| weight(&member.weights)).collect();
-            let is_sound = all.iter().all(|weight| (0.0..=1e9).contains(weight));
-            if !is_sound || all.iter().sum::<f64>() < 1e-9 {
-                return Err(Error::Option("the weights of an ensemble are no weights".into()));
-            }
         }
         if !(range.0 < range.1 && range.0.is_finite() && range.1.is_finite()) {
             return Err(Error::Option("the range of an ensemble's input is no range".into()));
         }
-        Ok(Self { members, range })
+        Ok(ensemble)
     }
 
-    /// The members, in the order of their weights.
-    pub fn members(&self) -> &[Member] {
-        &self.members
+    /// The group of all.
+    pub fn group(&self) -> &Group {
+        &self.group
+    }
+
+    /// All models, group by group.
+    pub fn members(&self) -> Vec<&Model> {
+        let mut members = Vec::new();
+        self.group.collect(&mut members);
+        members
     }
 
     /// Range of the first input beyond which the outer weights count, in its unit.
@@ -156,34 +173,157 @@ impl Ensemble {
         self.range
     }
 
+    /// True if it matters that a record has once left the range.
+    pub(crate) fn remembers_excursions(&self) -> bool {
+        self.group.remembers_excursions()
+    }
+
     pub(super) fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
-        self.hear(record, |votes, _| votes.quantile(0.5))
+        let mut council = Council::new(self);
+        let mut excursion = Excursion::beyond(self.range);
+        let outputs = self.outputs(record)?;
+        let row = |(row, &x): (usize, &f64)| {
+            let outside = excursion.take(x);
+            council.output(&self.group, outside, |member| outputs[member][row])
+        };
+        Ok(record.inputs()[0].iter().enumerate().map(row).collect())
     }
 
     /// What the members say of each row of a record.
     pub(super) fn answers(&self, record: &Record) -> Result<Vec<Answer>> {
-        self.hear(record, |votes, outside| Answer {
-            output: votes.quantile(0.5),
-            disagreement: disagreement(votes),
-            outside,
+        let mut council = Council::new(self);
+        let mut excursion = Excursion::beyond(self.range);
+        let outputs = self.outputs(record)?;
+        let row = |(row, &x): (usize, &f64)| {
+            let outside = excursion.take(x);
+            let output = council.output(&self.group, outside, |member| outputs[member][row]);
+            let all = council.everybody(&self.group, outside, |member| outputs[member][row]);
+            Answer { output, disagreement: disagreement(all), outside }
+        };
+        Ok(record.inputs()[0].iter().enumerate().map(row).collect())
+    }
+
+    fn outputs(&self, record: &Record) -> Result<Vec<Vec<f64>>> {
+        self.members().into_iter().map(|member| member.simulate(record)).collect()
+    }
+}
+
+impl Group {
+    fn check(&self, deepest: usize) -> Result<()> {
+        if self.voices.is_empty() {
+            return Err(Error::Option("an ensemble needs at least one member".into()));
+        }
+        if deepest == 0 {
+            return Err(Error::Option("the groups of an ensemble are nested too deeply".into()));
+        }
+        for weight in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
+            let all = self.voices.iter().map(|(weights, _)| weight(weights));
+            if !all.clone().all(|weight| (0.0..=1e9).contains(&weight)) || all.sum::<f64>() < 1e-9 {
+                return Err(Error::Option("the weights of an ensemble are no weights".into()));
+            }
+        }
+        for (_, voice) in &self.voices {
+            if let Voice::Group(group) = voice {
+                group.check(deepest - 1)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn collect<'g>(&'g self, members: &mut Vec<&'g Model>) {
+        for (_, voice) in &self.voices {
+            match voice {
+                Voice::Model(model) => members.push(model),
+                Voice::Group(group) => group.collect(members),
+            }
+        }
+    }
+
+    fn remembers_excursions(&self) -> bool {
+        // Only the proportions of the weights count.
+        let first = self.voices[0].0;
+        self.voices.iter().any(|(weights, voice)| {
+            weights.inside * first.outside != weights.outside * first.inside
+                || matches!(voice, Voice::Group(group) if group.remembers_excursions())
         })
     }
 
-    /// Asks all members about every row.
-    fn hear<T>(&self, record: &Record, mut conclude: impl FnMut(&mut Votes, f64) -> T) -> Result<Vec<T>> {
-        let outputs: Vec<Vec<f64>> =
-            self.members.iter().map(|member| member.model.simulate(record)).collect::<Result<_>>()?;
-        let mut excursion = Excursion::beyond(self.range);
-        let mut votes = Votes::default();
-        let row = |(row, &x): (usize, &f64)| {
-            let outside = excursion.take(x);
-            votes.clear();
-            for (member, output) in self.members.iter().zip(&outputs) {
-                votes.cast(output[row], member.weights.at(outside));
-            }
-            conclude(&mut votes, outside)
+    fn depth(&self) -> usize {
+        let of_voice = |voice: &Voice| match voice {
+            Voice::Model(_) => 0,
+            Voice::Group(group) => group.depth(),
         };
-        Ok(record.inputs()[0].iter().enumerate().map(row).collect())
+        1 + self.voices.iter().map(|(_, voice)| of_voice(voice)).max().unwrap_or_default()
+    }
+}
+
+/// Room to hear all voices of a row in.
+#[derive(Debug, Clone)]
+pub(super) struct Council {
+    /// Votes of the group that is being heard, at each depth.
+    levels: Vec<Votes>,
+    /// Votes of all members, each with what it counts in the whole.
+    all: Votes,
+}
+
+impl Council {
+    pub fn new(ensemble: &Ensemble) -> Self {
+        Self { levels: vec![Votes::default(); ensemble.group.depth()], all: Votes::default() }
+    }
+
+    /// What the group answers where its members, counted one by one, say `of_member`.
+    pub fn output(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> f64 {
+        median(group, outside, &of_member, &mut 0, &mut self.levels)
+    }
+
+    /// The votes of all members.
+    fn everybody(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> &mut Votes {
+        self.all.clear();
+        gather(group, outside, 1.0, &of_member, &mut 0, &mut self.all);
+        &mut self.all
+    }
+}
+
+fn median(
+    group: &Group,
+    outside: f64,
+    of_member: &impl Fn(usize) -> f64,
+    next: &mut usize,
+    levels: &mut [Votes],
+) -> f64 {
+    let Some((votes, deeper)) = levels.split_first_mut() else { return f64::NAN };
+    votes.clear();
+    for (weights, voice) in &group.voices {
+        let value = match voice {
+            Voice::Model(_) => {
+                *next += 1;
+                of_member(*next - 1)
+            }
+            Voice::Group(group) => median(group, outside, of_member, next, deeper),
+        };
+        votes.cast(value, weights.at(outside));
+    }
+    votes.quantile(0.5)
+}
+
+fn gather(
+    group: &Group,
+    outside: f64,
+    share: f64,
+    of_member: &impl Fn(usize) -> f64,
+    next: &mut usize,
+    all: &mut Votes,
+) {
+    let sum: f64 = group.voices.iter().map(|(weights, _)| weights.at(outside)).sum();
+    for (weights, voice) in &group.voices {
+        let share = share * weights.at(outside) / sum;
+        match voice {
+            Voice::Model(_) => {
+                all.cast(of_member(*next), share);
+                *next += 1;
+            }
+            Voice::Group(group) => gather(group, outside, share, of_member, next, all),
+        }
     }
 }
 

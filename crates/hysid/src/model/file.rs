@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::classical::Classical;
 use crate::error::{Error, Result};
 use crate::identification::ModelName;
-use crate::model::{Band, Body, Ensemble, Member, Model, Provenance, TrainedRanges, Weights};
+use crate::model::{Band, Body, Ensemble, Group, Model, Provenance, TrainedRanges, Voice, Weights};
 use crate::network::{Architecture, Layout, Network};
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
@@ -48,19 +48,35 @@ struct File {
     checksum: String,
 }
 
-/// The members of an ensemble, and the range beyond which the outer weights count.
+/// The voices of an ensemble, and the range beyond which the outer weights count.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EnsembleParts {
     range: (f64, f64),
-    members: Vec<MemberParts>,
+    group: GroupParts,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GroupParts {
+    name: String,
+    voices: Vec<VoiceParts>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct VoiceParts {
+    weights: Weights,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    group: Option<GroupParts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    member: Option<MemberParts>,
 }
 
 /// A member: a file without what it shares with the others.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MemberParts {
-    weights: Weights,
     model: ModelName,
     rate: Option<RateMethod>,
     #[serde(default, skip_serializing_if = "Preprocessing::is_none")]
@@ -189,19 +205,45 @@ fn parts(body: &Body) -> (Option<NetworkParts>, Option<Classical>, Option<Ensemb
     match body {
         Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
         Body::Law(law) => (None, Some(law.clone()), None),
-        Body::Ensemble(ensemble) => {
-            let members = ensemble.members().iter().map(MemberParts::of).collect();
-            (None, None, Some(EnsembleParts { range: ensemble.range(), members }))
-        }
+        Body::Ensemble(ensemble) => (
+            None,
+            None,
+            Some(EnsembleParts { range: ensemble.range(), group: GroupParts::of(ensemble.group()) }),
+        ),
+    }
+}
+
+impl GroupParts {
+    fn of(group: &Group) -> Self {
+        let voice = |(weights, voice): &(Weights, Voice)| match voice {
+            Voice::Model(model) => {
+                VoiceParts { weights: *weights, group: None, member: Some(MemberParts::of(model)) }
+            }
+            Voice::Group(group) => {
+                VoiceParts { weights: *weights, group: Some(Self::of(group)), member: None }
+            }
+        };
+        Self { name: group.name.clone(), voices: group.voices.iter().map(voice).collect() }
+    }
+
+    fn group(self, columns: &ColumnNames) -> Result<Group> {
+        let voice = |parts: VoiceParts| {
+            let voice = match (parts.group, parts.member) {
+                (Some(group), None) => Voice::Group(group.group(columns)?),
+                (None, Some(member)) => Voice::Model(Box::new(member.model(columns)?)),
+                _ => return Err(Error::Option("a voice is either a group or a member".into())),
+            };
+            Ok((parts.weights, voice))
+        };
+        let voices = self.voices.into_iter().map(voice).collect::<Result<_>>()?;
+        Ok(Group { name: self.name, voices })
     }
 }
 
 impl MemberParts {
-    fn of(member: &Member) -> Self {
-        let model = &member.model;
+    fn of(model: &Model) -> Self {
         let (network, law, _) = parts(&model.body);
         Self {
-            weights: member.weights,
             model: model.name(),
             rate: model.rate,
             preprocessing: model.preprocessing,
@@ -212,7 +254,7 @@ impl MemberParts {
         }
     }
 
-    fn member(self, columns: &ColumnNames) -> Result<Member> {
+    fn model(self, columns: &ColumnNames) -> Result<Model> {
         let model = Model {
             body: single(self.network, self.law)?,
             preprocessing: self.preprocessing,
@@ -222,7 +264,7 @@ impl MemberParts {
             band: None,
             provenance: self.training,
         };
-        Ok(Member { weights: self.weights, model: checked(model, self.model)? })
+        checked(model, self.model)
     }
 }
 
@@ -334,8 +376,7 @@ fn assemble(file: File) -> Result<Model> {
     let body = match file.ensemble {
         None => single(file.network, file.law)?,
         Some(parts) if file.network.is_none() && file.law.is_none() => {
-            let members = parts.members.into_iter().map(|member| member.member(&file.columns));
-            Body::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.range)?)
+            Body::Ensemble(Ensemble::new(parts.group.group(&file.columns)?, parts.range)?)
         }
         Some(_) => return Err(Error::Option("it is an ensemble and has parts of another model".into())),
     };

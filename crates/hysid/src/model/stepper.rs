@@ -2,7 +2,7 @@
 
 use crate::classical::{ClassicalState, Law, Sample};
 use crate::error::{Error, Result};
-use crate::model::ensemble::{Ensemble, Excursion, Votes};
+use crate::model::ensemble::{Council, Ensemble, Excursion};
 use crate::model::{Body, Model};
 use crate::network::Simulator;
 use crate::preprocessing::Past;
@@ -34,7 +34,8 @@ enum Memory<'m> {
 struct Jury<'m> {
     members: Vec<Stepper<'m>>,
     excursion: Excursion,
-    votes: Votes,
+    outputs: Vec<f64>,
+    council: Council,
 }
 
 impl Memory<'_> {
@@ -45,9 +46,10 @@ impl Memory<'_> {
             }
             Body::Law(law) => Memory::Law(law.virgin()),
             Body::Ensemble(ensemble) => Memory::Ensemble(Jury {
-                members: ensemble.members().iter().map(|member| member.model.stepper()).collect(),
+                members: ensemble.members().iter().map(|member| member.stepper()).collect(),
                 excursion: Excursion::beyond(ensemble.range()),
-                votes: Votes::default(),
+                outputs: Vec::with_capacity(ensemble.members().len()),
+                council: Council::new(ensemble),
             }),
         }
     }
@@ -136,10 +138,10 @@ impl<'m> Stepper<'m> {
 impl Jury<'_> {
     fn step(&mut self, ensemble: &Ensemble, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         let outside = self.excursion.take(inputs[0]);
-        self.votes.clear();
-        for (stepper, member) in self.members.iter_mut().zip(ensemble.members()) {
-            self.votes.cast(stepper.step(inputs, time, rate)?, member.weights.at(outside));
+        self.outputs.clear();
+        for stepper in &mut self.members {
+            self.outputs.push(stepper.step(inputs, time, rate)?);
         }
-        Ok(self.votes.quantile(0.5))
+        Ok(self.council.output(ensemble.group(), outside, |member| self.outputs[member]))
     }
 }

@@ -103,7 +103,7 @@ fn possible(model: &Model, inputs: &[Interval], rate: Interval) -> Interval {
         Body::Ensemble(ensemble) => ensemble
             .members()
             .iter()
-            .map(|member| possible(&member.model, inputs, rate))
+            .map(|member| possible(member, inputs, rate))
             .reduce(|a, b| Interval(a.0.min(b.0), a.1.max(b.1)))
             .unwrap_or(ALL),
     };

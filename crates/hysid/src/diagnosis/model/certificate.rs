@@ -156,7 +156,7 @@ fn refine(probe: &Probe) -> Result<Refinement> {
 /// True for what consists of plays, stops and turning points, where clamps of one direction join to one.
 fn step_is_free(body: &Body) -> bool {
     match body {
-        Body::Ensemble(ensemble) => ensemble.members().iter().all(|member| step_is_free(member.model.body())),
+        Body::Ensemble(ensemble) => ensemble.members().iter().all(|member| step_is_free(member.body())),
         Body::Network { network, .. } => !sees_time(network.architecture()),
         Body::Law(Classical::BoucWen(law)) => law.n == 1.0 && law.degradation.is_none() && law.damping == 0.0,
         Body::Law(Classical::JilesAtherton(_)) => false,
@@ -168,9 +168,7 @@ fn sees_rate_or_time(body: &Body) -> bool {
     match body {
         Body::Network { network, .. } => sees_time(network.architecture()),
         Body::Law(law) => law_sees_rate(law),
-        Body::Ensemble(ensemble) => {
-            ensemble.members().iter().any(|member| sees_rate_or_time(member.model.body()))
-        }
+        Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| sees_rate_or_time(member.body())),
     }
 }
 
