@@ -143,7 +143,7 @@ impl Classical {
     ///
     /// # Errors
     /// A parameter that is not finite or out of bounds.
-    pub(crate) fn validated(self) -> Result<Self> {
+    pub fn validated(self) -> Result<Self> {
         Ok(match self {
             Self::GeneralizedPrandtlIshlinskii(law) => law.validated()?.into(),
             Self::RateDependentPrandtlIshlinskii(law) => law.validated()?.into(),

@@ -5,7 +5,7 @@ use crate::error::{Channel, DataProblem, Result};
 use crate::metrics::{ErrorSums, Errors};
 use crate::network::{Network, Simulator};
 use crate::rate::RateMethod;
-use crate::record::{Dataset, Record};
+use crate::record::{Dataset, Excitation};
 use crate::scaling::Scaling;
 
 /// Rows scaled at a time: they stay in the first-level cache.
@@ -25,22 +25,22 @@ impl<'a> FreeRun<'a> {
     }
 
     /// The output of each row, in the user's unit.
-    pub fn record(&mut self, record: &Record) -> Result<Vec<f64>> {
-        let (expected, found) = (self.scaling.inputs.len(), record.inputs().len());
+    pub fn response(&mut self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
+        let (expected, found) = (self.scaling.inputs.len(), excitation.inputs().len());
         if expected != found {
-            return Err(record.defect(None, None, DataProblem::Inputs { expected, found }));
+            return Err(excitation.defect(None, None, DataProblem::Inputs { expected, found }));
         }
-        let mut y = vec![0.0; record.len()];
+        let mut y = vec![0.0; excitation.len()];
         let mut channels = vec![[0.0; CHUNK]; self.network.architecture().channels()];
         let mut steps = [0.0; CHUNK];
         self.simulator.reset();
         for (index, y) in y.chunks_mut(CHUNK).enumerate() {
             let first = index * CHUNK;
             let rows = y.len();
-            self.scaling.fill_channels(record, self.rate, first, rows, &mut channels)?;
+            self.scaling.fill_channels(excitation, self.rate, first, rows, &mut channels)?;
             let u: Vec<&[f64]> = channels.iter().map(|channel| &channel[..rows]).collect();
             if self.network.architecture().relaxation > 0 {
-                Scaling::fill_steps(record, first, &mut steps[..rows]);
+                Scaling::fill_steps(excitation, first, &mut steps[..rows]);
             }
             self.simulator.run(&u, &steps[..rows], y);
             y.iter_mut().for_each(|y| *y = self.scaling.output(*y));
@@ -52,7 +52,7 @@ impl<'a> FreeRun<'a> {
     pub fn errors(&mut self, data: &Dataset) -> Result<Errors> {
         let mut sums = ErrorSums::default();
         for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(record.output(), &self.record(record)?);
+            sums.add(record.output(), &self.response(&record.excitation())?);
         }
         sums.errors(&data.names().output)
             .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))

@@ -6,10 +6,12 @@ mod ensemble;
 mod file;
 mod stepper;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::classical::identification::Rival;
-use crate::classical::series::Series;
+use crate::classical::series::samples;
 use crate::classical::{Classical, Law};
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::free_run::FreeRun;
@@ -18,7 +20,7 @@ use crate::metrics::{ErrorSums, Errors};
 use crate::network::Network;
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
-use crate::record::{ColumnNames, Dataset, Record};
+use crate::record::{ColumnNames, Dataset, Excitation, Record};
 use crate::scaling::Scaling;
 use crate::training::history::Run;
 use crate::training::termination::Termination;
@@ -60,17 +62,17 @@ pub enum Body {
 
 impl Body {
     /// Free run over a record from the virgin state, in the user's unit.
-    fn simulate(&self, rate: Option<RateMethod>, record: &Record) -> Result<Vec<f64>> {
+    fn response(&self, rate: Option<RateMethod>, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         match self {
-            Self::Network { network, scaling } => FreeRun::new(network, scaling, rate).record(record),
+            Self::Network { network, scaling } => FreeRun::new(network, scaling, rate).response(excitation),
             Self::Law(law) => {
-                if record.inputs().len() != 1 {
-                    let problem = DataProblem::Inputs { expected: 1, found: record.inputs().len() };
-                    return Err(record.defect(None, None, problem));
+                if excitation.inputs().len() != 1 {
+                    let problem = DataProblem::Inputs { expected: 1, found: excitation.inputs().len() };
+                    return Err(excitation.defect(None, None, problem));
                 }
-                Ok(law.run(&Series::of(record, rate)?.samples))
+                Ok(law.run(&samples(excitation, rate)?))
             }
-            Self::Ensemble(ensemble) => ensemble.simulate(record),
+            Self::Ensemble(ensemble) => ensemble.simulate(excitation),
         }
     }
 
@@ -81,7 +83,7 @@ impl Body {
         }
         let mut sums = ErrorSums::default();
         for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(record.output(), &self.simulate(rate, record)?);
+            sums.add(record.output(), &self.response(rate, &record.excitation())?);
         }
         sums.errors(&data.names().output)
             .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
@@ -284,9 +286,22 @@ impl Model {
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
     pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
-        self.check_time(record)?;
-        let (seen, rate) = self.preprocessing.record(record, self.rate)?;
-        self.body.simulate(rate, &seen)
+        self.response(&record.excitation())
+    }
+
+    /// As [`Model::simulate`], of an excitation that is read where it lies.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
+        self.check_time(excitation)?;
+        match self.preprocessing.columns(excitation, self.rate)? {
+            None => self.body.response(self.rate, excitation),
+            Some(seen) => {
+                let rate = self.rate.map(|_| RateMethod::Given);
+                self.body.response(rate, &seen.excitation(excitation)?)
+            }
+        }
     }
 
     /// Free run over a record with a band that holds the measured output with this probability, 0.5 to 0.99,
@@ -294,7 +309,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
-    pub fn predict(&self, record: &Record, probability: f64) -> Result<Prediction> {
+    pub fn predict(&self, excitation: &Excitation<'_>, probability: f64) -> Result<Prediction> {
         Band::check(probability)?;
         let Some(band) = &self.band else {
             return Err(Error::Option(format!(
@@ -302,18 +317,18 @@ impl Model {
                 self.name().name()
             )));
         };
-        self.check_time(record)?;
+        self.check_time(excitation)?;
         let answers = match &self.body {
-            Body::Ensemble(ensemble) => ensemble.answers(record)?,
+            Body::Ensemble(ensemble) => ensemble.answers(excitation)?,
             Body::Network { .. } | Body::Law(_) => {
                 let mut excursion = Excursion::beyond(self.trained.inputs[0]);
-                let output = self.simulate(record)?.into_iter();
+                let output = self.response(excitation)?.into_iter();
                 let answer = |(output, x): (f64, &f64)| Answer {
                     output,
                     disagreement: 0.0,
                     outside: excursion.take(*x),
                 };
-                output.zip(&record.inputs()[0]).map(answer).collect()
+                output.zip(excitation.inputs()[0]).map(answer).collect()
             }
         };
         let half = |answer: &Answer| band.half_width(probability, answer.disagreement, answer.outside);
@@ -339,21 +354,26 @@ impl Model {
     /// # Errors
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
-        data.records().iter().try_for_each(|record| self.check_time(record))?;
+        data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
         let (seen, rate) = self.preprocessing.data(data, self.rate)?;
         self.body.errors(rate, &seen)
     }
 
-    fn check_time(&self, record: &Record) -> Result<()> {
-        if self.needs_time() && record.time().is_none() {
-            return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTimeForModel));
+    fn check_time(&self, excitation: &Excitation<'_>) -> Result<()> {
+        if self.needs_time() && excitation.time().is_none() {
+            return Err(excitation.defect(None, Some(Channel::Time), DataProblem::NoTimeForModel));
         }
         Ok(())
     }
 
     /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.
     pub fn stepper(&self) -> Stepper<'_> {
-        Stepper::new(self)
+        Stepper::new(Cow::Borrowed(self))
+    }
+
+    /// As [`Model::stepper`], of a model that it keeps.
+    pub fn into_stepper(self) -> Stepper<'static> {
+        Stepper::new(Cow::Owned(self))
     }
 
     /// Warns of inputs and rates beyond what the model was trained on.

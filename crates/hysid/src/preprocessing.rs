@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::rate::RateMethod;
-use crate::record::{Dataset, Record};
+use crate::record::{Dataset, Excitation, Record};
 use crate::training::FEWEST_ROWS;
 
 /// What is asked for, in shares of what the data show.
@@ -173,45 +173,51 @@ impl Preprocessing {
         }
     }
 
-    /// A record as the model sees it, and how the rate is found there.
-    pub(crate) fn record<'r>(
+    /// What the model sees of an excitation; `None` where that is the excitation itself.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn columns(
         &self,
-        record: &'r Record,
+        excitation: &Excitation<'_>,
         rate: Option<RateMethod>,
-    ) -> Result<(Cow<'r, Record>, Option<RateMethod>)> {
+    ) -> Result<Option<SeenColumns>> {
         if self.is_none() {
-            return Ok((Cow::Borrowed(record), rate));
+            return Ok(None);
         }
-        let x = &record.inputs()[0];
+        let x = excitation.inputs()[0];
         let mut inputs = vec![x.iter().map(|&x| self.input(x)).collect()];
-        inputs.extend_from_slice(&record.inputs()[1..]);
+        inputs.extend(excitation.inputs()[1..].iter().map(|input| input.to_vec()));
         if let Some(scales) = self.history {
             let mut past = Past::default();
             let (largest, path) = x.iter().map(|&x| past.take(x, scales).into()).unzip();
             inputs.extend([largest, path]);
         }
-        let mut seen = Record::new(record.name(), inputs, record.output().to_vec())?;
-        if let Some(time) = record.time() {
-            seen = seen.with_time(time.to_vec())?;
-        }
-        if let Some(method) = rate {
-            seen =
-                seen.with_given_rate(method.rate(record)?.into_iter().map(|rate| self.rate(rate)).collect())?;
-        }
-        Ok((Cow::Owned(seen), rate.map(|_| RateMethod::Given)))
+        let seen_rate = |method: RateMethod| -> Result<Vec<f64>> {
+            let mut rates = vec![0.0; excitation.len()];
+            method.fill(excitation, 0, &mut rates)?;
+            rates.iter_mut().for_each(|rate| *rate = self.rate(*rate));
+            Ok(rates)
+        };
+        Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()? }))
     }
 
     /// Data as the model sees them, and how the rate is found there.
+    ///
+    /// # Errors
+    /// As [`Preprocessing::columns`].
     pub(crate) fn data<'d>(
         &self,
         data: &'d Dataset,
         rate: Option<RateMethod>,
     ) -> Result<(Cow<'d, Dataset>, Option<RateMethod>)> {
-        if self.is_none() {
-            return Ok((Cow::Borrowed(data), rate));
+        let mut records = Vec::with_capacity(data.records().len());
+        for record in data.records() {
+            let Some(seen) = self.columns(&record.excitation(), rate)? else {
+                return Ok((Cow::Borrowed(data), rate));
+            };
+            records.push(seen.record(record)?);
         }
-        let seen = |record| Ok(self.record(record, rate)?.0.into_owned());
-        let records = data.records().iter().map(seen).collect::<Result<_>>()?;
         let mut names = data.names().clone();
         names.inputs.extend((0..self.added_inputs()).map(|added| format!("history {}", added + 1)));
         Ok((Cow::Owned(Dataset::new(names, records)?), rate.map(|_| RateMethod::Given)))
@@ -225,6 +231,39 @@ impl Preprocessing {
             return Ok(());
         }
         Err(Error::Option("its preprocessing has a scale that is none".into()))
+    }
+}
+
+/// Columns that a model sees in the place of those measured.
+pub(crate) struct SeenColumns {
+    inputs: Vec<Vec<f64>>,
+    rate: Option<Vec<f64>>,
+}
+
+impl SeenColumns {
+    /// An excitation of these columns, with the time stamps of the one measured.
+    pub fn excitation<'s>(&'s self, measured: &Excitation<'s>) -> Result<Excitation<'s>> {
+        let inputs = self.inputs.iter().map(Vec::as_slice).collect();
+        let mut seen = Excitation::new(measured.name(), inputs)?;
+        if let Some(time) = measured.time() {
+            seen = seen.with_time(time)?;
+        }
+        match &self.rate {
+            Some(rate) => seen.with_given_rate(rate),
+            None => Ok(seen),
+        }
+    }
+
+    /// A record of these columns, with all else of the one measured.
+    fn record(self, measured: &Record) -> Result<Record> {
+        let mut seen = Record::new(measured.name(), self.inputs, measured.output().to_vec())?;
+        if let Some(time) = measured.time() {
+            seen = seen.with_time(time.to_vec())?;
+        }
+        match self.rate {
+            Some(rate) => seen.with_given_rate(rate),
+            None => Ok(seen),
+        }
     }
 }
 

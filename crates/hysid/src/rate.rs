@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
-use crate::record::Record;
+use crate::record::{Excitation, Record};
 
 /// How the rate of the first input is found. A model remembers its method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,7 +30,7 @@ impl RateMethod {
     /// No time stamps (or no given rate), or a rate beyond [`LARGEST_VALUE`].
     pub fn rate(self, record: &Record) -> Result<Vec<f64>> {
         let mut rate = vec![0.0; record.len()];
-        self.fill(record, 0, &mut rate)?;
+        self.fill(&record.excitation(), 0, &mut rate)?;
         Ok(rate)
     }
 
@@ -38,26 +38,26 @@ impl RateMethod {
     ///
     /// # Errors
     /// As [`RateMethod::rate`].
-    pub(crate) fn fill(self, record: &Record, first: usize, rate: &mut [f64]) -> Result<()> {
+    pub(crate) fn fill(self, excitation: &Excitation<'_>, first: usize, rate: &mut [f64]) -> Result<()> {
         let rows = first..first + rate.len();
-        match (self, record.time()) {
+        match (self, excitation.time()) {
             (RateMethod::Given, _) => {
-                let missing = || record.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate);
-                rate.copy_from_slice(&record.given_rate().ok_or_else(missing)?[rows]);
+                let missing = || excitation.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate);
+                rate.copy_from_slice(&excitation.given_rate().ok_or_else(missing)?[rows]);
             }
-            (_, None) => return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTime)),
-            (RateMethod::Central, Some(time)) => central(time, &record.inputs()[0], rows, rate),
+            (_, None) => return Err(excitation.defect(None, Some(Channel::Time), DataProblem::NoTime)),
+            (RateMethod::Central, Some(time)) => central(time, excitation.inputs()[0], rows, rate),
             (RateMethod::Backward, Some(time)) => {
-                each(rows, rate, |row| backward_at(time, &record.inputs()[0], row));
+                each(rows, rate, |row| backward_at(time, excitation.inputs()[0], row));
             }
             (RateMethod::SavitzkyGolay, Some(time)) => {
-                each(rows, rate, |row| savitzky_golay_at(time, &record.inputs()[0], row));
+                each(rows, rate, |row| savitzky_golay_at(time, excitation.inputs()[0], row));
             }
         }
         match rate.iter().position(|rate| rate.is_nan() || rate.abs() > LARGEST_VALUE) {
             Some(row) => {
                 let problem = DataProblem::RateTooLarge(rate[row]);
-                Err(record.defect(Some(first + row), Some(Channel::Time), problem))
+                Err(excitation.defect(Some(first + row), Some(Channel::Time), problem))
             }
             None => Ok(()),
         }
@@ -158,7 +158,7 @@ mod tests {
         // Row by row gives the same.
         for (row, &expected) in whole.iter().enumerate() {
             let mut one = [f64::NAN];
-            method.fill(&record, row, &mut one).unwrap();
+            method.fill(&record.excitation(), row, &mut one).unwrap();
             assert_eq!(one[0], expected, "row {row}");
         }
         whole

@@ -3,7 +3,10 @@
 //!
 //! A blank output is NaN: such a row drives the memory and is neither trained on nor scored.
 
-use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, Result};
+mod excitation;
+
+use crate::error::{Channel, DataProblem, Error, Result};
+pub use excitation::Excitation;
 
 /// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,19 +23,11 @@ impl Record {
     /// output, in which NaN is a blank.
     ///
     /// # Errors
-    /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
+    /// No rows, differing lengths, an input that is not finite, values beyond [`crate::error::LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
         let record = Self { name: name.into(), time: None, inputs, given_rate: None, output };
-        if record.inputs.is_empty() {
-            return Err(record.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
-        }
-        if record.is_empty() {
-            return Err(record.defect(None, None, DataProblem::Empty));
-        }
-        for (index, input) in record.inputs.iter().enumerate() {
-            record.check_column(Channel::Input(index), input, false)?;
-        }
-        record.check_column(Channel::Output, &record.output, true)?;
+        Excitation::new(&record.name, columns(&record.inputs))?;
+        record.excitation().check_column(Channel::Output, &record.output, true)?;
         Ok(record)
     }
 
@@ -41,13 +36,7 @@ impl Record {
     /// # Errors
     /// Another length, not finite, or not increasing.
     pub fn with_time(mut self, time: Vec<f64>) -> Result<Self> {
-        self.check_column(Channel::Time, &time, false)?;
-        for (index, pair) in time.windows(2).enumerate() {
-            if pair[1] <= pair[0] {
-                let problem = DataProblem::TimeNotIncreasing { before: pair[0], now: pair[1] };
-                return Err(self.defect(Some(index + 1), Some(Channel::Time), problem));
-            }
-        }
+        self.excitation().with_time(&time)?;
         self.time = Some(time);
         Ok(self)
     }
@@ -57,31 +46,23 @@ impl Record {
     /// # Errors
     /// Another length or not finite.
     pub fn with_given_rate(mut self, rate: Vec<f64>) -> Result<Self> {
-        self.check_column(Channel::Rate, &rate, false)?;
+        self.excitation().with_given_rate(&rate)?;
         self.given_rate = Some(rate);
         Ok(self)
     }
 
-    fn check_column(&self, channel: Channel, values: &[f64], may_be_blank: bool) -> Result<()> {
-        if values.len() != self.len() {
-            let problem = DataProblem::Length { expected: self.len(), found: values.len() };
-            return Err(self.defect(None, Some(channel), problem));
+    /// What drives a model: all but the output.
+    pub fn excitation(&self) -> Excitation<'_> {
+        Excitation {
+            name: &self.name,
+            time: self.time(),
+            inputs: columns(&self.inputs),
+            given_rate: self.given_rate(),
         }
-        for (row, &value) in values.iter().enumerate() {
-            let problem = if value.is_nan() && may_be_blank || value.abs() <= LARGEST_VALUE {
-                continue;
-            } else if value.is_finite() {
-                DataProblem::TooLarge(value)
-            } else {
-                DataProblem::NotFinite(value)
-            };
-            return Err(self.defect(Some(row), Some(channel), problem));
-        }
-        Ok(())
     }
 
     pub(crate) fn defect(&self, row: Option<usize>, channel: Option<Channel>, problem: DataProblem) -> Error {
-        Error::Data(DataError { record: self.name.clone(), row, channel, problem })
+        self.excitation().defect(row, channel, problem)
     }
 
     /// Name of the record.
@@ -160,6 +141,10 @@ impl Record {
         }
         self
     }
+}
+
+fn columns(inputs: &[Vec<f64>]) -> Vec<&[f64]> {
+    inputs.iter().map(Vec::as_slice).collect()
 }
 
 /// Names of the columns, as the user wrote them.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::network::{Architecture, Drive};
 use crate::rate::RateMethod;
-use crate::record::{Dataset, Record};
+use crate::record::{Dataset, Excitation, Record};
 
 /// Scale factors, found on the training data and stored in the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -62,9 +62,10 @@ impl Scaling {
     ) -> Result<Drive> {
         let rate = rate.filter(|_| architecture.rate);
         let mut channels = vec![vec![0.0; record.len()]; architecture.channels()];
-        self.fill_channels(record, rate, 0, record.len(), &mut channels)?;
+        let excitation = record.excitation();
+        self.fill_channels(&excitation, rate, 0, record.len(), &mut channels)?;
         let mut steps = vec![0.0; if architecture.relaxation > 0 { record.len() } else { 0 }];
-        Self::fill_steps(record, 0, &mut steps);
+        Self::fill_steps(&excitation, 0, &mut steps);
         Ok(Drive { channels, steps })
     }
 
@@ -75,14 +76,14 @@ impl Scaling {
     /// A rate that cannot be computed.
     pub(crate) fn fill_channels(
         &self,
-        record: &Record,
+        excitation: &Excitation<'_>,
         rate: Option<RateMethod>,
         first: usize,
         rows: usize,
         channels: &mut [impl AsMut<[f64]>],
     ) -> Result<()> {
         let mut channels = channels.iter_mut().map(|channel| &mut channel.as_mut()[..rows]);
-        for (input, (x, &scale)) in record.inputs().iter().zip(&self.inputs).enumerate() {
+        for (input, (x, &scale)) in excitation.inputs().iter().zip(&self.inputs).enumerate() {
             let Some(channel) = channels.next() else { break };
             let factor = 1.0 / scale;
             for (u, &x) in channel.iter_mut().zip(&x[first..]) {
@@ -91,7 +92,7 @@ impl Scaling {
             if let (0, Some(method), Some(scale)) = (input, rate, self.rate)
                 && let Some(channel) = channels.next()
             {
-                method.fill(record, first, channel)?;
+                method.fill(excitation, first, channel)?;
                 let factor = 1.0 / scale;
                 channel.iter_mut().for_each(|rate| *rate *= factor);
             }
@@ -100,8 +101,8 @@ impl Scaling {
     }
 
     /// Fills the time steps before each row from `first` on, 0 at the first row of the record.
-    pub(crate) fn fill_steps(record: &Record, first: usize, steps: &mut [f64]) {
-        let Some(time) = record.time() else { return };
+    pub(crate) fn fill_steps(excitation: &Excitation<'_>, first: usize, steps: &mut [f64]) {
+        let Some(time) = excitation.time() else { return };
         for (row, step) in (first..).zip(steps) {
             *step = if row == 0 { 0.0 } else { time[row] - time[row - 1] };
         }

@@ -3,7 +3,7 @@
 use crate::classical::{Law, Sample};
 use crate::error::Result;
 use crate::rate::RateMethod;
-use crate::record::{Dataset, Record};
+use crate::record::{Dataset, Excitation, Record};
 
 /// The samples of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,17 +20,7 @@ impl Series {
     /// # Errors
     /// A rate that cannot be computed.
     pub fn of(record: &Record, rate: Option<RateMethod>) -> Result<Self> {
-        let rates = rate.map(|method| method.rate(record)).transpose()?;
-        let time = record.time();
-        let sample = |(row, &x): (usize, &f64)| Sample {
-            x,
-            rate: rates.as_ref().map_or(0.0, |rates| rates[row]),
-            step: time.filter(|_| row > 0).map_or(0.0, |time| time[row] - time[row - 1]),
-        };
-        Ok(Self {
-            samples: record.inputs()[0].iter().enumerate().map(sample).collect(),
-            output: record.output().to_vec(),
-        })
+        Ok(Self { samples: samples(&record.excitation(), rate)?, output: record.output().to_vec() })
     }
 
     /// All records of a data set that have an output.
@@ -41,6 +31,21 @@ impl Series {
         let used = data.records().iter().filter(|record| record.scored() > 0);
         used.map(|record| Self::of(record, rate)).collect()
     }
+}
+
+/// What a law is told, row by row; rates are 0 without a method, time steps are 0 without time.
+///
+/// # Errors
+/// A rate that cannot be computed.
+pub fn samples(excitation: &Excitation<'_>, rate: Option<RateMethod>) -> Result<Vec<Sample>> {
+    let mut rates = vec![0.0; excitation.len()];
+    if let Some(method) = rate {
+        method.fill(excitation, 0, &mut rates)?;
+    }
+    let time = excitation.time();
+    let step = |row: usize| time.filter(|_| row > 0).map_or(0.0, |time| time[row] - time[row - 1]);
+    let rows = excitation.inputs()[0].iter().zip(rates).enumerate();
+    Ok(rows.map(|(row, (&x, rate))| Sample { x, rate, step: step(row) }).collect())
 }
 
 /// Free run of a law from its virgin state.

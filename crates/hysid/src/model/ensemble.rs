@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::band::disagreement;
-use crate::record::Record;
+use crate::record::Excitation;
 
 /// Share of the trained range by which the input must leave it until only the outer weights count.
 /// Designed.
@@ -178,33 +178,33 @@ impl Ensemble {
         self.group.remembers_excursions()
     }
 
-    pub(super) fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
+    pub(super) fn simulate(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         let mut council = Council::new(self);
         let mut excursion = Excursion::beyond(self.range);
-        let outputs = self.outputs(record)?;
+        let outputs = self.outputs(excitation)?;
         let row = |(row, &x): (usize, &f64)| {
             let outside = excursion.take(x);
             council.output(&self.group, outside, |member| outputs[member][row])
         };
-        Ok(record.inputs()[0].iter().enumerate().map(row).collect())
+        Ok(excitation.inputs()[0].iter().enumerate().map(row).collect())
     }
 
-    /// What the members say of each row of a record.
-    pub(super) fn answers(&self, record: &Record) -> Result<Vec<Answer>> {
+    /// What the members say of each row of an excitation.
+    pub(super) fn answers(&self, excitation: &Excitation<'_>) -> Result<Vec<Answer>> {
         let mut council = Council::new(self);
         let mut excursion = Excursion::beyond(self.range);
-        let outputs = self.outputs(record)?;
+        let outputs = self.outputs(excitation)?;
         let row = |(row, &x): (usize, &f64)| {
             let outside = excursion.take(x);
             let output = council.output(&self.group, outside, |member| outputs[member][row]);
             let all = council.everybody(&self.group, outside, |member| outputs[member][row]);
             Answer { output, disagreement: disagreement(all), outside }
         };
-        Ok(record.inputs()[0].iter().enumerate().map(row).collect())
+        Ok(excitation.inputs()[0].iter().enumerate().map(row).collect())
     }
 
-    fn outputs(&self, record: &Record) -> Result<Vec<Vec<f64>>> {
-        self.members().into_iter().map(|member| member.simulate(record)).collect()
+    fn outputs(&self, excitation: &Excitation<'_>) -> Result<Vec<Vec<f64>>> {
+        self.members().into_iter().map(|member| member.response(excitation)).collect()
     }
 }
 

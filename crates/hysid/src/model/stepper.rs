@@ -1,8 +1,10 @@
 //! A model run sample by sample.
 
+use std::borrow::Cow;
+
 use crate::classical::{ClassicalState, Law, Sample};
 use crate::error::{Error, Result};
-use crate::model::ensemble::{Council, Ensemble, Excursion};
+use crate::model::ensemble::{Council, Excursion};
 use crate::model::{Body, Model};
 use crate::network::Simulator;
 use crate::preprocessing::Past;
@@ -11,8 +13,14 @@ use crate::preprocessing::Past;
 /// gives the same outputs to the last bit.
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
-    model: &'m Model,
-    memory: Memory<'m>,
+    model: Cow<'m, Model>,
+    state: State,
+}
+
+/// What is known of the past.
+#[derive(Debug, Clone)]
+struct State {
+    memory: Memory,
     past: Past,
     /// Inputs of the last sample as the model saw them.
     seen: Vec<f64>,
@@ -20,50 +28,43 @@ pub struct Stepper<'m> {
     last: Option<(f64, f64)>,
 }
 
-/// What a stepper knows of the past.
 #[derive(Debug, Clone)]
-enum Memory<'m> {
+enum Memory {
     /// A network's simulator, and room for its channels.
     Network(Box<Simulator>, Vec<f64>),
     Law(ClassicalState),
-    Ensemble(Jury<'m>),
+    Ensemble(Box<Jury>),
 }
 
 /// The members of an ensemble on their way.
 #[derive(Debug, Clone)]
-struct Jury<'m> {
-    members: Vec<Stepper<'m>>,
+struct Jury {
+    members: Vec<State>,
     excursion: Excursion,
     outputs: Vec<f64>,
     council: Council,
 }
 
-impl Memory<'_> {
-    fn virgin(body: &Body) -> Memory<'_> {
+impl Memory {
+    fn virgin(body: &Body) -> Self {
         match body {
             Body::Network { network, .. } => {
-                Memory::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
+                Self::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
             }
-            Body::Law(law) => Memory::Law(law.virgin()),
-            Body::Ensemble(ensemble) => Memory::Ensemble(Jury {
-                members: ensemble.members().iter().map(|member| member.stepper()).collect(),
+            Body::Law(law) => Self::Law(law.virgin()),
+            Body::Ensemble(ensemble) => Self::Ensemble(Box::new(Jury {
+                members: ensemble.members().into_iter().map(State::virgin).collect(),
                 excursion: Excursion::beyond(ensemble.range()),
                 outputs: Vec::with_capacity(ensemble.members().len()),
                 council: Council::new(ensemble),
-            }),
+            })),
         }
     }
 }
 
 impl<'m> Stepper<'m> {
-    pub(super) fn new(model: &'m Model) -> Self {
-        Self {
-            model,
-            memory: Memory::virgin(&model.body),
-            past: Past::default(),
-            seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
-            last: None,
-        }
+    pub(super) fn new(model: Cow<'m, Model>) -> Self {
+        Self { state: State::virgin(&model), model }
     }
 
     /// The next sample: inputs and time in the user's units, `time` of no matter for a model that
@@ -73,7 +74,27 @@ impl<'m> Stepper<'m> {
     /// # Errors
     /// Another number of inputs, a value that is not finite, or time that does not advance.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
-        let expected = self.model.inputs();
+        self.state.step(&self.model, inputs, time, rate)
+    }
+
+    /// Back to the virgin state.
+    pub fn reset(&mut self) {
+        self.state.reset(&self.model);
+    }
+}
+
+impl State {
+    fn virgin(model: &Model) -> Self {
+        Self {
+            memory: Memory::virgin(&model.body),
+            past: Past::default(),
+            seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
+            last: None,
+        }
+    }
+
+    fn step(&mut self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
+        let expected = model.inputs();
         if inputs.len() != expected {
             return Err(Error::Option(format!("{} inputs where the model has {expected}", inputs.len())));
         }
@@ -81,19 +102,19 @@ impl<'m> Stepper<'m> {
             Some((before, _)) => time - before,
             None => 0.0,
         };
-        if self.model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
+        if model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
             return Err(Error::Option(format!("time {time} does not come after the last sample's")));
         }
-        let rate = self.model.rate.map(|_| {
+        let rate = model.rate.map(|_| {
             let backward = self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
             rate.unwrap_or(backward)
         });
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
             return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
         }
-        let seen_rate = rate.map(|rate| self.model.preprocessing.rate(rate));
-        self.model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
-        let y = match (&self.model.body, &mut self.memory) {
+        let seen_rate = rate.map(|rate| model.preprocessing.rate(rate));
+        model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
+        let y = match (&model.body, &mut self.memory) {
             (Body::Network { scaling, .. }, Memory::Network(simulator, u)) => {
                 let mut channels = u.iter_mut();
                 for (input, (&x, &scale)) in self.seen.iter().zip(&scaling.inputs).enumerate() {
@@ -110,38 +131,36 @@ impl<'m> Stepper<'m> {
                 scaling.output(simulator.step(u, elapsed))
             }
             (Body::Law(law), Memory::Law(state)) => {
-                let step = if self.model.needs_time() { elapsed } else { 0.0 };
+                let step = if model.needs_time() { elapsed } else { 0.0 };
                 law.step(state, Sample { x: self.seen[0], rate: seen_rate.unwrap_or(0.0), step })
             }
-            (Body::Ensemble(ensemble), Memory::Ensemble(jury)) => jury.step(ensemble, inputs, time, rate)?,
+            (Body::Ensemble(ensemble), Memory::Ensemble(jury)) => {
+                let Jury { members, excursion, outputs, council } = &mut **jury;
+                let outside = excursion.take(inputs[0]);
+                outputs.clear();
+                for (state, member) in members.iter_mut().zip(ensemble.members()) {
+                    outputs.push(state.step(member, inputs, time, rate)?);
+                }
+                council.output(ensemble.group(), outside, |member| outputs[member])
+            }
             _ => unreachable!("the memory was made for the body"),
         };
         self.last = Some((time, inputs[0]));
         Ok(y)
     }
 
-    /// Back to the virgin state.
-    pub fn reset(&mut self) {
-        match (&self.model.body, &mut self.memory) {
+    fn reset(&mut self, model: &Model) {
+        match (&model.body, &mut self.memory) {
             (Body::Network { .. }, Memory::Network(simulator, _)) => simulator.reset(),
             (Body::Ensemble(ensemble), Memory::Ensemble(jury)) => {
-                jury.members.iter_mut().for_each(Stepper::reset);
+                for (state, member) in jury.members.iter_mut().zip(ensemble.members()) {
+                    state.reset(member);
+                }
                 jury.excursion = Excursion::beyond(ensemble.range());
             }
             (body, memory) => *memory = Memory::virgin(body),
         }
         self.past = Past::default();
         self.last = None;
-    }
-}
-
-impl Jury<'_> {
-    fn step(&mut self, ensemble: &Ensemble, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
-        let outside = self.excursion.take(inputs[0]);
-        self.outputs.clear();
-        for stepper in &mut self.members {
-            self.outputs.push(stepper.step(inputs, time, rate)?);
-        }
-        Ok(self.council.output(ensemble.group(), outside, |member| self.outputs[member]))
     }
 }

@@ -1,0 +1,104 @@
+//! What drives a model, borrowed: a free run copies no column.
+
+use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, Result};
+
+/// The inputs of a record with all that goes with them, read where they lie.
+#[derive(Debug, Clone)]
+pub struct Excitation<'a> {
+    pub(super) name: &'a str,
+    pub(super) time: Option<&'a [f64]>,
+    pub(super) inputs: Vec<&'a [f64]>,
+    pub(super) given_rate: Option<&'a [f64]>,
+}
+
+impl<'a> Excitation<'a> {
+    /// An excitation from its input channels, each of the same length, in the user's units.
+    ///
+    /// # Errors
+    /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
+    pub fn new(name: &'a str, inputs: Vec<&'a [f64]>) -> Result<Self> {
+        let excitation = Self { name, time: None, inputs, given_rate: None };
+        if excitation.inputs.is_empty() {
+            return Err(excitation.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
+        }
+        if excitation.is_empty() {
+            return Err(excitation.defect(None, None, DataProblem::Empty));
+        }
+        for (index, input) in excitation.inputs.iter().enumerate() {
+            excitation.check_column(Channel::Input(index), input, false)?;
+        }
+        Ok(excitation)
+    }
+
+    /// The same with time stamps, strictly increasing.
+    ///
+    /// # Errors
+    /// Another length, not finite, or not increasing.
+    pub fn with_time(mut self, time: &'a [f64]) -> Result<Self> {
+        self.check_column(Channel::Time, time, false)?;
+        if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let problem = DataProblem::TimeNotIncreasing { before: time[index], now: time[index + 1] };
+            return Err(self.defect(Some(index + 1), Some(Channel::Time), problem));
+        }
+        self.time = Some(time);
+        Ok(self)
+    }
+
+    /// The same with a measured or otherwise given rate of the first input.
+    ///
+    /// # Errors
+    /// Another length or not finite.
+    pub fn with_given_rate(mut self, rate: &'a [f64]) -> Result<Self> {
+        self.check_column(Channel::Rate, rate, false)?;
+        self.given_rate = Some(rate);
+        Ok(self)
+    }
+
+    pub(super) fn check_column(&self, channel: Channel, values: &[f64], may_be_blank: bool) -> Result<()> {
+        if values.len() != self.len() {
+            let problem = DataProblem::Length { expected: self.len(), found: values.len() };
+            return Err(self.defect(None, Some(channel), problem));
+        }
+        let is_sound = |value: f64| value.abs() <= LARGEST_VALUE || value.is_nan() && may_be_blank;
+        let Some(row) = values.iter().position(|&value| !is_sound(value)) else { return Ok(()) };
+        let problem = match values[row] {
+            value if value.is_finite() => DataProblem::TooLarge(value),
+            value => DataProblem::NotFinite(value),
+        };
+        Err(self.defect(Some(row), Some(channel), problem))
+    }
+
+    pub(crate) fn defect(&self, row: Option<usize>, channel: Option<Channel>, problem: DataProblem) -> Error {
+        Error::Data(DataError { record: self.name.to_owned(), row, channel, problem })
+    }
+
+    /// Name of the record.
+    pub fn name(&self) -> &'a str {
+        self.name
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.inputs.first().map_or(0, |input| input.len())
+    }
+
+    /// True if there is no row; none that was made by [`Excitation::new`] is empty.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The input channels, each with one value a row.
+    pub fn inputs(&self) -> &[&'a [f64]] {
+        &self.inputs
+    }
+
+    /// Time stamps, if there are any.
+    pub fn time(&self) -> Option<&'a [f64]> {
+        self.time
+    }
+
+    /// The given rate of the first input, if there is one.
+    pub fn given_rate(&self) -> Option<&'a [f64]> {
+        self.given_rate
+    }
+}
