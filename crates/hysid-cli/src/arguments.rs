@@ -6,11 +6,11 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, Parser, Subcommand};
+use hysid::automatic::MOST_MEMBERS;
 use hysid::classical::linear_fit::Sign;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::identification::ModelName;
 use hysid::identification::options::{ChosenOptions, NEURONS, RateChoice, STARTS};
-use hysid::network::Sizes;
 use hysid::plant::Specimen;
 use hysid::training::genetic::POPULATIONS;
 use hysid::training::{FitOptions, Trainer};
@@ -140,26 +140,42 @@ pub struct Fit {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Model and training")]
 pub struct TrainingOptions {
-    /// A network: pnn, gpnn, preisach-nn, xpnn (also epnn) or xpnn+; or another model: see `hysid compare`
-    #[arg(long, value_name = "MODEL", default_value = "xpnn+", value_parser = model)]
+    /// auto: what does best on data held out, alone or together; or a network (pnn, gpnn, preisach-nn,
+    /// xpnn, also epnn, or xpnn+), or another model: see `hysid compare`
+    #[arg(long, value_name = "MODEL", default_value = "auto", value_parser = model)]
     pub model: ModelName,
+    /// Models that answer together, at most; 1 for a single small one. Of a model that is named, so many
+    /// starts answer together [default: 32 for auto, otherwise 1]
+    #[arg(long, value_name = "N", value_parser = members)]
+    pub members: Option<usize>,
     /// Stop neurons of a network [default: 10]
     #[arg(long, value_name = "N", value_parser = neurons)]
     pub stops: Option<usize>,
     /// Tanh neurons, for models that have them [default: 10; neuro-madelung 8, random-stops none]
     #[arg(long, value_name = "N", value_parser = neurons)]
     pub hidden: Option<usize>,
-    /// Relaxation neurons of each input, for xpnn+ with time stamps; 0 for none
-    #[arg(long, value_name = "N", default_value_t = Sizes::default().relaxation)]
-    pub relaxation: usize,
+    /// Relaxation neurons of each input, for xpnn+ with time stamps; 0 for none [default: 4]
+    #[arg(long, value_name = "N")]
+    pub relaxation: Option<usize>,
     /// Stops do not deteriorate, whatever the family
     #[arg(long)]
     pub no_deterioration: bool,
+    /// Spread the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
+    /// 0.1; 0 for never [default: what validates best for auto, otherwise never]
+    #[arg(long, value_name = "SHARE")]
+    pub companding: Option<f64>,
+    /// The same for the rate, as a share of the rates that are common [default: as above]
+    #[arg(long, value_name = "SHARE")]
+    pub rate_companding: Option<f64>,
+    /// The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops
+    #[arg(long)]
+    pub history: bool,
     /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
     /// method with space dilatation, or either alone
     #[arg(long, value_name = "TRAINER", default_value = "levenberg-marquardt", value_parser = trainer())]
     pub training: Trainer,
-    /// Random networks or populations to start from [default: 8 for levenberg-marquardt, otherwise 1]
+    /// Random networks or populations to start from [default: 8, or 1 for other trainers than
+    /// levenberg-marquardt]
     #[arg(long, value_name = "N", value_parser = starts)]
     pub starts: Option<usize>,
     /// Epochs of each start: iterations or generations, in a hybrid half of each; the best of several
@@ -176,9 +192,9 @@ pub struct TrainingOptions {
     /// Seed of the random starts
     #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed)]
     pub seed: u64,
-    /// Share of the data held out to choose among the starts
-    #[arg(long, value_name = "FRACTION", default_value_t = FitOptions::default().validation, value_parser = fraction)]
-    pub validation: f64,
+    /// Share of the data held out to choose among the starts of a network [default: 0.25]
+    #[arg(long, value_name = "FRACTION", value_parser = fraction)]
+    pub validation: Option<f64>,
 }
 
 /// What can be chosen of the models that are no networks.
@@ -218,15 +234,19 @@ impl TrainingOptions {
             model: Some(self.model),
             stops: self.stops,
             hidden: self.hidden,
-            relaxation: Some(self.relaxation),
-            no_deterioration: Some(self.no_deterioration),
+            members: self.members,
+            relaxation: self.relaxation,
+            no_deterioration: self.no_deterioration.then_some(true),
+            companding: self.companding,
+            rate_companding: self.rate_companding,
+            history: self.history.then_some(true),
             training: Some(self.training),
             starts: self.starts,
             epochs: self.epochs,
             population: self.population,
             stall: self.stall,
             seed: Some(self.seed),
-            validation: Some(self.validation),
+            validation: self.validation,
             operators: rival.operators,
             thresholds: rival.thresholds.clone(),
             sign: rival.sign,
@@ -259,6 +279,10 @@ fn number_within(text: &str, range: &RangeInclusive<usize>) -> Result<usize, Str
     let (low, high) = (range.start(), range.end());
     let number: usize = text.parse().map_err(|_| format!("a whole number from {low} to {high} is needed"))?;
     if range.contains(&number) { Ok(number) } else { Err(format!("choose {low} to {high}")) }
+}
+
+fn members(text: &str) -> Result<usize, String> {
+    number_within(text, &(1..=MOST_MEMBERS))
 }
 
 fn neurons(text: &str) -> Result<usize, String> {

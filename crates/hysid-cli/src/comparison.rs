@@ -49,7 +49,7 @@ pub struct Fitted {
     pub train: Errors,
     /// Errors on the test data, if there are any.
     pub test: Option<Errors>,
-    /// Seconds on one thread.
+    /// Seconds on its threads.
     pub fit_seconds: f64,
     /// Nanoseconds for a sample of a free run, on one thread.
     pub simulate_ns_per_sample: f64,
@@ -62,18 +62,20 @@ impl Fitted {
     }
 }
 
-/// Fits every model, several at a time, each on one thread and under its time limit; the lowest error on
+/// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time limit; the lowest error on
 /// unseen data comes first.
 pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec<Row>> {
     let workers = match arguments.threads {
         Some(threads) => threads.into(),
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
+    // A single model, or the last ones of a few, need not leave processors idle.
+    let threads = (workers / requests.len().max(1)).max(1);
     let queue: Mutex<VecDeque<&Request>> = Mutex::new(requests.iter().collect());
     let finished: Mutex<Vec<Row>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| -> Result<()> {
         let work = || -> Result<()> {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let pool = pool.context("cannot start a thread")?;
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();

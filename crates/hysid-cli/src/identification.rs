@@ -11,6 +11,7 @@ use hysid::summary::Summary;
 use hysid::training::{Checkpoint, Progress, resume};
 
 use crate::data::Data;
+use crate::lines::{WIDTH, wrapped};
 use crate::messages::{Usage, note, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
@@ -57,6 +58,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
             let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
             understanding::parts(&architecture)
         }
+        Request::Auto(options) => understanding::choice(options),
         Request::Classical(_) => String::new(),
     };
     if let Some(hindrance) = request.model().hindrance(&data.set, request.rate()) {
@@ -137,7 +139,15 @@ impl Identified {
         sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
         sets.extend(unseen.map(|errors| ("unseen test", errors)));
         let mut text = errors_table::errors_table(&sets);
-        if provenance.validation.is_some() {
+        if let Some(selection) = &provenance.selection {
+            text += &format!(
+                "(validation: data held out in {} folds, before all was trained on everything)\n",
+                selection.folds.len()
+            );
+            for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
+                text += &format!("\n{}", labelled(label, &line));
+            }
+        } else if provenance.validation.is_some() {
             text += "(validation: data held out from the chosen start, before it was trained on all)\n";
         }
         text += &format!(
@@ -155,12 +165,21 @@ impl Identified {
     }
 }
 
+/// A label and a text, within 80 columns where words allow.
+fn labelled(label: &str, text: &str) -> String {
+    const LABEL: usize = 7;
+    let lines = wrapped(text, WIDTH - LABEL);
+    let mut labels = std::iter::once(label).chain(std::iter::repeat(""));
+    lines.iter().map(|line| format!("{:LABEL$}{line}\n", labels.next().unwrap_or_default())).collect()
+}
+
 /// Where the model comes from, in words.
 fn chosen(provenance: &Provenance) -> String {
     let options = match &provenance.options {
         Request::Network(options) => options,
         Request::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
         Request::Classical(_) => return "linear least squares".into(),
+        Request::Auto(_) => return "chosen by validation".into(),
     };
     match options.starts {
         1 => format!("{} training", options.training.name()),

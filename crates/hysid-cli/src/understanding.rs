@@ -1,5 +1,6 @@
 //! What the program understood of the data, said before the work begins.
 
+use hysid::automatic::AutoOptions;
 use hysid::identification::Request;
 use hysid::network::Architecture;
 use hysid::rate::RateMethod;
@@ -70,6 +71,17 @@ pub fn listed(names: &[&str]) -> String {
     match names.len().saturating_sub(SHOWN) {
         0 => names.join(", "),
         more => format!("{} and {more} more", names[..SHOWN].join(", ")),
+    }
+}
+
+/// What an automatic model chooses among, in words.
+pub fn choice(options: &AutoOptions) -> String {
+    match &options.only {
+        Some(request) => format!(": {} of {}", options.members, request.model().name()),
+        None if options.members == 1 => ": one model, chosen by what it foretells of data held out".into(),
+        None => {
+            format!(": at most {} models, chosen by what they foretell of data held out", options.members)
+        }
     }
 }
 

@@ -4,6 +4,7 @@ pub mod options;
 
 use serde::{Deserialize, Serialize};
 
+use crate::automatic::{self, AutoOptions, Automatic};
 use crate::classical::identification::{self as classical, ClassicalOptions, Rival};
 use crate::error::{Error, Result};
 use crate::model::{Body, Model, Provenance};
@@ -24,10 +25,15 @@ pub enum ModelName {
     Network(Family),
     /// Another model.
     Rival(Rival),
+    /// What validation chooses, alone or together.
+    Auto(Automatic),
 }
 
 impl ModelName {
-    /// All models, the networks first.
+    /// The automatic model.
+    pub const AUTO: ModelName = ModelName::Auto(Automatic::Auto);
+
+    /// All models that there are, the networks first; [`ModelName::AUTO`] chooses among them.
     pub fn all() -> impl Iterator<Item = ModelName> {
         Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.into_iter().map(Self::Rival))
     }
@@ -37,6 +43,7 @@ impl ModelName {
         match self {
             Self::Network(family) => family.name(),
             Self::Rival(rival) => rival.name(),
+            Self::Auto(_) => "auto",
         }
     }
 
@@ -45,6 +52,7 @@ impl ModelName {
         match self {
             Self::Network(family) => family.uses_rate(),
             Self::Rival(rival) => rival.uses_rate(),
+            Self::Auto(_) => true,
         }
     }
 
@@ -53,6 +61,7 @@ impl ModelName {
         match self {
             Self::Network(family) => family.takes_further_inputs(),
             Self::Rival(rival) => rival.takes_further_inputs(),
+            Self::Auto(_) => true,
         }
     }
 
@@ -76,8 +85,9 @@ impl std::str::FromStr for ModelName {
 
     fn from_str(name: &str) -> Result<Self> {
         let known = if name == "epnn" { "xpnn" } else { name };
-        Self::all().find(|model| model.name() == known).ok_or_else(|| {
-            let names: Vec<&str> = Self::all().map(Self::name).collect();
+        let all = || std::iter::once(Self::AUTO).chain(Self::all());
+        all().find(|model| model.name() == known).ok_or_else(|| {
+            let names: Vec<&str> = all().map(Self::name).collect();
             Error::Option(format!("model `{name}` is unknown: choose one of {}", names.join(", ")))
         })
     }
@@ -91,6 +101,8 @@ pub enum Request {
     Network(FitOptions),
     /// Another model.
     Classical(ClassicalOptions),
+    /// What validation chooses.
+    Auto(AutoOptions),
 }
 
 impl Request {
@@ -104,6 +116,7 @@ impl Request {
             ModelName::Rival(model) => {
                 Self::Classical(ClassicalOptions { rate, seed, ..ClassicalOptions::of(model) })
             }
+            ModelName::Auto(_) => Self::Auto(AutoOptions { rate, seed, ..AutoOptions::default() }),
         }
     }
 
@@ -112,6 +125,7 @@ impl Request {
         match self {
             Self::Network(options) => ModelName::Network(options.model),
             Self::Classical(options) => ModelName::Rival(options.model),
+            Self::Auto(options) => ModelName::Auto(options.model),
         }
     }
 
@@ -120,6 +134,7 @@ impl Request {
         match self {
             Self::Network(options) => options.rate,
             Self::Classical(options) => options.rate,
+            Self::Auto(options) => options.rate,
         }
     }
 
@@ -128,6 +143,7 @@ impl Request {
         match self {
             Self::Network(options) => options.starts,
             Self::Classical(options) => options.starts.unwrap_or(1),
+            Self::Auto(options) => options.starts,
         }
     }
 }
@@ -140,6 +156,7 @@ impl Request {
 pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) -> Result<Fit> {
     match request {
         Request::Network(options) => training::fit(data, options, observer),
+        Request::Auto(options) => automatic::fit(data, options, observer),
         Request::Classical(options) if options.model == Rival::RandomStops => random_stops(data, options),
         Request::Classical(options) => law(data, options, observer),
     }
@@ -151,8 +168,8 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
         stops: options.operators.unwrap_or(defaults.stops),
         hidden: options.hidden,
         rate: options.rate,
+        deterioration: options.deterioration,
         seed: options.seed,
-        ..defaults
     };
     let seen = Seen::of(data, &options.shaping, options.rate)?;
     let found = fit_random_stops(&seen.data, &RandomStopsOptions { rate: seen.rate, ..wanted })?;
@@ -204,6 +221,7 @@ fn finished(
         train,
         validation: None,
         runs,
+        selection: None,
     };
     Ok(Fit { model: Model::new(body, seen.preprocessing, options.rate, data, provenance)?, evaluations })
 }

@@ -29,6 +29,7 @@
 //! what: [`record`] holds measured data, [`operator`] the elements of memory, [`network`] the family
 //! of networks, [`training`] identifies one, [`model`] is the result.
 
+pub mod automatic;
 pub mod classical;
 pub mod diagnosis;
 pub mod error;

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::automatic::Selection;
 use crate::classical::identification::Rival;
 use crate::classical::series::samples;
 use crate::classical::{Classical, Law};
@@ -27,8 +28,10 @@ use crate::training::termination::Termination;
 use crate::warning::Warning;
 
 pub use band::{Band, Prediction};
-use ensemble::{Answer, Excursion};
-pub use ensemble::{Ensemble, Group, Voice, Weights};
+pub(crate) use band::{HeldOutRow, disagreement};
+use ensemble::Answer;
+pub use ensemble::{Ensemble, Group, Speaker, Voice, Weights};
+pub(crate) use ensemble::{Excursion, Votes};
 pub use file::FORMAT_VERSION;
 pub use stepper::Stepper;
 
@@ -141,6 +144,9 @@ pub struct Provenance {
     pub validation: Option<Errors>,
     /// Every training run.
     pub runs: Vec<Run>,
+    /// How the candidates did that it was chosen from; `None` where there was no choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub selection: Option<Selection>,
 }
 
 impl Model {
@@ -342,6 +348,17 @@ impl Model {
     /// The calibrated band, if there is one.
     pub fn band(&self) -> Option<&Band> {
         self.band.as_ref()
+    }
+
+    pub(crate) fn with_provenance(mut self, provenance: Provenance) -> Self {
+        self.provenance = provenance;
+        self
+    }
+
+    /// With the ranges of these data, where it was trained on more than them.
+    pub(crate) fn trained_on(self, data: &Dataset) -> Result<Self> {
+        let Self { body, preprocessing, rate, band, provenance, .. } = self;
+        Ok(Self::new(body, preprocessing, rate, data, provenance)?.with_band(band))
     }
 
     pub(crate) fn with_band(mut self, band: Option<Band>) -> Self {

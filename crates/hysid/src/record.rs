@@ -6,6 +6,7 @@
 mod excitation;
 
 use crate::error::{Channel, DataProblem, Error, Result};
+use crate::training::genetic::mix;
 pub use excitation::Excitation;
 
 /// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
@@ -48,6 +49,16 @@ impl Record {
     pub fn with_given_rate(mut self, rate: Vec<f64>) -> Result<Self> {
         self.excitation().with_given_rate(&rate)?;
         self.given_rate = Some(rate);
+        Ok(self)
+    }
+
+    /// The same record with another output, in which NaN is a blank.
+    ///
+    /// # Errors
+    /// Another length, values beyond [`crate::error::LARGEST_VALUE`].
+    pub(crate) fn with_output(mut self, output: Vec<f64>) -> Result<Self> {
+        self.excitation().check_column(Channel::Output, &output, true)?;
+        self.output = output;
         Ok(self)
     }
 
@@ -247,6 +258,26 @@ impl Dataset {
         range(self.records.iter().flat_map(|record| &record.output))
     }
 
+    /// The same data with at most so many scored rows: of more, every so many-th at random keeps its output.
+    pub(crate) fn thinned(&self, most: usize) -> Dataset {
+        let scored = self.scored();
+        let mut thinned = self.clone();
+        if scored <= most {
+            return thinned;
+        }
+        let share = most as f64 / scored as f64;
+        let mut seen = 0;
+        for y in thinned.records.iter_mut().flat_map(|record| &mut record.output) {
+            if !y.is_nan() {
+                seen += 1;
+                if unit_interval(seen) >= share {
+                    *y = f64::NAN;
+                }
+            }
+        }
+        thinned
+    }
+
     /// Those records that are chosen by their place, and the others.
     pub(crate) fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
         let pick = |chosen: bool| {
@@ -317,6 +348,11 @@ impl Dataset {
         }
         Ok(())
     }
+}
+
+/// A number from 0 to 1 that only depends on another, without pattern.
+fn unit_interval(number: u64) -> f64 {
+    mix(number) as f64 / u64::MAX as f64
 }
 
 /// Smallest and largest of the values that are not NaN.

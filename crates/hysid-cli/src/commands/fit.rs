@@ -37,10 +37,12 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
         None => {
             let rate = rate_method(&arguments.columns.rate, &roles, chosen.model())
                 .with_context(|| tables[0].file.clone())?;
-            chosen.request(rate)
+            let is_decided =
+                !matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Auto | RateChoice::None));
+            chosen.request(rate, is_decided)
         }
     };
-    if arguments.checkpoint.is_some() && matches!(request, Request::Classical(_)) {
+    if arguments.checkpoint.is_some() && !matches!(request, Request::Network(_)) {
         let model = request.model().name();
         return Err(Usage(format!("{model} has no checkpoints: only networks have")).into());
     }

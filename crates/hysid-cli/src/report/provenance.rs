@@ -1,5 +1,6 @@
 //! What was understood of the data, warnings, and how the model came about.
 
+use hysid::automatic::AutoOptions;
 use hysid::classical::identification::ClassicalOptions;
 use hysid::identification::Request;
 use hysid::rate::RateMethod;
@@ -40,6 +41,7 @@ pub fn section(report: &Report) -> String {
     let mut pairs = match &provenance.options {
         Request::Network(options) => of_network(report, options),
         Request::Classical(options) => of_rival(options),
+        Request::Auto(options) => of_auto(report, options),
     };
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
     say("Rate", rate.into());
@@ -98,6 +100,15 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
     pairs.push(pair("Seed", options.seed.to_string()));
     pairs.push(pair("Held out", held_out));
     pairs
+}
+
+fn of_auto(report: &Report, options: &AutoOptions) -> Vec<(String, String)> {
+    let members = report.model.ensemble().map_or(1, |ensemble| ensemble.members().len());
+    vec![
+        pair("Model", format!("auto: {}", count(members, "member"))),
+        pair("Training", "each candidate on data of which a part was held out, then on everything"),
+        pair("Seed", options.seed.to_string()),
+    ]
 }
 
 fn of_rival(options: &ClassicalOptions) -> Vec<(String, String)> {

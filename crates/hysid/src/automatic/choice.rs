@@ -23,7 +23,9 @@ impl Score {
         let mean = |is_outside: bool| {
             let of_folds = foretold.iter().zip(judges).filter_map(|(foretold, judge)| {
                 let (mut rows, mut squares) = (0, 0.0);
-                for ((foretold, measured), outside) in foretold.iter().zip(&judge.measured).zip(&judge.outside) {
+                for ((foretold, measured), outside) in
+                    foretold.iter().zip(&judge.measured).zip(&judge.outside)
+                {
                     if (*outside > 0.5) == is_outside {
                         rows += 1;
                         squares += (foretold - measured) * (foretold - measured);
@@ -47,11 +49,6 @@ impl Score {
         };
         Self { inside, outside }
     }
-
-    /// The error as a share of the standard deviation, inside the range.
-    pub fn error(&self) -> f64 {
-        self.inside.exp()
-    }
 }
 
 /// Weights by scores, theory.md (11.6): (score / best)^-power, and 0 behind the best `most` in either class.
@@ -72,12 +69,15 @@ pub(super) fn weights(scores: &[Score], power: f64, most: usize) -> Vec<Weights>
 
 /// The median of the starts of a candidate, fold by fold.
 pub(super) fn of_starts(trial: &Trial) -> Vec<Vec<f64>> {
-    let equal = |starts: &Vec<Vec<f64>>| vec![Weights::equal(); starts.len()];
-    trial.folds.iter().map(|starts| medians(starts, &equal(starts), &[])).collect()
+    let of_fold = |starts: &Vec<Vec<f64>>| {
+        let voices: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
+        medians(&voices, &vec![Weights::equal(); starts.len()], &[])
+    };
+    trial.folds.iter().map(of_fold).collect()
 }
 
 /// The weighted median of several voices, row by row; `outside` may be empty where it makes no difference.
-pub(super) fn medians(voices: &[Vec<f64>], weights: &[Weights], outside: &[f64]) -> Vec<f64> {
+pub(super) fn medians(voices: &[&[f64]], weights: &[Weights], outside: &[f64]) -> Vec<f64> {
     let mut votes = Votes::default();
     let row = |row: usize| {
         votes.clear();

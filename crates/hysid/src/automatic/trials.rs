@@ -104,6 +104,18 @@ impl<'o, 'a> Watch<'o, 'a> {
         self.work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).0 += 1.0;
     }
 
+    /// A fit that is needed whatever happens: stopped, it gives the best so far.
+    pub fn first_fit(&self, candidate: &Candidate, data: &Dataset) -> Result<Model> {
+        let fitted = identify(data, &candidate.request(0), &mut |progress| self.hear(progress))?;
+        self.advance();
+        Ok(fitted.model)
+    }
+
+    /// Fits done.
+    pub fn fits(&self) -> usize {
+        self.work.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).0 as usize
+    }
+
     /// A fit of its own; `None` if there was no time for it.
     pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Model>> {
         if self.is_stopped() {

@@ -145,6 +145,9 @@ pub struct ClassicalOptions {
     pub differential_form: bool,
     /// Tanh neurons of a neuro-Madelung model or beside random stops.
     pub hidden: Option<usize>,
+    /// Whether random stops deteriorate; chosen by cross-validation if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deterioration: Option<bool>,
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
     /// What the model sees of the input.
@@ -172,6 +175,7 @@ impl ClassicalOptions {
             degradation: false,
             differential_form: false,
             hidden: None,
+            deterioration: None,
             rate: None,
             shaping: Shaping::default(),
             starts: None,

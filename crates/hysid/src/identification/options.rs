@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
+use crate::automatic::{AutoOptions, MOST_MEMBERS};
 use crate::classical::identification::{ClassicalOptions, Rival};
 use crate::classical::linear_fit::Sign;
 use crate::error::{Error, Result};
@@ -29,9 +30,12 @@ pub const STARTS: RangeInclusive<usize> = 1..=10_000;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChosenOptions {
-    /// Which model; `xpnn+` if not said.
+    /// Which model; `auto` if not said.
     #[serde(deserialize_with = "named")]
     pub model: Option<ModelName>,
+    /// Models that answer together, at most; 1 for a single one. Of a model that is named, so many starts
+    /// answer together.
+    pub members: Option<usize>,
     /// Stop neurons of a network.
     pub stops: Option<usize>,
     /// Tanh neurons, for models that have them.
@@ -111,6 +115,7 @@ impl ChosenOptions {
     /// Refuses numbers outside the ranges that the command line has.
     fn check(&self) -> Result<()> {
         let counts = [
+            ("members", self.members, 1..=MOST_MEMBERS),
             ("stops", self.stops, NEURONS),
             ("hidden", self.hidden, NEURONS),
             ("operators", self.operators, NEURONS),
@@ -134,14 +139,52 @@ impl ChosenOptions {
 
     /// Which model is asked for.
     pub fn model(&self) -> ModelName {
-        self.model.unwrap_or(ModelName::Network(FitOptions::default().model))
+        self.model.unwrap_or(ModelName::AUTO)
     }
 
-    /// The library's request, with the rate decided.
-    pub fn request(&self, rate: Option<RateMethod>) -> Request {
-        match self.model() {
+    /// The library's request, with the rate decided; `always_rate` if the user has, and wants no model
+    /// without it.
+    pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> Request {
+        let alone = match self.model() {
             ModelName::Network(family) => Request::Network(self.of_network(family, rate)),
             ModelName::Rival(rival) => Request::Classical(self.of_rival(rival, rate)),
+            ModelName::Auto(_) => return Request::Auto(self.of_auto(rate, always_rate, None)),
+        };
+        match (self.members, alone) {
+            (None | Some(0 | 1), alone) => alone,
+            (Some(_), mut alone) => {
+                if let Request::Network(options) = &mut alone {
+                    options.starts = 1;
+                }
+                Request::Auto(self.of_auto(rate, always_rate, Some(Box::new(alone))))
+            }
+        }
+    }
+
+    fn of_auto(
+        &self,
+        rate: Option<RateMethod>,
+        always_rate: bool,
+        only: Option<Box<Request>>,
+    ) -> AutoOptions {
+        let defaults = AutoOptions::default();
+        let members = self.members.unwrap_or(defaults.members);
+        AutoOptions {
+            members,
+            // Of one model, all members are starts.
+            starts: self.starts.unwrap_or(if only.is_some() { members } else { defaults.starts }),
+            only,
+            rate,
+            always_rate: always_rate && rate.is_some(),
+            deterioration: self.no_deterioration.map(|none| !none),
+            relaxation: self.relaxation,
+            stops: self.stops,
+            hidden: self.hidden,
+            epochs: self.epochs,
+            companding: self.companding.map(|share| share > 0.0),
+            history: self.history,
+            seed: self.seed.unwrap_or(defaults.seed),
+            ..defaults
         }
     }
 
@@ -181,6 +224,7 @@ impl ChosenOptions {
             degradation: self.degradation.unwrap_or(defaults.degradation),
             differential_form: self.differential_form.unwrap_or(defaults.differential_form),
             hidden: self.hidden,
+            deterioration: self.no_deterioration.map(|none| !none),
             rate,
             shaping: self.shaping(),
             starts: self.starts,
@@ -191,8 +235,8 @@ impl ChosenOptions {
 
     fn shaping(&self) -> Shaping {
         Shaping {
-            companding: self.companding,
-            rate_companding: self.rate_companding,
+            companding: self.companding.filter(|share| *share != 0.0),
+            rate_companding: self.rate_companding.filter(|share| *share != 0.0),
             history: self.history.unwrap_or_default(),
         }
     }
@@ -206,12 +250,16 @@ impl ChosenOptions {
         match self.model() {
             ModelName::Network(_) => self.trainer().name(),
             ModelName::Rival(rival) => rival.name(),
+            ModelName::Auto(_) => ModelName::AUTO.name(),
         }
     }
 
     /// Names of options that were asked for and that the model or its trainer has no use for.
     pub fn useless(&self) -> Vec<&'static str> {
         let model = self.model();
+        if model == ModelName::AUTO {
+            return self.useless_for_auto();
+        }
         let is_rival = matches!(model, ModelName::Rival(_));
         let is = |rival: Rival| model == ModelName::Rival(rival);
         let asked = |flag: Option<bool>| flag == Some(true);
@@ -223,10 +271,13 @@ impl ChosenOptions {
         let searched = match model {
             ModelName::Network(_) => true,
             ModelName::Rival(rival) => rival.is_searched(),
+            ModelName::Auto(_) => true,
         };
         let has_operators =
             is_rival && !is(Rival::NeuroMadelung) && !is(Rival::BoucWen) && !is(Rival::JilesAtherton);
         let useless = [
+            ("history", asked(self.history) && !model.takes_further_inputs()),
+            ("rate_companding", self.rate_companding.is_some() && !model.uses_rate()),
             ("population", self.population.is_some() && (is_rival || !has.is_genetic())),
             ("stall", self.stall.is_some() && (is_rival || has == Trainer::LevenbergMarquardt)),
             ("training", is_rival && has != Trainer::default()),
@@ -249,6 +300,28 @@ impl ChosenOptions {
             ),
             ("degradation", asked(self.degradation) && !is(Rival::BoucWen)),
             ("differential_form", asked(self.differential_form) && !is(Rival::JilesAtherton)),
+        ];
+        useless.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
+    }
+}
+
+impl ChosenOptions {
+    /// The candidates decide what is not said here, and there is no use for the rest.
+    fn useless_for_auto(&self) -> Vec<&'static str> {
+        let useless = [
+            ("rate_companding", self.rate_companding.is_some()),
+            ("training", self.training.is_some_and(|trainer| trainer != Trainer::default())),
+            ("population", self.population.is_some()),
+            ("stall", self.stall.is_some()),
+            ("validation", self.validation.is_some()),
+            ("operators", self.operators.is_some()),
+            ("thresholds", self.thresholds.is_some()),
+            ("sign", self.sign.is_some()),
+            ("dead_zones", self.dead_zones.is_some()),
+            ("free_weights", self.free_weights.is_some()),
+            ("logarithmic_thresholds", self.logarithmic_thresholds == Some(true)),
+            ("degradation", self.degradation == Some(true)),
+            ("differential_form", self.differential_form == Some(true)),
         ];
         useless.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
     }

@@ -26,24 +26,37 @@ const DEEPEST: usize = 8;
 /// Several models that answer together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ensemble {
+    members: Vec<Model>,
     group: Group,
     range: (f64, f64),
 }
 
 /// Voices that agree on one answer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Group {
     /// What they have in common.
     pub name: String,
-    /// The voices.
-    pub voices: Vec<(Weights, Voice)>,
+    /// Those who agree.
+    pub voices: Vec<Voice>,
 }
 
 /// One that is heard.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Voice {
-    /// A single model.
-    Model(Box<Model>),
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Voice {
+    /// What it counts.
+    pub weights: Weights,
+    /// Who it is.
+    pub who: Speaker,
+}
+
+/// Who is heard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Speaker {
+    /// A member, by its place among all.
+    Member(usize),
     /// The answer of a group.
     Group(Group),
 }
@@ -65,7 +78,7 @@ impl Weights {
     }
 
     /// The weight of a record that has been outside by this degree, 0 to 1: theory.md (11.3).
-    pub(super) fn at(&self, outside: f64) -> f64 {
+    pub(crate) fn at(&self, outside: f64) -> f64 {
         if outside == 0.0 {
             self.inside
         } else if outside == 1.0 {
@@ -138,12 +151,10 @@ impl Ensemble {
     /// were trained on.
     ///
     /// # Errors
-    /// A group without voices, an ensemble as a member, members of different inputs, weights that are
-    /// negative, not finite or all 0.
-    pub fn new(group: Group, range: (f64, f64)) -> Result<Self> {
-        group.check(DEEPEST)?;
-        let ensemble = Self { group, range };
-        let members = ensemble.members();
+    /// A group without voices, a member that is not there, an ensemble as a member, members of different
+    /// inputs, weights that are negative, not finite or all 0.
+    pub fn new(members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
+        group.check(members.len(), DEEPEST)?;
         if members.iter().any(|member| member.ensemble().is_some()) {
             return Err(Error::Option("an ensemble cannot be a member of another".into()));
         }
@@ -153,7 +164,7 @@ impl Ensemble {
         if !(range.0 < range.1 && range.0.is_finite() && range.1.is_finite()) {
             return Err(Error::Option("the range of an ensemble's input is no range".into()));
         }
-        Ok(ensemble)
+        Ok(Self { members, group, range })
     }
 
     /// The group of all.
@@ -161,11 +172,9 @@ impl Ensemble {
         &self.group
     }
 
-    /// All models, group by group.
-    pub fn members(&self) -> Vec<&Model> {
-        let mut members = Vec::new();
-        self.group.collect(&mut members);
-        members
+    /// All models.
+    pub fn members(&self) -> &[Model] {
+        &self.members
     }
 
     /// Range of the first input beyond which the outer weights count, in its unit.
@@ -179,7 +188,7 @@ impl Ensemble {
     }
 
     pub(super) fn simulate(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        let mut council = Council::new(self);
+        let mut council = Council::new(&self.group);
         let mut excursion = Excursion::beyond(self.range);
         let outputs = self.outputs(excitation)?;
         let row = |(row, &x): (usize, &f64)| {
@@ -191,7 +200,7 @@ impl Ensemble {
 
     /// What the members say of each row of an excitation.
     pub(super) fn answers(&self, excitation: &Excitation<'_>) -> Result<Vec<Answer>> {
-        let mut council = Council::new(self);
+        let mut council = Council::new(&self.group);
         let mut excursion = Excursion::beyond(self.range);
         let outputs = self.outputs(excitation)?;
         let row = |(row, &x): (usize, &f64)| {
@@ -204,12 +213,12 @@ impl Ensemble {
     }
 
     fn outputs(&self, excitation: &Excitation<'_>) -> Result<Vec<Vec<f64>>> {
-        self.members().into_iter().map(|member| member.response(excitation)).collect()
+        self.members.iter().map(|member| member.response(excitation)).collect()
     }
 }
 
 impl Group {
-    fn check(&self, deepest: usize) -> Result<()> {
+    fn check(&self, members: usize, deepest: usize) -> Result<()> {
         if self.voices.is_empty() {
             return Err(Error::Option("an ensemble needs at least one member".into()));
         }
@@ -217,49 +226,70 @@ impl Group {
             return Err(Error::Option("the groups of an ensemble are nested too deeply".into()));
         }
         for weight in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
-            let all = self.voices.iter().map(|(weights, _)| weight(weights));
+            let all = self.voices.iter().map(|voice| weight(&voice.weights));
             if !all.clone().all(|weight| (0.0..=1e9).contains(&weight)) || all.sum::<f64>() < 1e-9 {
                 return Err(Error::Option("the weights of an ensemble are no weights".into()));
             }
         }
-        for (_, voice) in &self.voices {
-            if let Voice::Group(group) = voice {
-                group.check(deepest - 1)?;
+        for voice in &self.voices {
+            match &voice.who {
+                Speaker::Group(group) => group.check(members, deepest - 1)?,
+                Speaker::Member(member) if *member < members => {}
+                Speaker::Member(member) => {
+                    return Err(Error::Option(format!("an ensemble of {members} has no member {member}")));
+                }
             }
         }
         Ok(())
     }
 
-    fn collect<'g>(&'g self, members: &mut Vec<&'g Model>) {
-        for (_, voice) in &self.voices {
-            match voice {
-                Voice::Model(model) => members.push(model),
-                Voice::Group(group) => group.collect(members),
-            }
-        }
-    }
-
     fn remembers_excursions(&self) -> bool {
         // Only the proportions of the weights count.
-        let first = self.voices[0].0;
-        self.voices.iter().any(|(weights, voice)| {
+        let first = self.voices[0].weights;
+        self.voices.iter().any(|Voice { weights, who }| {
             weights.inside * first.outside != weights.outside * first.inside
-                || matches!(voice, Voice::Group(group) if group.remembers_excursions())
+                || matches!(who, Speaker::Group(group) if group.remembers_excursions())
         })
     }
 
     fn depth(&self) -> usize {
-        let of_voice = |voice: &Voice| match voice {
-            Voice::Model(_) => 0,
-            Voice::Group(group) => group.depth(),
+        let of_voice = |voice: &Voice| match &voice.who {
+            Speaker::Member(_) => 0,
+            Speaker::Group(group) => group.depth(),
         };
-        1 + self.voices.iter().map(|(_, voice)| of_voice(voice)).max().unwrap_or_default()
+        1 + self.voices.iter().map(of_voice).max().unwrap_or_default()
+    }
+
+    /// What the group answers; `levels` has room for the votes of this group and of those below.
+    fn answer(&self, outside: f64, of_member: &impl Fn(usize) -> f64, levels: &mut [Votes]) -> f64 {
+        let Some((votes, deeper)) = levels.split_first_mut() else { return f64::NAN };
+        votes.clear();
+        for voice in &self.voices {
+            let value = match &voice.who {
+                Speaker::Member(member) => of_member(*member),
+                Speaker::Group(group) => group.answer(outside, of_member, deeper),
+            };
+            votes.cast(value, voice.weights.at(outside));
+        }
+        votes.quantile(0.5)
+    }
+
+    /// Casts the votes of all members below, which share out `share`.
+    fn gather(&self, outside: f64, share: f64, of_member: &impl Fn(usize) -> f64, all: &mut Votes) {
+        let sum: f64 = self.voices.iter().map(|voice| voice.weights.at(outside)).sum();
+        for voice in &self.voices {
+            let share = share * voice.weights.at(outside) / sum;
+            match &voice.who {
+                Speaker::Member(member) => all.cast(of_member(*member), share),
+                Speaker::Group(group) => group.gather(outside, share, of_member, all),
+            }
+        }
     }
 }
 
 /// Room to hear all voices of a row in.
 #[derive(Debug, Clone)]
-pub(super) struct Council {
+pub(crate) struct Council {
     /// Votes of the group that is being heard, at each depth.
     levels: Vec<Votes>,
     /// Votes of all members, each with what it counts in the whole.
@@ -267,63 +297,20 @@ pub(super) struct Council {
 }
 
 impl Council {
-    pub fn new(ensemble: &Ensemble) -> Self {
-        Self { levels: vec![Votes::default(); ensemble.group.depth()], all: Votes::default() }
+    pub fn new(group: &Group) -> Self {
+        Self { levels: vec![Votes::default(); group.depth()], all: Votes::default() }
     }
 
-    /// What the group answers where its members, counted one by one, say `of_member`.
+    /// What all answer together where each member says `of_member`.
     pub fn output(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> f64 {
-        median(group, outside, &of_member, &mut 0, &mut self.levels)
+        group.answer(outside, &of_member, &mut self.levels)
     }
 
     /// The votes of all members.
-    fn everybody(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> &mut Votes {
+    pub fn everybody(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> &mut Votes {
         self.all.clear();
-        gather(group, outside, 1.0, &of_member, &mut 0, &mut self.all);
+        group.gather(outside, 1.0, &of_member, &mut self.all);
         &mut self.all
-    }
-}
-
-fn median(
-    group: &Group,
-    outside: f64,
-    of_member: &impl Fn(usize) -> f64,
-    next: &mut usize,
-    levels: &mut [Votes],
-) -> f64 {
-    let Some((votes, deeper)) = levels.split_first_mut() else { return f64::NAN };
-    votes.clear();
-    for (weights, voice) in &group.voices {
-        let value = match voice {
-            Voice::Model(_) => {
-                *next += 1;
-                of_member(*next - 1)
-            }
-            Voice::Group(group) => median(group, outside, of_member, next, deeper),
-        };
-        votes.cast(value, weights.at(outside));
-    }
-    votes.quantile(0.5)
-}
-
-fn gather(
-    group: &Group,
-    outside: f64,
-    share: f64,
-    of_member: &impl Fn(usize) -> f64,
-    next: &mut usize,
-    all: &mut Votes,
-) {
-    let sum: f64 = group.voices.iter().map(|(weights, _)| weights.at(outside)).sum();
-    for (weights, voice) in &group.voices {
-        let share = share * weights.at(outside) / sum;
-        match voice {
-            Voice::Model(_) => {
-                all.cast(of_member(*next), share);
-                *next += 1;
-            }
-            Voice::Group(group) => gather(group, outside, share, of_member, next, all),
-        }
     }
 }
 

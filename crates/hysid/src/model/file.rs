@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::classical::Classical;
 use crate::error::{Error, Result};
 use crate::identification::ModelName;
-use crate::model::{Band, Body, Ensemble, Group, Model, Provenance, TrainedRanges, Voice, Weights};
+use crate::model::{Band, Body, Ensemble, Group, Model, Provenance, TrainedRanges};
 use crate::network::{Architecture, Layout, Network};
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
@@ -48,29 +48,13 @@ struct File {
     checksum: String,
 }
 
-/// The voices of an ensemble, and the range beyond which the outer weights count.
+/// The members of an ensemble, how they answer together, and the range beyond which the outer weights count.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EnsembleParts {
     range: (f64, f64),
-    group: GroupParts,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct GroupParts {
-    name: String,
-    voices: Vec<VoiceParts>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct VoiceParts {
-    weights: Weights,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    group: Option<GroupParts>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    member: Option<MemberParts>,
+    group: Group,
+    members: Vec<MemberParts>,
 }
 
 /// A member: a file without what it shares with the others.
@@ -205,38 +189,11 @@ fn parts(body: &Body) -> (Option<NetworkParts>, Option<Classical>, Option<Ensemb
     match body {
         Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
         Body::Law(law) => (None, Some(law.clone()), None),
-        Body::Ensemble(ensemble) => (
-            None,
-            None,
-            Some(EnsembleParts { range: ensemble.range(), group: GroupParts::of(ensemble.group()) }),
-        ),
-    }
-}
-
-impl GroupParts {
-    fn of(group: &Group) -> Self {
-        let voice = |(weights, voice): &(Weights, Voice)| match voice {
-            Voice::Model(model) => {
-                VoiceParts { weights: *weights, group: None, member: Some(MemberParts::of(model)) }
-            }
-            Voice::Group(group) => {
-                VoiceParts { weights: *weights, group: Some(Self::of(group)), member: None }
-            }
-        };
-        Self { name: group.name.clone(), voices: group.voices.iter().map(voice).collect() }
-    }
-
-    fn group(self, columns: &ColumnNames) -> Result<Group> {
-        let voice = |parts: VoiceParts| {
-            let voice = match (parts.group, parts.member) {
-                (Some(group), None) => Voice::Group(group.group(columns)?),
-                (None, Some(member)) => Voice::Model(Box::new(member.model(columns)?)),
-                _ => return Err(Error::Option("a voice is either a group or a member".into())),
-            };
-            Ok((parts.weights, voice))
-        };
-        let voices = self.voices.into_iter().map(voice).collect::<Result<_>>()?;
-        Ok(Group { name: self.name, voices })
+        Body::Ensemble(ensemble) => {
+            let members = ensemble.members().iter().map(MemberParts::of).collect();
+            let (range, group) = (ensemble.range(), ensemble.group().clone());
+            (None, None, Some(EnsembleParts { range, group, members }))
+        }
     }
 }
 
@@ -376,7 +333,8 @@ fn assemble(file: File) -> Result<Model> {
     let body = match file.ensemble {
         None => single(file.network, file.law)?,
         Some(parts) if file.network.is_none() && file.law.is_none() => {
-            Body::Ensemble(Ensemble::new(parts.group.group(&file.columns)?, parts.range)?)
+            let members = parts.members.into_iter().map(|member| member.model(&file.columns));
+            Body::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.group, parts.range)?)
         }
         Some(_) => return Err(Error::Option("it is an ensemble and has parts of another model".into())),
     };

@@ -53,10 +53,10 @@ impl Memory {
             }
             Body::Law(law) => Self::Law(law.virgin()),
             Body::Ensemble(ensemble) => Self::Ensemble(Box::new(Jury {
-                members: ensemble.members().into_iter().map(State::virgin).collect(),
+                members: ensemble.members().iter().map(State::virgin).collect(),
                 excursion: Excursion::beyond(ensemble.range()),
                 outputs: Vec::with_capacity(ensemble.members().len()),
-                council: Council::new(ensemble),
+                council: Council::new(ensemble.group()),
             })),
         }
     }

@@ -128,6 +128,7 @@ impl<'a> Fitting<'a> {
             runs: outcome.runs,
             train: FreeRun::new(&outcome.network, &scaling, options.rate).errors(data)?,
             validation: outcome.validation,
+            selection: None,
             options: Request::Network(asked.clone()),
         };
         let body = Body::Network { network: outcome.network, scaling };

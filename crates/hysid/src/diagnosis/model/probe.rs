@@ -112,7 +112,7 @@ impl Speeds {
 /// `None` for a model without relaxation neurons; of an ensemble, of the first member that has any.
 fn median_relaxation_time(model: &Model) -> Option<f64> {
     if let Some(ensemble) = model.ensemble() {
-        return ensemble.members().into_iter().find_map(median_relaxation_time);
+        return ensemble.members().iter().find_map(median_relaxation_time);
     }
     let Body::Network { network, .. } = model.body() else { return None };
     let ln_tau = &network.parameters()[Layout::new(*network.architecture()).ln_tau];

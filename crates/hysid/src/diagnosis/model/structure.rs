@@ -55,7 +55,7 @@ fn of_model(model: &Model, about_zero: bool) -> Vec<(Property, bool)> {
 /// What every member promises, as far as a median keeps it: it does not keep the shape of increments, which
 /// congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
 fn of_ensemble(ensemble: &Ensemble, about_zero: bool) -> Vec<(Property, bool)> {
-    let mut members = ensemble.members().into_iter().map(|member| of_model(member, about_zero));
+    let mut members = ensemble.members().iter().map(|member| of_model(member, about_zero));
     let mut all = members.next().unwrap_or_default();
     members.for_each(|promises| all.retain(|promise| promises.contains(promise)));
     let remembers = ensemble.remembers_excursions();
