@@ -1,8 +1,10 @@
-//! Developer commands: `cargo xtask check | test | bench | cases | verdicts | tidy`.
+//! Developer commands: `cargo xtask check | test | bench | cases | generate-cases | verdicts | tidy`.
 
 mod bench;
 mod cases;
 mod check;
+mod files;
+mod generate_cases;
 mod program;
 mod test;
 mod tidy;
@@ -27,6 +29,9 @@ Commands:
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
                  training errors, seconds. LIST, time limit and ARG are passed on to it; a case that takes longer
                  than its limit is given up; HYSID takes the place of the release build
+  generate-cases DIR [--count NUMBER] [--seed NUMBER]
+                 writes folders with train.csv and test.csv for `cases`: laws with parameters of their own, driven as
+                 engineers measure, with noise. The same seed (1) gives the same cases; the first 36 all differ in kind
   verdicts DIR [--case-limit SECONDS] [--out FILE.md] [--program HYSID] [-- ARG..]
                  `hysid diagnose` on every subfolder of DIR that has train.csv, as a table of verdicts; otherwise as
                  `cases`
@@ -66,6 +71,9 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(),
         ["cases", rest @ ..] => {
             cases::Request::parse(rest, &cases::OPTIONS).and_then(|request| cases::run(&request))
+        }
+        ["generate-cases", rest @ ..] => {
+            generate_cases::Request::parse(rest).and_then(|request| generate_cases::run(&request))
         }
         ["verdicts", rest @ ..] => {
             cases::Request::parse(rest, &verdicts::OPTIONS).and_then(|request| verdicts::run(&request))

@@ -4,12 +4,18 @@
 //! Every law and parameter set says where it comes from: *published*, with its source, or *designed*,
 //! chosen by us so that the specimen shows what it is meant to show. [`Specimen`] is the catalogue.
 
+pub mod cases;
 pub mod concrete;
+mod cyclic_plasticity;
+mod elastomer;
 pub mod ferromagnet;
 pub mod generalized_play;
+mod magnetorheological_damper;
 pub mod magnetostrictive_actuator;
 mod noise;
 mod path;
+mod peak_oriented;
+mod phase_transformation;
 pub mod piezo_actuator;
 pub mod rate_dependent_actuator;
 pub mod reinforced_concrete_joint;
@@ -17,6 +23,7 @@ pub mod shape_memory_actuator;
 pub mod specimen;
 pub mod terfenol_actuator;
 pub mod terfenol_rod;
+mod tones;
 pub mod two_wire_actuator;
 
 pub use concrete::{Concrete, ConcreteParameters};

@@ -10,6 +10,7 @@ use anyhow::{Context, Result, bail, ensure};
 
 use super::{Case, Request};
 use crate::Interrupted;
+use crate::files::{self, name};
 use crate::program::{self, Reading};
 
 /// The cases that are asked for, and the program to ask.
@@ -70,7 +71,7 @@ impl<'r> Cases<'r> {
             result = tables;
             // What is there survives whatever happens to the next.
             if let Some(out) = &self.request.out {
-                write(out, &page)?;
+                files::write(out, &page)?;
             }
         }
         io::stdout().write_all(result.as_bytes()).context("cannot write to stdout")?;
@@ -100,10 +101,6 @@ fn case_folders(folder: &Path, files: &[&str]) -> Result<Vec<PathBuf>> {
     Ok(folders)
 }
 
-fn name(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 /// Refuses, before long work, a file that could not be written.
 fn check_writable(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -111,12 +108,4 @@ fn check_writable(path: &Path) -> Result<()> {
         bail!("{} cannot be written: name a file in a folder that is there", path.display());
     }
     Ok(())
-}
-
-/// Writes a file by way of another beside it: it is there completely or as it was.
-fn write(path: &Path, text: &str) -> Result<()> {
-    let partial = path.with_file_name(format!(".{}.partial", name(path)));
-    fs::write(&partial, text)
-        .and_then(|()| fs::rename(&partial, path))
-        .with_context(|| format!("{} cannot be written", path.display()))
 }

@@ -41,7 +41,7 @@ fn standard_deviation(data: &Dataset) -> f64 {
 }
 
 /// A standard normal number, by Box and Muller.
-fn normal(generator: &mut impl Rng) -> f64 {
+pub(super) fn normal(generator: &mut impl Rng) -> f64 {
     let (u, v): (f64, f64) = (generator.random(), generator.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

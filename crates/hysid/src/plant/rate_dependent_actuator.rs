@@ -12,12 +12,11 @@
 //! *Published*: the law. *Designed*: all values; those that the paper identified for its example 6, and
 //! its inputs, are not published.
 
-use std::f64::consts::TAU;
-
 use crate::error::Result;
 use crate::record::Record;
 
 use super::specimen::{Columns, Specimen};
+use super::tones::{self, Tone};
 
 /// A rate-dependent actuator with its memory, virgin at first.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,13 +81,6 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     test: || Ok(vec![sine(25.0)?, sine(75.0)?, three_tones()?]),
 };
 
-/// A sine `amplitude sin(2π frequency t + phase)`: V, Hz, rad.
-struct Tone {
-    amplitude: f64,
-    frequency: f64,
-    phase: f64,
-}
-
 /// Frequencies to train on, in Hz.
 const FREQUENCIES: [f64; 10] = [1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0];
 
@@ -102,7 +94,7 @@ const PERIODS: usize = 3;
 const STEPS_PER_ROW: usize = 20;
 
 fn sine(frequency: f64) -> Result<Record> {
-    let tone = Tone { amplitude: 10.0, frequency, phase: 0.0 };
+    let tone = Tone::sine(10.0, frequency);
     let step = 1.0 / (frequency * ROWS_PER_PERIOD as f64);
     record(&format!("{frequency} Hz"), &[tone], step, PERIODS * ROWS_PER_PERIOD, ROWS_PER_PERIOD)
 }
@@ -128,11 +120,8 @@ fn record(name: &str, tones: &[Tone], step: f64, rows: usize, blank: usize) -> R
         for part in first..=STEPS_PER_ROW {
             let steps = (row * STEPS_PER_ROW + part - STEPS_PER_ROW) as f64;
             let t = step * steps / STEPS_PER_ROW as f64;
-            let angle = |tone: &Tone| TAU * tone.frequency * t + tone.phase;
-            let voltage = tones.iter().map(|tone| tone.amplitude * angle(tone).sin()).sum();
-            let rate =
-                tones.iter().map(|tone| TAU * tone.frequency * tone.amplitude * angle(tone).cos()).sum();
-            last = (t, voltage, actuator.step(voltage, rate));
+            let voltage = tones::value(tones, t);
+            last = (t, voltage, actuator.step(voltage, tones::rate(tones, t)));
         }
         time.push(last.0);
         voltages.push(last.1);
