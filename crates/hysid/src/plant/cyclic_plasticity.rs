@@ -2,8 +2,8 @@
 //! after Armstrong and Frederick with several backstresses after Chaboche.
 //!
 //! ```text
-//! σ = E (ε - ε_p),   |σ - Σ α_k| <= σ_y + Q (1 - e^{-b p}),   p' = |ε_p'|
-//! α_k' = C_k ε_p' - γ_k α_k p'
+//! σ = E (ε - ε_p),   |σ - Σ α_k| <= σ_y + Q (1 - e^{-b p}),   p' = |ε_p'|   theory.md (6.33)
+//! α_k' = C_k ε_p' - γ_k α_k p'                                              theory.md (6.34)
 //! ```
 //!
 //! `ε` is the strain in mm/m, `σ` the stress in MPa. `Q < 0` softens. Published: the equations; a

@@ -1,8 +1,8 @@
 //! Rubber bush: a spring that stiffens, friction after Berg, and Maxwell elements.
 //!
 //! ```text
-//! f   = k x + k_3 x³ + F + Σ_i m_i σ_i,   σ_i' = x' - σ_i/τ_i                  theory.md (1.10)
-//! F   = F_s ± |x - x_s|/{x_2 (1 ∓ μ) + |x - x_s|} (F_f ∓ F_s),   μ = F_s/F_f
+//! f = k x + k_3 x³ + F + Σ_i m_i σ_i,   σ_i' = x' - σ_i/τ_i                 theory.md (6.37), (1.10)
+//! F = F_s ± |x - x_s|/{x_2 (1 ∓ μ) + |x - x_s|} (F_f ∓ F_s),   μ = F_s/F_f  theory.md (6.38)
 //! ```
 //!
 //! The upper signs hold on the way up. `x_s`, `F_s` are where the direction changed last; from there the

@@ -2,7 +2,7 @@
 //! compressibility of the fluid before it.
 //!
 //! ```text
-//! f  = k x + f_0 + F_y z + c v + F_v tanh(v/v_0),   τ v' = x' - v
+//! f = k x + f_0 + F_y z + c v + F_v tanh(v/v_0),   τ v' = x' - v            theory.md (6.39)
 //! ```
 //!
 //! `z`, from -1 to 1, is a Bouc-Wen element, theory.md (8.5). `x` is in mm, `f` in N. Source: the Bouc-Wen

@@ -2,10 +2,10 @@
 //! on that side, along a line that is broken where the member pinches; strength falls with the work done.
 //!
 //! ```text
-//! envelope:   f = φ min{K x, f_y + K_h (x - x_y), f_y - K_s (x - x_c)} >= 0.1 φ f_y       x_y = f_y/K
-//! unloading:  slope K (x_y/x_m)^u
-//! reloading:  from (x_0, 0) through x_0 + d (x_p - x_0), where f = g d f_p, to the peak (x_p, f_p)
-//! strength:   φ = e^{-w/(W f_y x_y)},   w = ∫ f dx, taken where f passes 0
+//! f = φ min{K x, f_y + K_h (x - x_y), max[f_y - K_s (x - x_c), 0.1 f_y if x > x_c]}      theory.md (6.30)
+//! unloading:  slope K (x_y/x_m)^u                                                        theory.md (6.31)
+//! reloading:  from (x_0, 0) through x_0 + d (x_p - x_0), where f = g d f_p, to (x_p, f_p)
+//! φ = e^{-w/(W f_y x_y)},   w = ∫ f dx, taken where f passes 0;   x_y = f_y/K             theory.md (6.32)
 //! ```
 //!
 //! `x_p` is the largest displacement so far on the side that is loaded, `f_p` the envelope there, `x_m`

@@ -1,9 +1,9 @@
 //! Phase transformation of a shape-memory wire: the cosine law of Liang and Rogers.
 //!
 //! ```text
-//! heating, A_s < T < A_f:   ξ = ξ_h g((T - A_s)/(A_f - A_s))
+//! heating, A_s < T < A_f:   ξ = ξ_h g((T - A_s)/(A_f - A_s))                theory.md (6.35)
 //! cooling, M_f < T < M_s:   1 - ξ = (1 - ξ_c) g((M_s - T)/(M_s - M_f)),     g(s) = (1 + cos πs)/2
-//! y = Y (1 - ξ) + θ T
+//! y = Y (1 - ξ) + θ T                                                       theory.md (6.36)
 //! ```
 //!
 //! `ξ` is the share of martensite, 1 when cold; `T` the temperature in °C, `y` the stroke in mm. `ξ_h` and

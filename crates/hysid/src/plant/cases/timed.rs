@@ -30,13 +30,13 @@ const SLOW_BAND: Band = (0.05, 1.0);
 pub(super) type Band = (f64, f64);
 
 /// Input and output of one experiment, row by row.
-struct Course {
+struct Motion {
     time: Vec<f64>,
     input: Vec<f64>,
     output: Vec<f64>,
 }
 
-impl Course {
+impl Motion {
     /// The rows from `first` on, their time from 0, the first `blank` without output.
     fn record(mut self, name: String, first: usize, blank: usize) -> Result<Record> {
         self.output[..first + blank].fill(f64::NAN);
@@ -47,7 +47,7 @@ impl Course {
 }
 
 /// Drives an untouched specimen with tones around a mean, `rows` rows `step` seconds apart.
-fn driven(subject: &Subject, mean: f64, tones: &[Tone], step: f64, rows: usize) -> Course {
+fn driven(subject: &Subject, mean: f64, tones: &[Tone], step: f64, rows: usize) -> Motion {
     let sample = |index: usize| {
         let (t, parts) = (step * index as f64 / STEPS_PER_ROW as f64, STEPS_PER_ROW as f64);
         let duration = if index == 0 { 0.0 } else { step / parts };
@@ -55,7 +55,7 @@ fn driven(subject: &Subject, mean: f64, tones: &[Tone], step: f64, rows: usize) 
     };
     let samples: Vec<Sample> = (0..(rows - 1) * STEPS_PER_ROW + 1).map(sample).collect();
     let of_row = |column: Vec<f64>| column.into_iter().step_by(STEPS_PER_ROW).collect();
-    Course {
+    Motion {
         time: path::every(step, rows),
         input: of_row(samples.iter().map(|sample| sample.x).collect()),
         output: of_row(subject.run(&samples)),
@@ -80,8 +80,8 @@ pub(super) fn frequencies(draw: &mut Draw, subject: &Subject, (low, high): Band)
             vec![Tone::sine(half, frequency)]
         };
         let step = 1.0 / (frequency * rows as f64);
-        let course = driven(subject, mean, &wave, step, (1 + periods) * rows);
-        let record = course.record(format!("{frequency:.4} Hz"), 0, rows)?;
+        let motion = driven(subject, mean, &wave, step, (1 + periods) * rows);
+        let record = motion.record(format!("{frequency:.4} Hz"), 0, rows)?;
         let is_unseen = index == 2 || index == 4 && count > 5;
         if is_unseen { &mut parts.test } else { &mut parts.train }.push(record);
     }
@@ -101,8 +101,8 @@ pub(super) fn pairs(draw: &mut Draw, subject: &Subject, (low, high): Band) -> Re
         let amplitude = half * share * draw.factor(0.05);
         let frequency = low * (high / low).powf(place) * draw.factor(0.1);
         let step = 1.0 / (frequency * rows as f64);
-        let course = driven(subject, mean, &[Tone::sine(amplitude, frequency)], step, (1 + periods) * rows);
-        let record = course.record(format!("{:.3} at {frequency:.3} Hz", amplitude), rows, 0)?;
+        let motion = driven(subject, mean, &[Tone::sine(amplitude, frequency)], step, (1 + periods) * rows);
+        let record = motion.record(format!("{:.3} at {frequency:.3} Hz", amplitude), rows, 0)?;
         if [1, 2].contains(&index) { &mut parts.test } else { &mut parts.train }.push(record);
     }
     Ok(parts)
@@ -113,16 +113,16 @@ pub(super) fn pairs(draw: &mut Draw, subject: &Subject, (low, high): Band) -> Re
 pub(super) fn random(draw: &mut Draw, subject: &Subject, band: Band) -> Result<Parts> {
     let [train, test] = histories(draw, subject, band);
     Ok(Parts {
-        train: vec![train.course.record("first history".into(), 0, train.blank)?],
-        test: vec![test.course.record("second history".into(), 0, test.blank)?],
+        train: vec![train.motion.record("first history".into(), 0, train.blank)?],
+        test: vec![test.motion.record("second history".into(), 0, test.blank)?],
     })
 }
 
 /// The same without time, for a specimen that does not ask for it.
 pub(super) fn slow_random(draw: &mut Draw, subject: &Subject) -> Result<Parts> {
-    let [train, test] = histories(draw, subject, SLOW_BAND).map(|History { mut course, blank }| {
-        course.output[..blank].fill(f64::NAN);
-        course
+    let [train, test] = histories(draw, subject, SLOW_BAND).map(|History { mut motion, blank }| {
+        motion.output[..blank].fill(f64::NAN);
+        motion
     });
     Ok(Parts {
         train: vec![Record::new("first history", vec![train.input], train.output)?],
@@ -132,7 +132,7 @@ pub(super) fn slow_random(draw: &mut Draw, subject: &Subject) -> Result<Parts> {
 
 /// A random history, the first `blank` rows of which only bring the memory into use.
 struct History {
-    course: Course,
+    motion: Motion,
     blank: usize,
 }
 
@@ -143,7 +143,7 @@ fn histories(draw: &mut Draw, subject: &Subject, band: Band) -> [History; 2] {
         let step = 1.0 / (ROWS_PER_PERIOD * band.1);
         let tones = random_tones(draw, band, scale * half, step, rows);
         let blank = (BLANK * rows as f64).round() as usize;
-        History { course: driven(subject, mean, &tones, step, rows), blank }
+        History { motion: driven(subject, mean, &tones, step, rows), blank }
     })
 }
 
@@ -169,7 +169,7 @@ pub(super) fn halves(draw: &mut Draw, subject: &Subject, (low, high): Band) -> R
     let frequency = draw.logarithmic(low, high);
     let (mean, half) = subject.swing();
     let step = 1.0 / (frequency * rows as f64);
-    let course = driven(subject, mean, &[Tone::sine(half, frequency)], step, periods * rows);
-    let (train, test) = path::cut(&course.record(format!("{frequency:.4} Hz"), 0, 0)?, periods / 2 * rows);
+    let motion = driven(subject, mean, &[Tone::sine(half, frequency)], step, periods * rows);
+    let (train, test) = path::cut(&motion.record(format!("{frequency:.4} Hz"), 0, 0)?, periods / 2 * rows);
     Ok(Parts { train: vec![train], test: vec![test] })
 }
