@@ -170,6 +170,10 @@ pub struct TrainingOptions {
     /// The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops
     #[arg(long)]
     pub history: bool,
+    /// Rows at the beginning of each record that drive the memory and are not trained on, where records do
+    /// not begin in the virgin state [default: what validates best for auto, otherwise 0]
+    #[arg(long, value_name = "ROWS")]
+    pub warm_up: Option<usize>,
     /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
     /// method with space dilatation, or either alone
     #[arg(long, value_name = "TRAINER", default_value = "levenberg-marquardt", value_parser = trainer())]
@@ -240,6 +244,7 @@ impl TrainingOptions {
             companding: self.companding,
             rate_companding: self.rate_companding,
             history: self.history.then_some(true),
+            warm_up: self.warm_up,
             training: Some(self.training),
             starts: self.starts,
             epochs: self.epochs,

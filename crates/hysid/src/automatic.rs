@@ -20,6 +20,7 @@ mod panel;
 mod selection;
 mod single;
 mod trials;
+mod warm_up;
 
 use serde::{Deserialize, Serialize};
 
@@ -78,6 +79,8 @@ pub struct AutoOptions {
     pub companding: Option<bool>,
     /// Whether largest input and path so far are inputs.
     pub history: Option<bool>,
+    /// Rows at the beginning of each record that drive the memory and are not trained on.
+    pub warm_up: Option<usize>,
     /// Seed of all randomness.
     pub seed: u64,
 }
@@ -98,6 +101,7 @@ impl Default for AutoOptions {
             epochs: None,
             companding: None,
             history: None,
+            warm_up: None,
             seed: 1,
         }
     }
@@ -152,6 +156,9 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
 
     // Should the observer stop everything soon, this is what there is.
     let alone = watch.first_fit(first, &few)?;
+    let rows = options.warm_up.unwrap_or_else(|| warm_up::better(first, &few, &folds, &watch));
+    let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(rows)).collect();
+    let first = &first.warmed_up(rows);
     let mut panels: Vec<Panel> = Vec::new();
     if judges.is_empty() {
         panels.extend(Panel::unjudged(first, &few, options, &watch));
@@ -177,7 +184,9 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let model = followed.or(panelist.members.first().cloned()).unwrap_or(alone);
     let validation = panelist_errors(panelist, &judges, &data.names().output);
     let provenance = provenance_of(&model, ensemble.provenance().selection.clone(), validation, &watch);
-    let provenance = Provenance { train: model.evaluate(data)?, ..provenance };
+    // It was taught more than the data.
+    let (samples, records) = (data.scored(), data.records().len());
+    let provenance = Provenance { train: model.evaluate(data)?, samples, records, ..provenance };
     let band = Band::calibrate(&single::rows_held_out(panelist, &judges));
     let model = model.with_provenance(provenance).with_band(band).trained_on(data)?;
     Ok(Fit { model, evaluations: watch.fits() })

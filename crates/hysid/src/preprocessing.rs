@@ -33,6 +33,14 @@ pub struct Shaping {
     /// The largest magnitude and the path of the first input so far are inputs too, theory.md (11.2).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub history: bool,
+    /// Rows at the beginning of each record that drive the memory and are not trained on: a record that
+    /// does not begin in the virgin state comes to its own memory there.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub warm_up: usize,
+}
+
+fn is_zero(rows: &usize) -> bool {
+    *rows == 0
 }
 
 /// How a model sees its input, in the user's units.
@@ -116,11 +124,19 @@ impl<'d> Seen<'d> {
     /// # Errors
     /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
     pub fn of(data: &'d Dataset, shaping: &Shaping, rate: Option<RateMethod>) -> Result<Self> {
-        data.check_identifiable(FEWEST_ROWS)?;
         shaping.check()?;
-        let preprocessing = shaping.of(data, rate)?;
-        let (data, rate) = preprocessing.data(data, rate)?;
-        Ok(Self { preprocessing, data, rate })
+        let data = match shaping.warm_up {
+            0 => Cow::Borrowed(data),
+            rows => Cow::Owned(data.clone().warmed_up(rows)),
+        };
+        data.check_identifiable(FEWEST_ROWS)?;
+        let preprocessing = shaping.of(&data, rate)?;
+        let (seen, seen_rate) = preprocessing.data(&data, rate)?;
+        let seen = match seen {
+            Cow::Owned(seen) => Some(seen),
+            Cow::Borrowed(_) => None,
+        };
+        Ok(Self { preprocessing, data: seen.map_or(data, Cow::Owned), rate: seen_rate })
     }
 }
 
@@ -282,7 +298,8 @@ mod tests {
     #[test]
     fn every_row_follows_the_formulas() {
         let data = data();
-        let shaping = Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true };
+        let shaping =
+            Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
         let rate = Some(RateMethod::Backward);
         let preprocessing = shaping.of(&data, rate).unwrap();
         let (seen, method) = preprocessing.data(&data, rate).unwrap();

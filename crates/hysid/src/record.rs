@@ -278,6 +278,15 @@ impl Dataset {
         thinned
     }
 
+    /// The same data with the outputs of the first rows of each record blanked.
+    pub(crate) fn warmed_up(mut self, rows: usize) -> Dataset {
+        for record in &mut self.records {
+            let rows = rows.min(record.len());
+            record.output[..rows].fill(f64::NAN);
+        }
+        self
+    }
+
     /// Those records that are chosen by their place, and the others.
     pub(crate) fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
         let pick = |chosen: bool| {

@@ -53,6 +53,11 @@ const PENALTIES: Regularisation = Regularisation { ridge: 3e-4, decay: 1e-7 };
 /// Epochs of a network. As above.
 const EPOCHS: usize = 25;
 
+/// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
+/// above.
+const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
+const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
+
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 3000;
 
@@ -65,6 +70,17 @@ impl Candidate {
             Request::Classical(_) | Request::Auto(_) => Kind::Classical,
         };
         Self { kind, request: request.clone() }
+    }
+
+    /// The same with so many rows of each record that only drive the memory.
+    pub fn warmed_up(&self, rows: usize) -> Self {
+        let mut warmed = self.clone();
+        match &mut warmed.request {
+            Request::Network(options) => options.shaping.warm_up = rows,
+            Request::Classical(options) => options.shaping.warm_up = rows,
+            Request::Auto(_) => {}
+        }
+        warmed
     }
 
     /// What is asked for, for a start of its own.
@@ -116,6 +132,10 @@ impl Candidate {
         }
         if shaping.history {
             with.push("history".into());
+        }
+        if matches!(&self.request, Request::Classical(options) if options.hidden.is_some_and(|hidden| hidden > 0))
+        {
+            with.push("tanh layer".into());
         }
         if !with.is_empty() {
             name += &format!(" ({})", with.join(", "));
@@ -169,29 +189,38 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         add(Kind::Networks, network(XpnnPlus, true, history, None, 0));
     }
 
-    let classical = |model, shaping, rate, deterioration| {
+    let random_stops = |shaping, rate, deterioration, (stops, hidden)| {
         Request::Classical(ClassicalOptions {
             rate,
             shaping,
-            deterioration,
-            hidden: (model == Rival::RandomStops).then_some(0),
+            deterioration: Some(deterioration),
+            operators: Some(stops),
+            hidden: Some(hidden),
             seed: options.seed,
-            ..ClassicalOptions::of(model)
+            ..ClassicalOptions::of(Rival::RandomStops)
         })
     };
-    let mut random = vec![(as_it_is, None, false), (tenth, None, false)];
+    let (linear, layered) = (LINEAR_RANDOM_STOPS, LAYERED_RANDOM_STOPS);
+    let mut random = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
     if timed {
-        random.extend([(as_it_is, rate, false), (rate_tenth, rate, false), (as_it_is, rate, true)]);
+        random.extend([(rate_tenth, rate, false, linear), (as_it_is, rate, true, layered)]);
     } else {
-        random.push((as_it_is, None, true));
+        random.extend([(as_it_is, None, true, linear), (as_it_is, None, true, layered)]);
     }
-    for (shaping, rate, deterioration) in random {
-        add(Kind::RandomStops, classical(Rival::RandomStops, shaping, rate, Some(deterioration)));
+    for (shaping, rate, deterioration, sizes) in random {
+        add(Kind::RandomStops, random_stops(shaping, rate, deterioration, sizes));
     }
+
+    let classical = |model, shaping| {
+        Request::Classical(ClassicalOptions { shaping, seed: options.seed, ..ClassicalOptions::of(model) })
+    };
     for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
         for shaping in [as_it_is, tenth, fiftieth] {
-            add(Kind::Classical, classical(model, shaping, None, None));
+            add(Kind::Classical, classical(model, shaping));
         }
+    }
+    if !timed {
+        add(Kind::Classical, classical(Rival::JilesAtherton, as_it_is));
     }
     all.retain(|candidate| options.allows(candidate, data));
     all

@@ -1,4 +1,4 @@
-//! What candidates count, by what they foretold: theory.md (11.5) to (11.7).
+//! What candidates count, by what they foretold: theory.md (11.5) and (11.6).
 
 use crate::automatic::trials::{Judge, Trial};
 use crate::model::{Votes, Weights};

@@ -51,6 +51,8 @@ pub struct ChosenOptions {
     /// The largest magnitude and the path of the input so far are inputs too, for `xpnn+` and
     /// `random-stops`.
     pub history: Option<bool>,
+    /// Rows at the beginning of each record that drive the memory and are not trained on.
+    pub warm_up: Option<usize>,
     /// How a network is trained.
     #[serde(deserialize_with = "named")]
     pub training: Option<Trainer>,
@@ -183,6 +185,7 @@ impl ChosenOptions {
             epochs: self.epochs,
             companding: self.companding.map(|share| share > 0.0),
             history: self.history,
+            warm_up: self.warm_up,
             seed: self.seed.unwrap_or(defaults.seed),
             ..defaults
         }
@@ -238,6 +241,7 @@ impl ChosenOptions {
             companding: self.companding.filter(|share| *share != 0.0),
             rate_companding: self.rate_companding.filter(|share| *share != 0.0),
             history: self.history.unwrap_or_default(),
+            warm_up: self.warm_up.unwrap_or_default(),
         }
     }
 

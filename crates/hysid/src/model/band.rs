@@ -1,7 +1,7 @@
 //! How far off a prediction may be: a band about the output, calibrated on data held out.
 //!
 //! ```text
-//! y ± q(p) √(f² + d²)                                                      theory.md (11.4)
+//! y ± q(p) √(f² + d²)                                                      theory.md (11.7)
 //! ```
 //!
 //! `d` is how much the members of the ensemble disagree at that row, `f` the error that is left where they
@@ -20,7 +20,7 @@ const LEVELS: [f64; 10] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.975, 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Band {
-    /// `f` of theory.md (11.4), in the output's unit.
+    /// `f` of theory.md (11.7), in the output's unit.
     floor: f64,
     /// `q` inside the trained range, at each of the levels.
     inside: Vec<f64>,

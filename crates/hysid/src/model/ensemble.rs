@@ -77,7 +77,7 @@ impl Weights {
         Self { inside: 1.0, outside: 1.0 }
     }
 
-    /// The weight of a record that has been outside by this degree, 0 to 1: theory.md (11.3).
+    /// The weight of a record that has been outside by this degree, 0 to 1: theory.md (11.4).
     pub(crate) fn at(&self, outside: f64) -> f64 {
         if outside == 0.0 {
             self.inside
@@ -122,7 +122,7 @@ impl Votes {
         self.0.push((value, weight));
     }
 
-    /// The weighted quantile, theory.md (11.2): each vote stands at the middle of its weight, and values
+    /// The weighted quantile, theory.md (11.3): each vote stands at the middle of its weight, and values
     /// between are interpolated. With equal weights, `quantile(0.5)` is the ordinary median.
     pub fn quantile(&mut self, level: f64) -> f64 {
         self.0.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
