@@ -394,10 +394,10 @@ mod tests {
     #[test]
     fn nothing_chosen_is_the_default() {
         let rate = Some(RateMethod::Central);
-        let request = chosen(json!({})).unwrap().request(rate);
-        assert_eq!(request, Request::Network(FitOptions { rate, ..FitOptions::default() }));
+        let request = chosen(json!({})).unwrap().request(rate, false);
+        assert_eq!(request, Request::Auto(AutoOptions { rate, ..AutoOptions::default() }));
         for rival in Rival::ALL {
-            let request = chosen(json!({ "model": rival.name() })).unwrap().request(None);
+            let request = chosen(json!({ "model": rival.name() })).unwrap().request(None, false);
             assert_eq!(request, Request::Classical(ClassicalOptions::of(rival)));
         }
     }
@@ -406,7 +406,7 @@ mod tests {
     fn every_option_reaches_the_request() {
         let network = json!({ "model": "epnn", "stops": 3, "hidden": 4, "relaxation": 0, "no_deterioration": true,
             "training": "hybrid", "starts": 2, "epochs": 7, "population": 9, "stall": 0, "seed": 5, "validation": 0.5 });
-        let Request::Network(options) = chosen(network).unwrap().request(None) else { panic!() };
+        let Request::Network(options) = chosen(network).unwrap().request(None, false) else { panic!() };
         let expected = FitOptions {
             model: Family::Xpnn,
             sizes: Sizes { stops: 3, hidden: 4, relaxation: 0 },
@@ -423,7 +423,7 @@ mod tests {
         let rival = json!({ "model": "masing", "operators": 6, "thresholds": [0.5, 1.0], "sign": "non-positive",
             "dead_zones": 2, "free_weights": false, "logarithmic_thresholds": true, "degradation": true,
             "differential_form": true, "hidden": 4, "starts": 2, "epochs": 3, "seed": 5 });
-        let Request::Classical(options) = chosen(rival).unwrap().request(None) else { panic!() };
+        let Request::Classical(options) = chosen(rival).unwrap().request(None, false) else { panic!() };
         let expected = ClassicalOptions {
             model: Rival::Masing,
             operators: Some(6),
@@ -435,7 +435,9 @@ mod tests {
             degradation: true,
             differential_form: true,
             hidden: Some(4),
+            deterioration: None,
             rate: None,
+            shaping: Shaping::default(),
             starts: Some(2),
             epochs: Some(3),
             seed: 5,
@@ -446,10 +448,10 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (options, words) in [
-            (json!({ "stop": 3 }), "there is no option `stop`: the options are dead_zones, degradation,"),
+            (json!({ "stop": 3 }), "there is no option `stop`: the options are companding, dead_zones,"),
             (json!({ "stops": 0 }), "stops 0: choose 1 to 1000"),
             (json!({ "stops": "many" }), "stops: invalid type: string \"many\""),
-            (json!({ "model": "xpn" }), "model: model `xpn` is unknown: choose one of pnn, gpnn"),
+            (json!({ "model": "xpn" }), "model: model `xpn` is unknown: choose one of auto, pnn, gpnn"),
             (json!({ "training": "lm" }), "training `lm` is unknown"),
             (json!({ "validation": 1.0 }), "validation 1: a number between 0 and 1 is needed"),
         ] {
@@ -463,7 +465,10 @@ mod tests {
         let useless = |options| chosen(options).unwrap().useless();
         assert_eq!(useless(json!({ "population": 50, "stops": 3 })), ["population"]);
         assert_eq!(useless(json!({ "model": "masing", "stops": 3, "starts": 2 })), ["stops", "starts"]);
-        assert!(useless(json!({ "training": "hybrid", "population": 50, "degradation": false })).is_empty());
+        assert!(
+            useless(json!({ "model": "xpnn", "training": "hybrid", "population": 50, "degradation": false }))
+                .is_empty()
+        );
     }
 
     #[test]

@@ -356,7 +356,7 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {
         Body::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {
-            network.architecture().inputs.checked_sub(added).unwrap_or_default()
+            network.architecture().inputs.saturating_sub(added)
         }
         Body::Network { .. } => 0,
         Body::Law(_) => 1 - added.min(1),

@@ -11,6 +11,7 @@ use crate::identification::Request;
 use crate::metrics::Errors;
 use crate::model::{Body, Provenance};
 use crate::network::{Architecture, Family, Network, Sizes};
+use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
 use crate::record::{ColumnNames, Dataset, Record};
 use crate::scaling::Scaling;
@@ -46,8 +47,9 @@ fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
         train,
         validation: None,
         runs: Vec::new(),
+        selection: None,
     };
-    Model::new(body, rate, &data, provenance).unwrap()
+    Model::new(body, Preprocessing::default(), rate, &data, provenance).unwrap()
 }
 
 fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Model {
