@@ -2,17 +2,22 @@
 
 pub mod options;
 
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use serde::{Deserialize, Serialize};
 
 use crate::automatic::{self, AutoOptions, Automatic};
 use crate::classical::identification::{self as classical, ClassicalOptions, Rival};
+use crate::classical::search::SearchProgress;
 use crate::error::{Error, Result};
 use crate::model::{Body, Model, Provenance};
 use crate::network::Family;
 use crate::preprocessing::Seen;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
-use crate::training::random_stops::{RandomStopsOptions, fit_random_stops};
+use crate::training::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::training::{
     self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
 };
@@ -149,7 +154,7 @@ impl Request {
 }
 
 /// Identifies a model. The observer is as in [`training::fit`]; of a classical model it hears after every
-/// round of its search, if there is one, and there is no checkpoint.
+/// round of its search, or now and then if there is none, and there is no checkpoint.
 ///
 /// # Errors
 /// Data that nothing can be identified from, or options outside their meaning.
@@ -157,12 +162,44 @@ pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) 
     match request {
         Request::Network(options) => training::fit(data, options, observer),
         Request::Auto(options) => automatic::fit(data, options, observer),
-        Request::Classical(options) if options.model == Rival::RandomStops => random_stops(data, options),
+        Request::Classical(options) if options.model == Rival::RandomStops => {
+            random_stops(data, options, observer)
+        }
         Request::Classical(options) => law(data, options, observer),
     }
 }
 
-fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
+/// The observer as fits without rounds ask it, from several threads.
+struct Patience<'o, 'a> {
+    observer: Mutex<&'o mut Observer<'a>>,
+    is_over: AtomicBool,
+}
+
+impl<'o, 'a> Patience<'o, 'a> {
+    fn of(observer: &'o mut Observer<'a>) -> Self {
+        Self { observer: Mutex::new(observer), is_over: AtomicBool::new(false) }
+    }
+
+    fn hear(&self, progress: &Progress) -> ControlFlow<()> {
+        let mut observer = self.observer.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // Whoever has said stop is not asked again.
+        if self.is_over() || observer(progress).is_break() {
+            self.is_over.store(true, Ordering::Relaxed);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Relaxed)
+    }
+
+    fn termination(&self, otherwise: Termination) -> Termination {
+        if self.is_over() { Termination::Stopped } else { otherwise }
+    }
+}
+
+fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let defaults = RandomStopsOptions::default();
     let wanted = RandomStopsOptions {
         stops: options.operators.unwrap_or(defaults.stops),
@@ -172,33 +209,40 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions) -> Result<Fit> {
         seed: options.seed,
     };
     let seen = Seen::of(data, &options.shaping, options.rate)?;
-    let found = fit_random_stops(&seen.data, &RandomStopsOptions { rate: seen.rate, ..wanted })?;
+    let patience = Patience::of(observer);
+    let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
+    let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
+    let found = fit_random_stops_until(&seen.data, &wanted, &stop)?;
     let body = Body::Network { network: found.network, scaling: found.scaling };
-    finished(data, options, &seen, body, 1, Termination::Converged, Vec::new())
+    finished(data, options, &seen, body, 1, patience.termination(Termination::Converged), Vec::new())
 }
 
 fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
     let seen = Seen::of(data, &options.shaping, options.rate)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
-    let found = classical::fit(&seen.data, &of_seen, &mut |progress| {
+    let patience = Patience::of(observer);
+    let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
+    let mut of_round = |progress: SearchProgress| {
         history.push(HistoryPoint {
             epoch: progress.round,
             evaluations: progress.evaluations,
             train_nrmse_percent: progress.train_nrmse_percent,
         });
-        observer(&Progress::of_search(&progress))
-    })?;
+        patience.hear(&Progress::of_search(options.model, &progress))
+    };
+    let found = classical::fit(&seen.data, &of_seen, &mut of_round, &stop)?;
+    let termination = patience.termination(found.termination);
     let run = Run {
         phase: Phase::AllData,
         start: 0,
         method: Method::LeastSquares,
         history,
-        termination: found.termination,
+        termination,
         validation_nrmse_percent: None,
     };
     let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
-    finished(data, options, &seen, Body::Law(found.law), found.evaluations, found.termination, runs)
+    finished(data, options, &seen, Body::Law(found.law), found.evaluations, termination, runs)
 }
 
 fn finished(

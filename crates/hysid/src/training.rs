@@ -21,8 +21,10 @@ pub mod termination;
 
 use std::ops::ControlFlow;
 
+use crate::classical::identification::Rival;
 use crate::classical::search::SearchProgress;
 use crate::error::Result;
+use crate::identification::ModelName;
 use crate::model::Model;
 use crate::preprocessing::Seen;
 use crate::record::Dataset;
@@ -36,9 +38,15 @@ pub use termination::Termination;
 /// Fewest rows with an output that a model is identified from.
 pub const FEWEST_ROWS: usize = 10;
 
-/// Where a fit is, told to the observer after every epoch.
+/// Where a fit is, told to the observer after every epoch, and now and then in the midst of a fit without
+/// epochs.
 #[derive(Debug, Clone)]
 pub struct Progress<'a> {
+    /// The model that is being fitted.
+    pub model: ModelName,
+    /// True for one fit of many: of a candidate of `auto`, or to a fold of a validation. Only `done` speaks of
+    /// the whole work then.
+    pub is_part: bool,
     /// What is being done.
     pub phase: Phase,
     /// How it is being done.
@@ -49,7 +57,8 @@ pub struct Progress<'a> {
     pub epoch: usize,
     /// Evaluations of the objective by this start in this phase, gradients included.
     pub evaluations: usize,
-    /// Error on the training rows, in percent of the output's standard deviation.
+    /// Error on the training rows, in percent of the output's standard deviation; NaN in the midst of a fit
+    /// that has no rounds.
     pub train_nrmse_percent: f64,
     /// Share of the work done, 0 to 1, if every start takes all its epochs.
     pub done: f64,
@@ -65,12 +74,21 @@ impl Progress<'_> {
 
     /// The same without the state, of a fit that is only a part of the work.
     pub(crate) fn of_part(&self, done: f64) -> Progress<'static> {
-        Progress { done, snapshot: None, ..self.clone() }
+        Progress { done, is_part: true, snapshot: None, ..self.clone() }
+    }
+
+    /// Of a model's fit that has no rounds.
+    pub(crate) fn of_least_squares(model: Rival) -> Self {
+        let nothing_yet =
+            SearchProgress { round: 0, rounds: 1, evaluations: 0, train_nrmse_percent: f64::NAN };
+        Self::of_search(model, &nothing_yet)
     }
 
     /// Of a classical model's search.
-    pub(crate) fn of_search(progress: &SearchProgress) -> Self {
+    pub(crate) fn of_search(model: Rival, progress: &SearchProgress) -> Self {
         Self {
+            model: ModelName::Rival(model),
+            is_part: false,
             phase: Phase::AllData,
             method: Method::LeastSquares,
             start: 0,

@@ -13,7 +13,7 @@ use hysid::model::{Body, Model};
 use hysid::network::Family;
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::Fit;
+use hysid::training::{Fit, Termination};
 
 use small_models::{record, small};
 
@@ -74,6 +74,34 @@ fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
         let error = model.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
         assert!(error < 60.0, "{name:?}: {error} %");
         assert_eq!(error, model.provenance().train.nrmse_std_percent.unwrap());
+    }
+}
+
+/// A fit without rounds listens in its midst: it ends with what it has, and is otherwise not disturbed.
+#[test]
+fn fits_without_rounds_end_when_they_are_told_to() {
+    for rival in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii, Rival::RandomStops] {
+        let request = small(ModelName::Rival(rival), None);
+        let mut asked = 0;
+        let whole = identify(&data(), &request, &mut |progress| {
+            assert_eq!((progress.model, progress.is_part), (ModelName::Rival(rival), false));
+            asked += 1;
+            ControlFlow::Continue(())
+        });
+        let whole = whole.unwrap().model;
+        assert!(asked > 2, "{rival:?}: asked {asked} times");
+        assert_eq!(whole.provenance().termination, Termination::Converged);
+
+        let mut asked_again = 0;
+        let cut = identify(&data(), &request, &mut |_| {
+            asked_again += 1;
+            ControlFlow::Break(())
+        });
+        let cut = cut.unwrap().model;
+        assert_eq!(asked_again, 1, "{rival:?}: who has said stop is not asked again");
+        assert_eq!(cut.provenance().termination, Termination::Stopped);
+        let error = |model: &Model| model.evaluate(&data()).unwrap().nrmse_std_percent.unwrap();
+        assert!(error(&cut) < 60.0, "{rival:?}: {} %, not {} %", error(&cut), error(&whole));
     }
 }
 

@@ -8,7 +8,7 @@ use crate::classical::generalized_prandtl_ishlinskii::{
     GeneralizedPrandtlIshlinskii, GeneralizedPrandtlIshlinskiiOptions,
 };
 use crate::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm, JilesAthertonOptions};
-use crate::classical::linear_fit::Sign;
+use crate::classical::linear_fit::{Sign, StopCheck};
 use crate::classical::masing::{Masing, MasingOptions};
 use crate::classical::modified_prandtl_ishlinskii::{
     ModifiedPrandtlIshlinskii, ModifiedPrandtlIshlinskiiOptions,
@@ -185,7 +185,8 @@ impl ClassicalOptions {
     }
 }
 
-/// Fits a classical law.
+/// Fits a classical law. Of a search, the observer is told after every round; a fit without rounds that may
+/// take long asks `stop` in its midst.
 ///
 /// # Errors
 /// Data that nothing can be identified from, options outside their meaning.
@@ -193,6 +194,7 @@ pub(crate) fn fit(
     data: &Dataset,
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
+    stop: &StopCheck<'_>,
 ) -> Result<Identified<Classical>> {
     let ClassicalOptions { operators, sign, free_weights, rate, starts, epochs, seed, .. } = *options;
     Ok(match options.model {
@@ -216,12 +218,12 @@ pub(crate) fn fit(
                 sign,
                 dead_zones: options.dead_zones.unwrap_or(defaults.dead_zones),
             };
-            convex(ModifiedPrandtlIshlinskii::fit(data, &options)?)
+            convex(ModifiedPrandtlIshlinskii::fit_until(data, &options, stop)?)
         }
         Rival::Preisach => {
             let defaults = PreisachOptions::default();
             let intervals = operators.unwrap_or(defaults.intervals);
-            convex(Preisach::fit(data, &PreisachOptions { intervals, sign })?)
+            convex(Preisach::fit_until(data, &PreisachOptions { intervals, sign }, stop)?)
         }
         Rival::GeneralizedPrandtlIshlinskii => {
             let defaults = GeneralizedPrandtlIshlinskiiOptions::default();

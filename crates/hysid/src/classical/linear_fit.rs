@@ -32,6 +32,10 @@ const SLACK: f64 = 0.03;
 /// Rows that are copied into a batch together: a cache line.
 const LINE: usize = 8;
 
+/// Asked now and then in the midst of a fit that has no rounds to tell of: true once it should end soon, with
+/// the best it has.
+pub(crate) type StopCheck<'a> = dyn Fn() -> bool + Sync + 'a;
+
 /// Series of a data set with one input, all that a classical model can be fitted to.
 ///
 /// # Errors
@@ -175,18 +179,27 @@ impl FoldSums {
     /// when trained on the others. `solve` gives the weights of all candidates for some sums, in order,
     /// so that each may start from the one before.
     ///
-    /// The logarithm keeps one fold that lies beyond the others from deciding everything.
-    pub fn scores(&self, solve: impl Fn(&Quadratic) -> Vec<Vec<f64>> + Sync) -> Vec<f64> {
+    /// The logarithm keeps one fold that lies beyond the others from deciding everything. Asked to stop, the
+    /// first fold decides, and those that were under way.
+    pub fn scores(
+        &self,
+        solve: impl Fn(&Quadratic) -> Vec<Vec<f64>> + Sync,
+        stop: &StopCheck<'_>,
+    ) -> Vec<f64> {
         let total = self.total();
         let judged = self.judged.iter().map(|&fold| &self.folds[fold]);
         let held_out: Vec<&Sums> = judged.filter(|fold| fold.rows > 0).collect();
-        let judge = |fold: &&Sums| -> Vec<f64> {
+        let judge = |(place, fold): (usize, &&Sums)| -> Option<Vec<f64>> {
+            if place > 0 && stop() {
+                return None;
+            }
             let mut rest = total.clone();
             rest.add_multiple(fold, -1.0, total.rows - fold.rows);
             let candidates = solve(&rest.quadratic());
-            candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect()
+            Some(candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect())
         };
-        let by_fold: Vec<Vec<f64>> = held_out.par_iter().map(judge).collect();
+        let by_fold: Vec<Option<Vec<f64>>> = held_out.par_iter().enumerate().map(judge).collect();
+        let by_fold: Vec<Vec<f64>> = by_fold.into_iter().flatten().collect();
         let mut mean = vec![0.0; by_fold[0].len()];
         for scores in &by_fold {
             mean.iter_mut().zip(scores).for_each(|(mean, score)| *mean += score / by_fold.len() as f64);
@@ -215,13 +228,14 @@ impl FoldSums {
         factors: &[f64],
         sign: Option<Sign>,
         reversible: &Range<usize>,
+        stop: &StopCheck<'_>,
     ) -> Choice {
         let features = self.folds[0].features;
         let signs = sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
         for &sign in &signs {
             let bounds = Bounds::new(sign, reversible.clone(), features);
-            let scores = self.scores(|rest| rest.path(penalty, factors, &bounds));
+            let scores = self.scores(|rest| rest.path(penalty, factors, &bounds), stop);
             let choices = scores.iter().zip(factors);
             candidates.extend(choices.map(|(&score, &factor)| Choice { score, factor, sign }));
         }

@@ -158,7 +158,7 @@ fn slopes_on_grid(series: &[Series], scaling: &Scaling, grid: &[f64], sign: Opti
     }
     let reversible = 1..1;
     let factors = logarithmic(1e-9, 1e-1, 17);
-    let choice = sums.choose(&penalty, &factors, sign, &reversible);
+    let choice = sums.choose(&penalty, &factors, sign, &reversible, &|| false);
     let mut penalised = sums.total().quadratic();
     penalised.penalise(&penalty, choice.factor);
     (choice.score, penalised.minimum_within(&Bounds::new(choice.sign, reversible, features), &[]))

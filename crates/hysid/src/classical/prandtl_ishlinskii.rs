@@ -157,7 +157,7 @@ fn weights_on_grid(
     };
     let penalty = Penalty::ridge((0..features).map(of));
     let penalties = logarithmic(1e-9, 1e-1, 17);
-    let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN);
+    let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN, &|| false);
     let mut penalised = sums.total().quadratic();
     penalised.penalise(&penalty, choice.factor);
     let bounds = Bounds::new(choice.sign, PLAYS_BEGIN, features);

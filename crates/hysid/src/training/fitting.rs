@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::free_run::FreeRun;
-use crate::identification::Request;
+use crate::identification::{ModelName, Request};
 use crate::metrics::Errors;
 use crate::model::{Body, Model, Provenance};
 use crate::network::{Architecture, Network};
@@ -281,6 +281,8 @@ impl<'a> Fitting<'a> {
         let done = self.done();
         let run = &(stage.runs)(&mut self.state)[index];
         let progress = Progress {
+            model: ModelName::Network(self.asked.model),
+            is_part: false,
             phase: stage.phase,
             method: run.method_of_last_epoch(),
             start: run.start(),

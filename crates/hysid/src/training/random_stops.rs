@@ -11,7 +11,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::classical::linear_fit::{FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
+use crate::classical::linear_fit::{
+    FoldSums, Folds, Penalty, Quadratic, StopCheck, Sums, logarithmic, lowest,
+};
 use crate::error::Result;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
 use crate::rate::RateMethod;
@@ -69,6 +71,15 @@ const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
 /// Data that nothing can be identified from, options outside their meaning, a rate that cannot be
 /// computed.
 pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
+    fit_random_stops_until(data, options, &|| false)
+}
+
+/// As [`fit_random_stops`]; asked to stop, the best architecture so far, its penalty chosen by fewer folds.
+pub(crate) fn fit_random_stops_until(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    stop: &StopCheck<'_>,
+) -> Result<RandomStops> {
     data.check_identifiable(FEWEST_ROWS)?;
     let scaling = Scaling::of(data, options.rate)?;
     let mut best: Option<RandomStops> = None;
@@ -78,6 +89,9 @@ pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<
         .iter()
         .flat_map(|&deterioration| hidden.iter().map(move |&hidden| (deterioration, hidden)));
     for (deterioration, hidden) in candidates {
+        if best.is_some() && stop() {
+            break;
+        }
         let architecture = Architecture {
             inputs: data.names().inputs.len(),
             rate: options.rate.is_some(),
@@ -90,7 +104,7 @@ pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<
             constant: true,
         };
         architecture.check()?;
-        let candidate = fit_readout(data, options, &scaling, architecture)?;
+        let candidate = fit_readout(data, options, &scaling, architecture, stop)?;
         let is_better =
             |best: &RandomStops| candidate.validation_nrmse_percent < best.validation_nrmse_percent;
         if best.as_ref().is_none_or(is_better) {
@@ -106,6 +120,7 @@ fn fit_readout(
     options: &RandomStopsOptions,
     scaling: &Scaling,
     architecture: Architecture,
+    stop: &StopCheck<'_>,
 ) -> Result<RandomStops> {
     let used = || data.records().iter().filter(|record| record.scored() > 0);
     let drives: Vec<Drive> =
@@ -129,7 +144,7 @@ fn fit_readout(
         penalised.penalise(&penalty, ridge);
         penalised.minimum()
     };
-    let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect());
+    let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect(), stop);
     let chosen = lowest(&scores);
     let output = solve(&sums.total().quadratic(), ridges[chosen]);
     Ok(RandomStops {

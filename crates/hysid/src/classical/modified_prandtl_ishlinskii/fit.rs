@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic, lowest,
+    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, StopCheck, identifiable_series, logarithmic, lowest,
 };
 use crate::classical::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
@@ -68,6 +68,16 @@ impl ModifiedPrandtlIshlinskii {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &ModifiedPrandtlIshlinskiiOptions) -> Result<Self> {
+        Self::fit_until(data, options, &|| false)
+    }
+
+    /// As [`ModifiedPrandtlIshlinskii::fit`]; asked to stop, with the best prior so far and no further
+    /// refinement.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &ModifiedPrandtlIshlinskiiOptions,
+        stop: &StopCheck<'_>,
+    ) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
         if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
@@ -84,17 +94,17 @@ impl ModifiedPrandtlIshlinskii {
         let mut candidates = Vec::new();
         for sign in signs {
             // The convex problem tells which grid is best, outputs tell the rest.
-            let scores: Vec<f64> = problems.iter().map(|problem| problem.convex_score(sign)).collect();
+            let scores: Vec<f64> = problems.iter().map(|problem| problem.convex_score(sign, stop)).collect();
             let grid = lowest(&scores);
             for ridge in logarithmic(1e-7, 1e-1, RIDGES) {
                 candidates.push((grid, Prior { sign, ridge }));
             }
         }
-        let score = |&(grid, prior): &(usize, Prior)| problems[grid].score(prior);
+        let score = |&(grid, prior): &(usize, Prior)| problems[grid].score(prior, stop);
         let scores: Vec<f64> = candidates.par_iter().map(score).collect();
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
-        problem.refine(problem.convex_start(prior), ITERATIONS).in_users_units(&grids[grid], &scaling)
+        problem.refine(problem.convex_start(prior), ITERATIONS, stop).in_users_units(&grids[grid], &scaling)
     }
 }
 
@@ -179,14 +189,18 @@ impl Problem {
         }
     }
 
-    /// Mean over the folds of the logarithm of the mean square error of outputs held out.
-    fn score(&self, prior: Prior) -> f64 {
+    /// Mean over the folds of the logarithm of the mean square error of outputs held out; asked to stop, as
+    /// if it were beyond all bounds.
+    fn score(&self, prior: Prior, stop: &StopCheck<'_>) -> f64 {
         let judge = |&fold: &usize| {
+            if stop() {
+                return f64::INFINITY;
+            }
             let (rest, held_out) = (self.part(|other| other != fold), self.part(|other| other == fold));
             if rest.targets.is_empty() || held_out.targets.is_empty() {
                 return 0.0;
             }
-            let mut point = rest.refine(rest.convex_start(prior), ITERATIONS_IN_VALIDATION);
+            let mut point = rest.refine(rest.convex_start(prior), ITERATIONS_IN_VALIDATION, stop);
             point.prior.ridge = 0.0;
             held_out.objective(&point).max(1e-30).ln()
         };
@@ -194,12 +208,12 @@ impl Problem {
     }
 
     /// How well the convex problem forecasts rows held out.
-    fn convex_score(&self, sign: Sign) -> f64 {
+    fn convex_score(&self, sign: Sign, stop: &StopCheck<'_>) -> f64 {
         let (sums, penalty, _) = self.convex_problem();
         let plays = 2..self.drives[0].len();
         let bounds = Bounds::apart(sign, plays, 0..0, sums.total().features());
         let factors = logarithmic(1e-8, 1e-1, 8);
-        let scores = sums.scores(|rest| rest.path(&penalty, &factors, &bounds));
+        let scores = sums.scores(|rest| rest.path(&penalty, &factors, &bounds), stop);
         scores[lowest(&scores)]
     }
 
@@ -271,8 +285,8 @@ impl Problem {
         Point { hysteresis: weights[..first].to_vec(), constant: value(0.0), slopes, thresholds, prior }
     }
 
-    /// Step 2.
-    fn refine(&self, start: Point, iterations: usize) -> Point {
+    /// Step 2, or as much of it as there is time for.
+    fn refine(&self, start: Point, iterations: usize, stop: &StopCheck<'_>) -> Point {
         let first = self.drives[0].len();
         let count = first + 1 + start.slopes.len();
         let penalty = self.penalty(count, count..count);
@@ -282,6 +296,9 @@ impl Problem {
         let mut objective = self.objective(&point);
         let (mut damping, mut refused) = (1e-3, 0);
         for _ in 0..iterations {
+            if stop() {
+                break;
+            }
             let mut gatherer = Gatherer::new(count, &whole);
             let mut jacobian = vec![0.0; count];
             for (drive, &y) in self.drives.iter().zip(&self.targets) {

@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic,
+    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, StopCheck, identifiable_series, logarithmic,
 };
 use crate::classical::preisach::plane::Plane;
 use crate::classical::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
@@ -48,6 +48,11 @@ impl Preisach {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &PreisachOptions) -> Result<Self> {
+        Self::fit_until(data, options, &|| false)
+    }
+
+    /// As [`Preisach::fit`]; asked to stop, with a penalty chosen by fewer folds.
+    pub(crate) fn fit_until(data: &Dataset, options: &PreisachOptions, stop: &StopCheck<'_>) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
         let intervals = options.intervals;
@@ -59,7 +64,7 @@ impl Preisach {
 
         let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
         let sums = coarse.sums(&series, &scaling);
-        let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible());
+        let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
         let fine = Problem::new(Plane::new(density.lines(intervals)));
         let total = if intervals > INTERVALS_FOR_CHOICE {
             fine.sums(&series, &scaling).total()
