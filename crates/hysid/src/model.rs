@@ -27,7 +27,7 @@ use crate::training::history::Run;
 use crate::training::termination::Termination;
 use crate::warning::Warning;
 
-pub use band::{Band, Prediction};
+pub use band::{BAND_PROBABILITIES, Band, Prediction};
 pub(crate) use band::{HeldOutRow, disagreement};
 use ensemble::Answer;
 pub use ensemble::{Ensemble, Group, Speaker, Voice, Weights};

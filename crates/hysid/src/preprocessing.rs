@@ -222,7 +222,7 @@ impl Preprocessing {
     ///
     /// # Errors
     /// As [`Preprocessing::columns`].
-    pub(crate) fn data<'d>(
+    pub fn data<'d>(
         &self,
         data: &'d Dataset,
         rate: Option<RateMethod>,

@@ -10,6 +10,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::identification::{Request, identify};
 use crate::metrics::{ErrorSums, Errors};
+use crate::model::Model;
 use crate::record::{Dataset, Record};
 use crate::training::{FEWEST_ROWS, Observer, Progress};
 
@@ -112,8 +113,66 @@ pub struct CrossValidation {
     pub unseen_nrmse_std_percent: Option<f64>,
 }
 
+/// A cross-validation on its way, for those who fit the folds themselves: with a time limit each, say.
+#[derive(Debug, Clone)]
+pub struct CrossValidator {
+    folds: Vec<Fold>,
+    output: String,
+    judged: Vec<FoldErrors>,
+    sums: ErrorSums,
+}
+
+impl CrossValidator {
+    /// Cuts the data into folds, as [`folds`].
+    ///
+    /// # Errors
+    /// Data too few for two folds.
+    pub fn new(data: &Dataset, most_folds: usize) -> Result<Self> {
+        let folds = folds(data, most_folds);
+        if folds.len() < 2 {
+            return Err(Error::Option(format!(
+                "the data are too few to hold any out: at least two records, or one of {} rows",
+                4 * FEWEST_ROWS
+            )));
+        }
+        let output = data.names().output.clone();
+        Ok(Self { folds, output, judged: Vec::new(), sums: ErrorSums::default() })
+    }
+
+    /// The folds.
+    pub fn folds(&self) -> &[Fold] {
+        &self.folds
+    }
+
+    /// Judges a model that was fitted to a fold's training part on what was held out.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn judge(&mut self, fold: usize, model: &Model) -> Result<FoldErrors> {
+        let fold = &self.folds[fold];
+        let unseen = model.evaluate(&fold.held_out)?;
+        for record in fold.held_out.records() {
+            self.sums.add(record.output(), &model.simulate(record)?);
+        }
+        let train = model.provenance().train.clone();
+        let errors = FoldErrors { held_out: fold.name.clone(), train, unseen };
+        self.judged.push(errors.clone());
+        Ok(errors)
+    }
+
+    /// What came of the folds that were judged; `None` if none was.
+    pub fn result(self) -> Option<CrossValidation> {
+        let unseen = self.sums.errors(&self.output)?;
+        let logarithms: Option<Vec<f64>> =
+            self.judged.iter().map(|fold| Some(fold.unseen.nrmse_std_percent?.ln())).collect();
+        let mean = |logarithms: Vec<f64>| (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
+        Some(CrossValidation { unseen_nrmse_std_percent: logarithms.map(mean), folds: self.judged, unseen })
+    }
+}
+
 /// Identifies a model on each fold and judges it on what was held out. The observer is as in
-/// [`identify`]; its share of the work done is that of all folds.
+/// [`identify`]; its share of the work done is that of all folds. After it has said stop, the fold under way is
+/// judged with its best model so far, and no further one is begun.
 ///
 /// # Errors
 /// Data too few for two folds, and as [`identify`].
@@ -123,39 +182,105 @@ pub fn cross_validate(
     most_folds: usize,
     observer: &mut Observer<'_>,
 ) -> Result<CrossValidation> {
-    let folds = folds(data, most_folds);
-    if folds.len() < 2 {
-        return Err(Error::Option(format!(
-            "the data are too few to hold any out: at least two records, or one of {} rows",
-            4 * FEWEST_ROWS
-        )));
-    }
-    let mut sums = ErrorSums::default();
-    let mut done = Vec::new();
-    for (place, fold) in folds.iter().enumerate() {
+    let mut validator = CrossValidator::new(data, most_folds)?;
+    let count = validator.folds().len();
+    for place in 0..count {
         let mut stopped = false;
         let mut of_fold = |progress: &Progress| {
-            let share = (place as f64 + progress.done) / folds.len() as f64;
+            let share = (place as f64 + progress.done) / count as f64;
             let flow = observer(&progress.of_part(share));
             stopped = flow.is_break();
             flow
         };
-        let model = identify(&fold.train, request, &mut of_fold)?.model;
-        for record in fold.held_out.records() {
-            sums.add(record.output(), &model.simulate(record)?);
-        }
-        done.push(FoldErrors {
-            held_out: fold.name.clone(),
-            train: model.provenance().train.clone(),
-            unseen: model.evaluate(&fold.held_out)?,
-        });
+        let model = identify(&validator.folds()[place].train, request, &mut of_fold)?.model;
+        validator.judge(place, &model)?;
         if stopped {
             break;
         }
     }
-    let unseen = sums.errors(&data.names().output).expect("every fold has rows to judge on");
-    let logarithms: Option<Vec<f64>> =
-        done.iter().map(|fold| Some(fold.unseen.nrmse_std_percent?.ln())).collect();
-    let mean = |logarithms: Vec<f64>| (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();
-    Ok(CrossValidation { unseen_nrmse_std_percent: logarithms.map(mean), folds: done, unseen })
+    Ok(validator.result().expect("every fold has rows to judge on"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use super::*;
+    use crate::classical::identification::{ClassicalOptions, Rival};
+    use crate::record::ColumnNames;
+
+    /// A play of threshold 0.3 under growing oscillations.
+    fn record(name: &str, rows: usize, size: f64) -> Record {
+        let x: Vec<f64> =
+            (0..rows).map(|k| size * (0.3 * k as f64).sin() * (0.5 + k as f64 / 100.0)).collect();
+        let mut play = 0.0f64;
+        let y = x.iter().map(|x| {
+            play = play.clamp(x - 0.3, x + 0.3);
+            0.5 * x + play
+        });
+        let y = y.collect();
+        Record::new(name, vec![x], y).unwrap()
+    }
+
+    fn data(records: Vec<Record>) -> Dataset {
+        Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, records).unwrap()
+    }
+
+    fn request() -> Request {
+        let options =
+            ClassicalOptions { operators: Some(6), ..ClassicalOptions::of(Rival::PrandtlIshlinskii) };
+        Request::Classical(options)
+    }
+
+    #[test]
+    fn every_record_is_held_out_once() {
+        let all = data((0..5).map(|k| record(&format!("r{k}"), 60, 1.0)).collect());
+        let folds = folds(&all, 2);
+        let names: Vec<&str> = folds.iter().map(|fold| fold.name.as_str()).collect();
+        assert_eq!(names, ["r0, r2, r4", "r1, r3"]);
+        for fold in &folds {
+            assert_eq!(fold.train.records().len() + fold.held_out.records().len(), 5);
+        }
+    }
+
+    /// What is held out of a single record is not among what is fitted to, and the way there is driven.
+    #[test]
+    fn a_single_record_is_cut_in_time() {
+        let one = record("r", 200, 1.0);
+        let folds = folds(&data(vec![one.clone()]), 2);
+        assert_eq!(folds.len(), 5);
+        for fold in &folds {
+            let (train, held_out) = (&fold.train.records()[0], &fold.held_out.records()[0]);
+            let mut judged = 0;
+            for (row, y) in held_out.output().iter().enumerate() {
+                assert_eq!(held_out.inputs()[0][row], one.inputs()[0][row]);
+                if !y.is_nan() {
+                    judged += 1;
+                    assert_eq!(*y, one.output()[row]);
+                    assert!(train.output().get(row).is_none_or(|y| y.is_nan()), "{}: row {row}", fold.name);
+                }
+            }
+            assert!(judged >= 40, "{}: {judged}", fold.name);
+        }
+    }
+
+    #[test]
+    fn the_errors_of_all_folds_are_put_together() {
+        let all = data(vec![record("a", 80, 1.0), record("b", 120, 1.3)]);
+        let found = cross_validate(&all, &request(), 5, &mut |_| ControlFlow::Continue(())).unwrap();
+        let [a, b] = found.folds.as_slice() else { panic!("two folds") };
+        assert_eq!((a.held_out.as_str(), a.unseen.samples, a.train.samples), ("a", 80, 120));
+        let mse = (80.0 * a.unseen.mse + 120.0 * b.unseen.mse) / 200.0;
+        approx::assert_relative_eq!(found.unseen.mse, mse, max_relative = 1e-12);
+        let percent = |fold: &FoldErrors| fold.unseen.nrmse_std_percent.unwrap();
+        let mean = (percent(a) * percent(b)).sqrt();
+        approx::assert_relative_eq!(found.unseen_nrmse_std_percent.unwrap(), mean, max_relative = 1e-12);
+        // It is a Prandtl-Ishlinskii law, and is found as one.
+        assert!(mean < 5.0, "{mean}");
+
+        let by_hand =
+            identify(&data(vec![record("b", 120, 1.3)]), &request(), &mut |_| ControlFlow::Continue(()));
+        assert_eq!(by_hand.unwrap().model.evaluate(&data(vec![record("a", 80, 1.0)])).unwrap(), a.unseen);
+        assert!(CrossValidator::new(&data(vec![record("r", 30, 1.0)]), 5).is_err());
+    }
 }

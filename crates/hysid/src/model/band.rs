@@ -8,6 +8,8 @@
 //! agree. The factors `q(p)` are quantiles of what was found on rows that the members had not seen: split
 //! conformal prediction. They are kept apart for rows inside the trained range and beyond it.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -15,6 +17,9 @@ use crate::model::ensemble::Votes;
 
 /// Probabilities that the factors are kept for.
 const LEVELS: [f64; 10] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.975, 0.99];
+
+/// Probabilities that a band can be asked for.
+pub const BAND_PROBABILITIES: RangeInclusive<f64> = LEVELS[0]..=LEVELS[LEVELS.len() - 1];
 
 /// A calibrated band.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +44,17 @@ pub struct Prediction {
     pub low: Vec<f64>,
     /// Upper edge.
     pub high: Vec<f64>,
+}
+
+impl Prediction {
+    /// How many of the rows with a measured output (not NaN) lie within the band, and how many there are.
+    pub fn covered(&self, measured: &[f64]) -> (usize, usize) {
+        let edges = self.low.iter().zip(&self.high);
+        let scored = measured.iter().zip(edges).filter(|(y, _)| !y.is_nan());
+        scored.fold((0, 0), |(covered, all), (y, (low, high))| {
+            (covered + usize::from((low..=high).contains(&y)), all + 1)
+        })
+    }
 }
 
 /// What was found on a row held out.
@@ -103,10 +119,10 @@ impl Band {
 
     /// Refuses a probability that the band was not calibrated for.
     pub(crate) fn check(level: f64) -> Result<()> {
-        let (least, most) = (LEVELS[0], LEVELS[LEVELS.len() - 1]);
-        if (least..=most).contains(&level) {
+        if BAND_PROBABILITIES.contains(&level) {
             return Ok(());
         }
+        let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
         Err(Error::Option(format!("a band of {level}: choose a probability from {least} to {most}")))
     }
 
@@ -127,4 +143,35 @@ fn factor(factors: &[f64], level: f64) -> f64 {
     let above = LEVELS.iter().position(|known| *known >= level).unwrap_or(LEVELS.len() - 1).max(1);
     let share = (level - LEVELS[above - 1]) / (LEVELS[above] - LEVELS[above - 1]);
     factors[above - 1] + share.clamp(0.0, 1.0) * (factors[above] - factors[above - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_within_are_counted_with_the_edges_and_without_blanks() {
+        let (output, low, high) = (vec![0.0; 5], vec![-1.0; 5], vec![1.0, 2.0, 3.0, 4.0, 5.0]);
+        let predicted = Prediction { output, low, high };
+        assert_eq!(predicted.covered(&[1.0, 2.1, f64::NAN, -1.0, -1.1]), (2, 4));
+    }
+
+    /// Errors of 1 to 200, all members agree: the floor is half the median, and a band of 90 % has half the
+    /// width that nine in ten errors stay below.
+    #[test]
+    fn a_band_is_as_wide_as_the_errors_that_were_found() {
+        let row = |error: f64| HeldOutRow { error, disagreement: 0.0, outside: 0.0, weight: 1.0 };
+        let rows: Vec<HeldOutRow> =
+            (1..=200).map(|k| row(if k % 2 == 0 { f64::from(k) } else { -f64::from(k) })).collect();
+        let band = Band::calibrate(&rows).unwrap();
+        assert_eq!(band.rows(), (200, 0));
+        assert!((band.floor - 0.5 * 100.5).abs() < 1e-12, "{}", band.floor);
+        // Each vote stands at the middle of its weight: 180.5 votes below is between 180 and 181.
+        let half = band.half_width(0.9, 0.0, 0.0);
+        assert!((half - 180.5).abs() < 1e-9, "{half}");
+        assert_eq!(band.half_width(0.9, 0.0, 1.0), half, "nothing is known of the outside");
+        assert!((band.half_width(0.9, 2.0 * band.floor, 0.0) - half * 5f64.sqrt()).abs() < 1e-9);
+        assert_eq!(Band::calibrate(&rows[..19]), None);
+        assert!(Band::check(0.9).is_ok() && Band::check(0.995).is_err() && Band::check(f64::NAN).is_err());
+    }
 }
