@@ -27,7 +27,7 @@ Commands:
   cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]
             [-- ARG..]
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
-                 training errors, seconds. LIST, time limit and ARG are passed on to it; a case that takes longer
+                 training errors, seconds, what auto chose. LIST, time limit and ARG are passed on to it; a case that takes longer
                  than its limit is given up; HYSID takes the place of the release build
   generate-cases DIR [--count NUMBER] [--seed NUMBER]
                  writes folders with train.csv and test.csv for `cases`: laws with parameters of their own, driven as

@@ -26,6 +26,8 @@ pub struct Figures {
     pub train: Option<f64>,
     /// Seconds it took to fit.
     pub seconds: Option<f64>,
+    /// What the model is made of, in words.
+    pub structure: Option<String>,
 }
 
 /// Reads the list.
@@ -47,6 +49,7 @@ fn answer(object: &Value) -> Result<Answer, String> {
             test: nrmse("test"),
             train: nrmse("train"),
             seconds: object["fit_seconds"].as_f64(),
+            structure: object["structure"].as_str().map(str::to_owned),
         }),
         Value::String(error) => Err(error.clone()),
         error => Err(error.to_string()),
@@ -62,14 +65,22 @@ mod tests {
     fn figures_errors_and_unknown_fields() {
         let text = r#"[
             {"model": "pnn", "parameters": 20, "error": null, "fit_seconds": 0.5, "later": [1],
-             "train": {"samples": 9, "nrmse_std_percent": 1.5}, "test": {"nrmse_std_percent": 2.5}},
-            {"model": "xpnn", "train": {"nrmse_std_percent": 1}, "test": {"nrmse_std_percent": null}},
+             "train": {"samples": 9, "nrmse_std_percent": 1.5}, "test": {"nrmse_std_percent": 2.5},
+             "structure": "10 stops"},
+            {"model": "xpnn", "train": {"nrmse_std_percent": 1}, "test": {"nrmse_std_percent": null},
+             "structure": null},
             {"model": "bouc-wen", "error": "takes one input, not 2"}
         ]"#;
         let answer = |model: &str, figures| Answer { model: model.into(), figures };
+        let pnn = Figures {
+            test: Some(2.5),
+            train: Some(1.5),
+            seconds: Some(0.5),
+            structure: Some("10 stops".into()),
+        };
         let expected = [
-            answer("pnn", Ok(Figures { test: Some(2.5), train: Some(1.5), seconds: Some(0.5) })),
-            answer("xpnn", Ok(Figures { test: None, train: Some(1.0), seconds: None })),
+            answer("pnn", Ok(pnn)),
+            answer("xpnn", Ok(Figures { train: Some(1.0), ..Figures::default() })),
             answer("bouc-wen", Err("takes one input, not 2".into())),
         ];
         assert_eq!(parse(text).unwrap(), expected);

@@ -1,7 +1,7 @@
 //! The tables as a page in Markdown, with where they come from.
 
 use super::answer::Case;
-use super::table::{Measure, Reasons, table};
+use super::table::{Measure, Reasons, in_words, row, table};
 
 /// The tables under their headings.
 const TABLES: [(&str, Measure); 3] = [
@@ -9,6 +9,9 @@ const TABLES: [(&str, Measure); 3] = [
     ("Training: NRMSE of a free run, % of std", |figures| figures.train),
     ("Seconds to fit", |figures| figures.seconds),
 ];
+
+/// The model that chooses what it is made of.
+const CHOOSES: &str = "auto";
 
 /// All that is known so far.
 pub struct Page {
@@ -51,7 +54,22 @@ impl Page {
         if !reasons.is_empty() {
             sections[0] += &format!("\nWhy cells are empty:\n\n{reasons}");
         }
-        sections.join("\n")
+        sections.join("\n") + &self.structures()
+    }
+
+    /// What was chosen in each case by the model that chooses; empty without it.
+    fn structures(&self) -> String {
+        let chosen = |case: &Case| -> Option<Vec<String>> {
+            let answer = case.outcome.as_ref().ok()?.iter().find(|answer| answer.model == CHOOSES)?;
+            let structure = answer.figures.as_ref().ok()?.structure.clone()?;
+            Some(row(&case.name, &[structure]))
+        };
+        let rows: Vec<Vec<String>> = self.cases.iter().filter_map(chosen).collect();
+        if rows.is_empty() {
+            return String::new();
+        }
+        let heading = row("case", &["chosen"]);
+        format!("\n## What {CHOOSES} chose\n\n{}", in_words(&[vec![heading], rows].concat()))
     }
 }
 
@@ -66,9 +84,9 @@ mod tests {
         let typed = ["my data", "--models", "pnn,xpnn", "--program", "hysid"];
         let request = Request::parse(&typed, &OPTIONS).unwrap();
         let mut page = Page::new(origin("cases", &request, "hysid 9.8.7"), 2);
-        let figures = Ok(Figures { test: Some(2.0), train: Some(1.0), seconds: Some(0.5) });
+        let figures = Figures { test: Some(2.0), train: Some(1.0), seconds: Some(0.5), ..Figures::default() };
         let answer = |figures| Answer { model: "pnn".into(), figures };
-        page.cases.push(Case { name: "a".into(), outcome: Ok(vec![answer(figures)]) });
+        page.cases.push(Case { name: "a".into(), outcome: Ok(vec![answer(Ok(figures))]) });
         let text = page.text();
         assert!(text.contains(", hysid 9.8.7:\n"), "{text}");
         assert!(text.contains("cargo xtask cases 'my data' --models pnn,xpnn --program hysid\n"), "{text}");
@@ -83,5 +101,24 @@ mod tests {
         assert!(text.contains("\n2 cases, each"), "{text}");
         assert_eq!(text.matches("1. diverged\n").count(), 1, "told once, below the first table: {text}");
         assert_eq!(text.matches(" – (1) |\n").count(), 3, "{text}");
+    }
+    #[test]
+    fn what_was_chosen_has_a_table_of_its_own() {
+        let request = Request::parse(&["data"], &OPTIONS).unwrap();
+        let mut page = Page::new(origin("cases", &request, "hysid 9.8.7"), 2);
+        let answer = |model: &str, structure: &str| {
+            let figures = Figures { structure: Some(structure.into()), ..Figures::default() };
+            Answer { model: model.into(), figures: Ok(figures) }
+        };
+        let case = |name: &str, answers| Case { name: name.into(), outcome: Ok(answers) };
+        page.cases.push(case("a", vec![answer("pnn", "10 stops")]));
+        assert!(!page.text().contains("chose"));
+        page.cases
+            .push(case("steel", vec![answer("pnn", "10 stops"), answer("auto", "3 of xpnn | 2 of gpnn")]));
+        let expected = "\n## What auto chose\n\n\
+            | case  | chosen                 |\n\
+            | ----- | ---------------------- |\n\
+            | steel | 3 of xpnn \\| 2 of gpnn |\n";
+        assert!(page.text().ends_with(expected), "{}", page.text());
     }
 }

@@ -129,16 +129,27 @@ pub fn row(name: &str, cells: &[impl AsRef<str>]) -> Vec<String> {
 
 /// Rows as a Markdown table, the first as its heading; columns of equal width, numbers to the right.
 pub fn aligned(rows: &[Vec<String>]) -> String {
+    markdown(rows, true)
+}
+
+/// The same of words, which stand to the left.
+pub fn in_words(rows: &[Vec<String>]) -> String {
+    markdown(rows, false)
+}
+
+fn markdown(rows: &[Vec<String>], numbers: bool) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(|column| width(column).max(3)).collect();
     let rule = widths.iter().enumerate().map(|(column, &width)| match column {
         0 => "-".repeat(width),
+        _ if !numbers => "-".repeat(width),
         _ => format!("{}:", "-".repeat(width - 1)),
     });
     let lines = rows.iter().map(|row| {
         let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
             0 => format!("{cell:<width$}"),
+            _ if !numbers => format!("{cell:<width$}"),
             _ => format!("{cell:>width$}"),
         });
         line(cells)
