@@ -1,5 +1,6 @@
 //! A record that every model can be fitted to, and requests small enough that all of them are quick.
 
+use hysid::automatic::AutoOptions;
 use hysid::classical::identification::ClassicalOptions;
 use hysid::identification::{ModelName, Request};
 use hysid::network::Sizes;
@@ -33,6 +34,8 @@ pub fn small(model: ModelName, rate: Option<RateMethod>) -> Request {
             epochs: options.model.is_searched().then_some(6),
             ..options
         }),
-        Request::Auto(_) => unreachable!("no single model is asked for"),
+        Request::Auto(options) => {
+            Request::Auto(AutoOptions { members: 6, starts: 2, epochs: Some(3), ..options })
+        }
     }
 }
