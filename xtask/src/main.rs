@@ -6,6 +6,7 @@ mod check;
 mod files;
 mod generate_cases;
 mod program;
+mod python;
 mod test;
 mod tidy;
 mod verdicts;
@@ -21,7 +22,7 @@ Usage: cargo xtask COMMAND
 
 Commands:
   check          formatting, lints, documentation, tidiness
-  test           every test of the workspace
+  test           every test of the workspace, and of the Python package in an environment of its own
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
   cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]

@@ -35,10 +35,13 @@ fn interrupted() -> bool {
 /// The release build of the program.
 pub fn build() -> Result<PathBuf> {
     cargo(&["build", "--release", "--locked", "--package", "hysid-cli"], &[])?;
-    // We lie in a folder of cargo's target folder ourselves, wherever that was put.
+    Ok(target()?.join("release").join(format!("hysid{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Cargo's target folder: we lie in a folder of it ourselves, wherever it was put.
+pub fn target() -> Result<PathBuf> {
     let xtask = std::env::current_exe().context("the path of xtask is unknown")?;
-    let target = xtask.parent().and_then(Path::parent).context("xtask lies in no target folder")?;
-    Ok(target.join("release").join(format!("hysid{}", std::env::consts::EXE_SUFFIX)))
+    Ok(xtask.parent().and_then(Path::parent).context("xtask lies in no target folder")?.to_path_buf())
 }
 
 /// What the program says of its version.

@@ -1,15 +1,16 @@
 //! `cargo xtask test`: every test there is, one step after the other. A step that needs something installed
-//! installs it first, so that a fresh clone needs nothing but a Rust toolchain.
+//! installs it first, so that a fresh clone needs nothing but a Rust toolchain, and Python for the package.
 
 use anyhow::Result;
 
-use crate::cargo;
+use crate::{cargo, python};
 
 pub fn run() -> Result<()> {
-    rust()
+    rust()?;
+    python::test()
 }
 
-/// Unit, integration and documentation tests. They need nothing beyond cargo.
+/// Unit, integration and documentation tests. They need nothing beyond cargo. The Python package has its own.
 fn rust() -> Result<()> {
-    cargo(&["test", "--workspace", "--locked"], &[])
+    cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &[])
 }

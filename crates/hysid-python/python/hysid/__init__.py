@@ -1,0 +1,68 @@
+"""Identification of hysteresis: measured input and output in, a small, stable model out.
+
+`fit` identifies a `Model`, `diagnose` tells what kind of hysteresis data have, `compare` sets all models side by
+side. `operators` and `classical` are the field's laws as functions on arrays, `specimens` what to try them on.
+`HysteresisRegressor` is the estimator for scikit-learn, `plot` draws with matplotlib; both are looked for when they
+are first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from hysid import _hysid, classical, operators
+from hysid._comparison import Compared, Comparison, compare
+from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
+from hysid._fitting import Progress, fit
+from hysid._minimiser import Minimum, minimise
+from hysid._warning import HysidWarning
+from hysid.model import Errors, Model, Stepper
+from hysid.progress import tqdm_progress
+from hysid.specimens import Records, Specimen, specimen, specimens
+
+if TYPE_CHECKING:
+    from hysid import plot
+    from hysid.regressor import HysteresisRegressor
+
+__version__: str = _hysid.__version__
+
+models: tuple[str, ...] = tuple(_hysid.model_names())
+"""Names of all models, the networks first."""
+
+__all__ = [
+    "Compared",
+    "Comparison",
+    "Diagnosis",
+    "Errors",
+    "Finding",
+    "HysidWarning",
+    "HysteresisRegressor",
+    "Minimum",
+    "Model",
+    "ModelDiagnosis",
+    "Progress",
+    "Records",
+    "Specimen",
+    "Stepper",
+    "classical",
+    "compare",
+    "diagnose",
+    "fit",
+    "minimise",
+    "models",
+    "operators",
+    "plot",
+    "specimen",
+    "specimens",
+    "tqdm_progress",
+]
+
+
+def __getattr__(name: str) -> Any:
+    # Scikit-learn and matplotlib take longer to import than all the rest.
+    if name == "HysteresisRegressor":
+        return import_module("hysid.regressor").HysteresisRegressor
+    if name == "plot":
+        return import_module("hysid.plot")
+    raise AttributeError(f"module 'hysid' has no attribute {name!r}")

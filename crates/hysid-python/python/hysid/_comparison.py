@@ -1,0 +1,227 @@
+"""Models side by side."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from hysid import _hysid
+from hysid._data import columns
+from hysid._fitting import identified
+from hysid._warning import HysidWarning
+from hysid.model import Errors, Model
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from hysid._data import Columns
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A model of a comparison, or why there is none.
+
+    Attributes
+    ----------
+    name : str
+        Which model.
+    model : Model or None
+        The fitted model.
+    train, test : Errors or None
+        Errors of free runs on the data fitted to, and on data that it has not seen.
+    fit_seconds : float or None
+        Seconds on one thread.
+    error : str or None
+        Why there is no model.
+    """
+
+    name: str
+    model: Model | None = None
+    train: Errors | None = None
+    test: Errors | None = None
+    fit_seconds: float | None = None
+    error: str | None = None
+
+    @property
+    def judged(self) -> float:
+        """Error on unseen data, on the training data if there are no others, in percent of std."""
+        errors = self.test or self.train
+        percent = None if errors is None else errors.nrmse_std_percent
+        return float("inf") if percent is None else percent
+
+
+class Comparison(Sequence[Compared]):
+    """Models side by side, the lowest error on unseen data first."""
+
+    def __init__(self, rows: list[Compared]) -> None:
+        self._rows = sorted(rows, key=lambda row: row.judged)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._rows[place]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def best(self) -> Model:
+        """The model with the lowest error."""
+        model: Model | None = self._rows[0].model
+        if model is None:
+            raise ValueError("no model could be fitted")
+        return model
+
+    def to_frame(self) -> Any:
+        """Give the comparison as a pandas DataFrame.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each model.
+        """
+        import pandas
+
+        return pandas.DataFrame(self.cells())
+
+    def cells(self) -> list[dict[str, Any]]:
+        """Give the comparison as a list of plain rows.
+
+        Returns
+        -------
+        list of dict
+            Errors in percent of the output's standard deviation.
+        """
+        return [
+            {
+                "model": row.name,
+                "unseen_percent": None if row.test is None else row.test.nrmse_std_percent,
+                "train_percent": None if row.train is None else row.train.nrmse_std_percent,
+                "parameters": None if row.model is None else row.model.parameters,
+                "fit_seconds": row.fit_seconds,
+                "error": row.error,
+            }
+            for row in self._rows
+        ]
+
+    def __str__(self) -> str:
+        lines = [f"{'model':<34}{'unseen %':>9}{'train %':>9}{'parameters':>11}{'fit s':>8}"]
+        for row in self.cells():
+            if row["error"] is not None:
+                lines.append(f"{row['model']:<34} {row['error']}")
+                continue
+            errors = "".join(
+                f"{'' if row[name] is None else format(row[name], '.3g'):>9}"
+                for name in ("unseen_percent", "train_percent")
+            )
+            lines.append(f"{row['model']:<34}{errors}{row['parameters']:>11}{row['fit_seconds']:>8.2g}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        from hysid._html import comparison_html
+
+        return comparison_html(self.cells())
+
+
+def compare(
+    x: ArrayLike,
+    y: ArrayLike,
+    time: ArrayLike | None = None,
+    rate: str | ArrayLike = "auto",
+    records: ArrayLike | None = None,
+    *,
+    test: Any = None,
+    models: Sequence[str] | None = None,
+    time_limit: float = 20.0,
+    seed: int | None = None,
+    threads: int | None = None,
+) -> Comparison:
+    """Fit every model to the same data, and judge them on data that none has seen.
+
+    Parameters
+    ----------
+    x, y, time, rate, records
+        Data to fit to, as of `hysid.fit`.
+    test : tuple, dict or Records, optional
+        Data that no model sees: x, y, and time, rate, records where there are any. Without it, errors are
+        those of the training.
+    models : sequence of str, optional
+        Names of the models; all of `hysid.models` by default.
+    time_limit : float
+        Seconds for each model, after which its search ends with what it has.
+    seed : int, optional
+        Seed of all randomness.
+    threads : int, optional
+        Models fitted at a time, each on one thread; one for each processor by default.
+
+    Returns
+    -------
+    Comparison
+        The lowest error on unseen data first.
+
+    Examples
+    --------
+    >>> import hysid
+    >>> train, test = hysid.specimen("terfenol-rod").data()
+    >>> chosen = ["prandtl-ishlinskii", "generalized-prandtl-ishlinskii"]
+    >>> comparison = hysid.compare(train.x, train.y, test=test, models=chosen)
+    >>> comparison[0].name
+    'generalized-prandtl-ishlinskii'
+    """
+    import os
+
+    named = isinstance(rate, str)
+    arranged = columns(x, y, time, None if named else rate, records)
+    unseen = None if test is None else columns(*_parts(test))
+    names = _hysid.model_names() if models is None else list(models)
+    for name in names:
+        if name not in (*_hysid.model_names(), "epnn"):
+            raise ValueError(f"model `{name}` is unknown: choose one of {', '.join(_hysid.model_names())}")
+
+    def row(name: str) -> Compared:
+        return _compared(name, arranged, unseen, str(rate) if named else "given", seed, time_limit)
+
+    workers = threads or os.cpu_count() or 1
+    with ThreadPoolExecutor(min(workers, max(1, len(names)))) as pool, warnings.catch_warnings():
+        warnings.simplefilter("ignore", HysidWarning)
+        try:
+            return Comparison(list(pool.map(row, names)))
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def _compared(
+    name: str,
+    arranged: Columns,
+    unseen: Columns | None,
+    rate: str,
+    seed: int | None,
+    time_limit: float,
+) -> Compared:
+    began = perf_counter()
+    try:
+        options = {"model": name, "seed": seed}
+        model = identified(arranged, rate, options, time_limit=time_limit, threads=1)
+        seconds = perf_counter() - began
+        test = None if unseen is None else model._evaluated(unseen)
+    except ValueError as error:
+        return Compared(name, error=str(error))
+    return Compared(model.name, model, model.train, test, seconds)
+
+
+def _parts(test: Any) -> tuple[Any, ...]:
+    """x, y, time, rate, records."""
+    order = ("x", "y", "time", "rate", "records")
+    if isinstance(test, dict):
+        unknown = set(test) - set(order)
+        if unknown or not {"x", "y"} <= set(test):
+            raise ValueError(f"test: a dict with the keys {', '.join(order)} is needed")
+        return tuple(test.get(name) for name in order)
+    if isinstance(test, (tuple, list)):
+        if not 2 <= len(test) <= 5:
+            raise ValueError(f"test: {', '.join(order)} are needed, at least the first two")
+        return (*test, *[None] * (5 - len(test)))
+    return tuple(getattr(test, name, None) for name in order)

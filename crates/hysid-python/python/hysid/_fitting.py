@@ -1,0 +1,242 @@
+"""Identification."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from hysid import _hysid
+from hysid._data import columns
+from hysid._warning import warn
+from hysid.model import Model
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from hysid._data import Columns
+
+
+class Progress(NamedTuple):
+    """Where a fit is.
+
+    Attributes
+    ----------
+    done : float
+        Share of the work done, 0 to 1, if every start takes all its epochs.
+    train_nrmse_percent : float
+        Error on the training rows, in percent of the output's standard deviation.
+    start : int
+        Start, counted from 0.
+    epoch : int
+        Epochs done by this start in this phase.
+    phase : str
+        ``"starts"`` or ``"all-data"``.
+    """
+
+    done: float
+    train_nrmse_percent: float
+    start: int
+    epoch: int
+    phase: str
+
+
+def fit(
+    x: ArrayLike,
+    y: ArrayLike,
+    time: ArrayLike | None = None,
+    rate: str | ArrayLike = "auto",
+    records: ArrayLike | None = None,
+    *,
+    model: str | None = None,
+    stops: int | None = None,
+    hidden: int | None = None,
+    relaxation: int | None = None,
+    no_deterioration: bool | None = None,
+    training: str | None = None,
+    starts: int | None = None,
+    epochs: int | None = None,
+    population: int | None = None,
+    stall: int | None = None,
+    seed: int | None = None,
+    validation: float | None = None,
+    operators: int | None = None,
+    thresholds: ArrayLike | None = None,
+    sign: str | None = None,
+    dead_zones: int | None = None,
+    free_weights: bool | None = None,
+    logarithmic_thresholds: bool | None = None,
+    degradation: bool | None = None,
+    differential_form: bool | None = None,
+    time_limit: float | None = None,
+    threads: int | None = None,
+    progress: Callable[[Progress], object] | None = None,
+) -> Model:
+    """Identify a model from measured data.
+
+    Every option has the name that it has on the command line of the program `hysid`; ``None`` is its default.
+    The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the fit, warns, and
+    returns the best model so far.
+
+    Parameters
+    ----------
+    x : array of shape (n,) or (n, inputs)
+        The inputs in the user's units; a pandas object gives its names to the model.
+    y : array of shape (n,)
+        The measured output in the user's unit. NaN is a blank: such a row drives the memory, and is neither
+        trained on nor scored.
+    time : array of shape (n,), optional
+        Time stamps, increasing within each record.
+    rate : str or array of shape (n,), default "auto"
+        How the rate of the first input is found: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
+        ``"savitzky-golay"``, or the measured rate itself.
+    records : array of shape (n,), optional
+        A label for each row: the memory starts afresh where the label changes.
+    model : str, optional
+        A network: pnn, gpnn, preisach-nn, xpnn or xpnn+; or another model, see `hysid.models`.
+    stops, hidden, relaxation : int, optional
+        Stop neurons, tanh neurons, and relaxation neurons of each input.
+    no_deterioration : bool, optional
+        Stops do not deteriorate, whatever the family.
+    training : str, optional
+        levenberg-marquardt, hybrid, genetic or subgradient.
+    starts, epochs : int, optional
+        Random starts, and epochs of each.
+    population, stall : int, optional
+        Individuals of the genetic algorithm, and epochs without noticeable improvement after which genetic
+        algorithm or sub-gradient method end.
+    seed : int, optional
+        Seed of all randomness.
+    validation : float, optional
+        Share of the data held out to choose among the starts, between 0 and 1.
+    operators : int, optional
+        Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops.
+    thresholds : array, optional
+        Thresholds of plays in the unit of the input.
+    sign : str, optional
+        Sign of the weights of plays or cells: any, non-negative or non-positive.
+    dead_zones : int, optional
+        Dead zones on each side of modified-prandtl-ishlinskii.
+    free_weights, logarithmic_thresholds, degradation, differential_form : bool, optional
+        Variants of the classical models, as on the command line.
+    time_limit : float, optional
+        Seconds after which to stop and keep the best model so far.
+    threads : int, optional
+        Threads to use; the model does not depend on it. One for each processor by default.
+    progress : callable, optional
+        Called with a `Progress` up to twenty times a second; the fit ends with the best model so far if it
+        returns something true. `hysid.tqdm_progress` makes one that shows a bar.
+
+    Returns
+    -------
+    Model
+        The fitted model.
+
+    Raises
+    ------
+    ValueError
+        Data that nothing can be identified from, or an option outside its meaning.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import hysid
+    >>> x = np.linspace(0, 6, 600) * np.sin(np.linspace(0, 60, 600))
+    >>> y = 0.2 * x + hysid.operators.stop(x, r=1.0)
+    >>> model = hysid.fit(x, y, model="prandtl-ishlinskii", operators=8)
+    >>> model.evaluate(x, y).nrmse_std_percent < 5
+    True
+    """
+    given = dict(
+        model=model,
+        stops=stops,
+        hidden=hidden,
+        relaxation=relaxation,
+        no_deterioration=no_deterioration,
+        training=training,
+        starts=starts,
+        epochs=epochs,
+        population=population,
+        stall=stall,
+        seed=seed,
+        validation=validation,
+        operators=operators,
+        thresholds=thresholds,
+        sign=sign,
+        dead_zones=dead_zones,
+        free_weights=free_weights,
+        logarithmic_thresholds=logarithmic_thresholds,
+        degradation=degradation,
+        differential_form=differential_form,
+    )
+    named = isinstance(rate, str)
+    arranged = columns(x, y, time, None if named else rate, records)
+    return identified(
+        arranged,
+        str(rate) if named else "given",
+        given,
+        time_limit=time_limit,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def identified(
+    arranged: Columns,
+    rate: str,
+    options: dict[str, Any],
+    *,
+    time_limit: float | None,
+    threads: int | None,
+    progress: Callable[[Progress], object] | None = None,
+) -> Model:
+    """Fits, warns before and after, and gives the model."""
+    if rate in ("given", "none", "auto") or arranged.time is not None:
+        pass
+    elif rate in ("central", "backward", "savitzky-golay"):
+        raise ValueError("there is no time to take the rate from (give time, or use rate='none')")
+    if threads is not None and not 1 <= threads <= 1024:
+        raise ValueError(f"threads {threads}: choose 1 to 1024")
+    data = arranged.dataset()
+    request = _hysid.Request(as_json(options), rate, data)
+    warn(request.warnings() + data.warnings())
+    tell = None if progress is None else _Teller(progress)
+    try:
+        native, _, interrupted = _hysid.identify(data, request, threads, time_limit, tell)
+    finally:
+        close = getattr(progress, "close", None)
+        if close is not None:
+            close()
+    if interrupted:
+        warn(["interrupted: this is the best model so far"])
+    return Model(native)
+
+
+class _Teller:
+    """Calls a user's callback with a `Progress`."""
+
+    def __init__(self, callback: Callable[[Progress], object]) -> None:
+        self.callback = callback
+
+    def __call__(self, *told: Any) -> object:
+        return self.callback(Progress(*told))
+
+
+def as_json(options: dict[str, Any]) -> str:
+    """Options as the native module takes them; what was left out has its default."""
+    given = {name: _plain(value) for name, value in options.items() if value is not None}
+    try:
+        return json.dumps(given)
+    except TypeError as error:
+        raise ValueError(f"an option cannot be used: {error}") from None
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers and arrays as Python's."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return list(value) if isinstance(value, tuple) else value

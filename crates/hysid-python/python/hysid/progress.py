@@ -1,0 +1,42 @@
+"""Progress of a fit on the screen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hysid._fitting import Progress
+
+__all__ = ["tqdm_progress"]
+
+_STEPS = 1000
+
+
+class tqdm_progress:  # noqa: N801 - used like a function
+    """A progress bar for `hysid.fit`, in a terminal or a notebook; needs tqdm.
+
+    Parameters
+    ----------
+    **options
+        Passed on to tqdm.
+
+    Examples
+    --------
+    >>> import hysid
+    >>> train, _ = hysid.specimen("terfenol-rod").data()
+    >>> bar = hysid.tqdm_progress(disable=True)
+    >>> model = hysid.fit(train.x, train.y, model="pnn", starts=1, epochs=2, progress=bar)
+    """
+
+    def __init__(self, **options: Any) -> None:
+        from tqdm.auto import tqdm
+
+        self._bar = tqdm(**{"total": _STEPS, "unit": "‰", "leave": False, **options})
+
+    def __call__(self, progress: Progress) -> None:
+        self._bar.set_postfix_str(f"error {progress.train_nrmse_percent:.3g} % of std", refresh=False)
+        self._bar.update(max(0, int(_STEPS * progress.done) - self._bar.n))
+
+    def close(self) -> None:
+        """Take the bar away."""
+        self._bar.close()

@@ -1,0 +1,158 @@
+"""Synthetic specimens: laws that are known, to learn with and to test against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hysid import _hysid
+
+__all__ = ["Records", "Specimen", "specimen", "specimens"]
+
+
+@dataclass(frozen=True)
+class Records:
+    """Measured data, or such as could have been.
+
+    Attributes
+    ----------
+    x, y : array of shape (n,)
+        Input and output; NaN in `y` is a blank.
+    time : array of shape (n,) or None
+        Time stamps.
+    records : array of shape (n,)
+        The name of each row's record.
+    names : dict
+        Names of the columns with their units: ``input``, ``output``, ``time``.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    time: np.ndarray | None
+    records: np.ndarray
+    names: dict[str, str]
+
+    def frame(self) -> Any:
+        """Give them as a pandas DataFrame.
+
+        Returns
+        -------
+        pandas.DataFrame
+            With the columns ``record``, time if there is any, input and output, by their names.
+        """
+        import pandas
+
+        content: dict[str, Any] = {"record": self.records}
+        if self.time is not None:
+            content[self.names["time"]] = self.time
+        return pandas.DataFrame({**content, self.names["input"]: self.x, self.names["output"]: self.y})
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """A synthetic specimen: where its law comes from, and data to train and to test on.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    example : str
+        The example of the paper that it stands for.
+    summary : str
+        What it is, in one line.
+    published, designed : str
+        Which laws and values are published, and which are ours.
+    training, testing : str
+        How the data are made.
+    """
+
+    name: str
+    example: str
+    summary: str
+    published: str
+    designed: str
+    training: str
+    testing: str
+
+    def data(self, noise: float = 0.0, seed: int = 1) -> tuple[Records, Records]:
+        """Make its data: as `hysid generate` writes them.
+
+        Parameters
+        ----------
+        noise : float
+            Deviation of Gaussian noise on the output, in percent of the output's own standard deviation.
+        seed : int
+            Seed of the noise; training and test data get different noise from the same seed.
+
+        Returns
+        -------
+        train, test : Records
+            The test data are never trained on. Where they begin with blank outputs, the input of those rows
+            only brings the memory to where the test begins.
+        """
+        return self._records(False, noise, seed), self._records(True, noise, seed)
+
+    def _records(self, test: bool, noise: float, seed: int) -> Records:
+        data = _hysid.specimen(self.name, test, noise, seed)
+        time_name, (input_name,), _, output_name = data.names()
+        parts = data.records()
+        names = {"input": input_name, "output": output_name}
+        if time_name is not None:
+            names["time"] = time_name
+        stamps = [time for _, time, _, _, _ in parts if time is not None]
+        return Records(
+            x=np.concatenate([inputs[0] for _, _, inputs, _, _ in parts]),
+            y=np.concatenate([output for _, _, _, _, output in parts]),
+            time=np.concatenate(stamps) if stamps else None,
+            records=np.concatenate([np.full(len(output), name) for name, _, _, _, output in parts]),
+            names=names,
+        )
+
+
+def specimens() -> list[Specimen]:
+    """Give all specimens, in the order of the paper's examples.
+
+    Returns
+    -------
+    list of Specimen
+        Each with what is known about it.
+
+    Examples
+    --------
+    >>> [specimen.name for specimen in hysid.specimens()][:2]
+    ['ferromagnet', 'reinforced-concrete-joint']
+    """
+    return [Specimen(*described) for described in _hysid.specimens()]
+
+
+def specimen(name: str) -> Specimen:
+    """Give the specimen of this name.
+
+    Parameters
+    ----------
+    name : str
+        One of `specimens`.
+
+    Returns
+    -------
+    Specimen
+        It makes data to train and to test on.
+
+    Raises
+    ------
+    ValueError
+        There is none of this name.
+
+    Examples
+    --------
+    >>> train, test = hysid.specimen("piezo-actuator").data(noise=1.0)
+    >>> train.x.shape == train.y.shape
+    True
+    """
+    for known in specimens():
+        if known.name == name:
+            return known
+    names = ", ".join(known.name for known in specimens())
+    raise ValueError(f"specimen `{name}` is unknown: choose one of {names}")

@@ -1,0 +1,89 @@
+//! Measured data.
+
+use std::sync::Arc;
+
+use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
+use hysid::record::{self, ColumnNames, Record};
+use hysid::summary::Summary;
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+
+use crate::failure::refused;
+
+/// A column, read where it lies.
+pub type Column<'py> = PyReadonlyArray1<'py, f64>;
+
+/// A column of its own.
+pub type NewColumn<'py> = Bound<'py, PyArray1<f64>>;
+
+/// Names of time, inputs, rate and output.
+type Names = (Option<String>, Vec<String>, Option<String>, String);
+
+/// A record: name, time, inputs, rate, output.
+type Parts<C> = (String, Option<C>, Vec<C>, Option<C>, C);
+
+/// Records of the same channels.
+#[pyclass(frozen, module = "hysid._hysid")]
+pub struct Dataset {
+    pub set: Arc<record::Dataset>,
+}
+
+#[pymethods]
+impl Dataset {
+    #[new]
+    fn new(names: Names, records: Vec<Parts<Column<'_>>>) -> PyResult<Self> {
+        let (time, inputs, rate, output) = names;
+        let records = records.into_iter().map(record).collect::<PyResult<_>>()?;
+        let names = ColumnNames { time, inputs, rate, output };
+        let set = record::Dataset::new(names, records).map_err(refused)?;
+        Ok(Self { set: Arc::new(set) })
+    }
+
+    /// The names, as the constructor takes them.
+    fn names(&self) -> Names {
+        let ColumnNames { time, inputs, rate, output } = self.set.names().clone();
+        (time, inputs, rate, output)
+    }
+
+    /// The records, as the constructor takes them.
+    fn records<'py>(&self, py: Python<'py>) -> Vec<Parts<NewColumn<'py>>> {
+        let column = |values: &[f64]| PyArray1::from_slice(py, values);
+        let parts = |record: &Record| {
+            let inputs = record.inputs().iter().map(|input| column(input)).collect();
+            let (time, rate) = (record.time().map(column), record.given_rate().map(column));
+            (record.name().to_owned(), time, inputs, rate, column(record.output()))
+        };
+        self.set.records().iter().map(parts).collect()
+    }
+
+    /// What to know before training on these data.
+    fn warnings(&self) -> Vec<String> {
+        let summary = Summary::of(&self.set);
+        summary.warnings(&self.set).iter().map(ToString::to_string).collect()
+    }
+}
+
+fn record((name, time, inputs, rate, output): Parts<Column<'_>>) -> PyResult<Record> {
+    let inputs = inputs.iter().map(values).collect::<PyResult<_>>()?;
+    let mut record = Record::new(name, inputs, values(&output)?).map_err(refused)?;
+    if let Some(time) = time {
+        record = record.with_time(values(&time)?).map_err(refused)?;
+    }
+    if let Some(rate) = rate {
+        record = record.with_given_rate(values(&rate)?).map_err(refused)?;
+    }
+    Ok(record)
+}
+
+fn values(column: &Column<'_>) -> PyResult<Vec<f64>> {
+    Ok(column.as_slice()?.to_vec())
+}
+
+/// Diagnoses data; gives the object that `hysid diagnose --json` prints of it.
+#[pyfunction]
+pub fn diagnose(py: Python<'_>, data: &Dataset, smallest_reversal: f64, smoothing: bool) -> PyResult<String> {
+    let options = DiagnosisOptions { smallest_reversal, smoothing };
+    let set = Arc::clone(&data.set);
+    let diagnosis = py.detach(|| Diagnosis::of(&set, &options)).map_err(refused)?;
+    serde_json::to_string(&diagnosis).map_err(refused)
+}

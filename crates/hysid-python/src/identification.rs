@@ -1,0 +1,184 @@
+//! From data to a model: in a thread of its own, so that the caller's can answer to Ctrl-C and tell the
+//! progress.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use hysid::identification::options::{ChosenOptions, RateChoice};
+use hysid::identification::{self, ModelName};
+use hysid::training;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
+use pyo3::prelude::*;
+
+use crate::data::Dataset;
+use crate::failure::refused;
+use crate::model::Model;
+
+/// How often the caller's thread looks for Ctrl-C and tells the progress.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// What is to be identified, and how.
+#[pyclass(frozen, module = "hysid._hysid")]
+pub struct Request {
+    chosen: ChosenOptions,
+    request: identification::Request,
+}
+
+#[pymethods]
+impl Request {
+    /// From options as a JSON object, and the rate by its name, for these data.
+    #[new]
+    fn new(options: &str, rate: &str, data: &Dataset) -> PyResult<Self> {
+        let chosen = ChosenOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
+        let rate: RateChoice = rate.parse().map_err(refused)?;
+        let rate = rate.method(chosen.model(), data.set.has_time());
+        let request = chosen.request(rate);
+        if let Some(hindrance) = chosen.model().hindrance(&data.set, rate) {
+            return Err(refused(format!("{} {hindrance}", chosen.model().name())));
+        }
+        Ok(Self { chosen, request })
+    }
+
+    /// The name of the model.
+    fn model(&self) -> &'static str {
+        self.chosen.model().name()
+    }
+
+    /// Options that the model has no use for, in words.
+    fn warnings(&self) -> Vec<String> {
+        let trained_by = self.chosen.trained_by();
+        let useless = |option| format!("{trained_by} has no use for {option}");
+        let mut warnings: Vec<String> = self.chosen.useless().into_iter().map(useless).collect();
+        if self.request.rate().is_some() && !self.chosen.model().uses_rate() {
+            warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", self.model()));
+        }
+        warnings
+    }
+}
+
+/// The names of all models, the networks first.
+#[pyfunction]
+pub fn model_names() -> Vec<&'static str> {
+    ModelName::all().map(ModelName::name).collect()
+}
+
+/// The names of all options of a model and its training.
+#[pyfunction]
+pub fn option_names() -> Vec<String> {
+    ChosenOptions::names()
+}
+
+/// What a progress callback is told: share of the work done, error on the training rows in percent of std,
+/// start, epoch, what is being done.
+type Report = (f64, f64, usize, usize, String);
+
+fn report(progress: &training::Progress<'_>) -> Report {
+    let word = |value: serde_json::Result<serde_json::Value>| -> String {
+        value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
+    };
+    let phase = word(serde_json::to_value(progress.phase));
+    (progress.done, progress.train_nrmse_percent, progress.start, progress.epoch, phase)
+}
+
+/// What the fit's thread and the caller's tell each other.
+#[derive(Default)]
+struct Exchange {
+    stop: AtomicBool,
+    latest: Mutex<Option<Report>>,
+}
+
+impl Exchange {
+    fn ask_to_stop(&self) {
+        self.stop.store(true, Ordering::SeqCst);
+    }
+
+    fn take_latest(&self) -> Option<Report> {
+        self.latest.lock().ok().and_then(|mut latest| latest.take())
+    }
+
+    /// The observer of the fit.
+    fn observe(&self, progress: &training::Progress<'_>, deadline: Option<Instant>) -> ControlFlow<()> {
+        if let Ok(mut latest) = self.latest.lock() {
+            *latest = Some(report(progress));
+        }
+        let over = deadline.is_some_and(|deadline| Instant::now() >= deadline);
+        if over || self.stop.load(Ordering::SeqCst) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+/// Identifies a model. Gives it, how often the objective was evaluated, and whether Ctrl-C ended the fit: then it is
+/// the best model so far. `progress` is called with a report every now and then and ends the fit by
+/// returning true.
+#[pyfunction]
+pub fn identify(
+    py: Python<'_>,
+    data: &Dataset,
+    request: &Request,
+    threads: Option<usize>,
+    time_limit: Option<f64>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(Model, usize, bool)> {
+    let deadline = match time_limit {
+        Some(limit) if !(limit > 0.0 && limit < 1e9) => {
+            return Err(refused("time_limit: a number of seconds above 0 is needed"));
+        }
+        limit => limit.map(|limit| Instant::now() + Duration::from_secs_f64(limit)),
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
+    let exchange = Arc::new(Exchange::default());
+    let (answer, mut answers) = channel();
+    let (set, request) = (Arc::clone(&data.set), request.request.clone());
+    let with_fit = Arc::clone(&exchange);
+    std::thread::spawn(move || {
+        let mut observer = |progress: &training::Progress<'_>| with_fit.observe(progress, deadline);
+        let fitted = pool.install(|| identification::identify(&set, &request, &mut observer));
+        // Nobody listens any more after a second Ctrl-C.
+        let _ = answer.send(fitted);
+    });
+    let mut interrupted = false;
+    let mut failure = None;
+    let fitted = loop {
+        let answers = &mut answers;
+        match py.detach(move || answers.recv_timeout(PAUSE)) {
+            Ok(fitted) => break fitted,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(PyRuntimeError::new_err("the fit broke down: this is a fault of hysid"));
+            }
+        }
+        if let Err(error) = py.check_signals() {
+            exchange.ask_to_stop();
+            if interrupted || !error.is_instance_of::<PyKeyboardInterrupt>(py) {
+                return Err(error);
+            }
+            interrupted = true;
+        }
+        if let Err(error) = tell(&exchange, progress.as_ref().filter(|_| failure.is_none())) {
+            exchange.ask_to_stop();
+            failure = Some(error);
+        }
+    };
+    if let Some(error) = failure {
+        return Err(error);
+    }
+    let fitted = fitted.map_err(refused)?;
+    tell(&exchange, progress.as_ref())?;
+    Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
+}
+
+/// Tells the progress since the last time, and asks the fit to stop if that is the answer.
+fn tell(exchange: &Exchange, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+    let Some((progress, report)) = progress.zip(exchange.take_latest()) else { return Ok(()) };
+    if progress.call1(report)?.is_truthy()? {
+        exchange.ask_to_stop();
+    }
+    Ok(())
+}

@@ -1,0 +1,36 @@
+//! The native half of the Python package `hysid`: thin, private, and without an opinion. What users see is
+//! written in Python, in `python/hysid`.
+
+mod data;
+mod elements;
+mod failure;
+mod identification;
+mod minimiser;
+mod model;
+mod specimens;
+
+use pyo3::prelude::*;
+
+/// What `hysid` is made of.
+#[pymodule]
+mod _hysid {
+    #[pymodule_export]
+    use crate::data::{Dataset, diagnose};
+    #[pymodule_export]
+    use crate::elements::{deteriorating_stop, law, play, relaxation, relay, stop};
+    #[pymodule_export]
+    use crate::identification::{Request, identify, model_names, option_names};
+    #[pymodule_export]
+    use crate::minimiser::minimise;
+    #[pymodule_export]
+    use crate::model::{Model, Stepper};
+    #[pymodule_export]
+    use crate::specimens::{specimen, specimens};
+
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,122 @@
+//! Fitted models.
+
+use std::sync::Arc;
+
+use hysid::diagnosis::ModelDiagnosis;
+use hysid::model;
+use hysid::record::Excitation;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::data::{Column, Dataset, NewColumn};
+use crate::failure::refused;
+
+/// A fitted model.
+#[pyclass(frozen, module = "hysid._hysid")]
+pub struct Model {
+    model: Arc<model::Model>,
+}
+
+impl Model {
+    pub fn new(model: model::Model) -> Self {
+        Self { model: Arc::new(model) }
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// Reads the text of a model file.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        model::Model::from_json(text).map(Self::new).map_err(refused)
+    }
+
+    /// The text of the model file.
+    fn to_json(&self) -> String {
+        self.model.to_json()
+    }
+
+    /// Number of parameters that were found from the data.
+    fn parameters(&self) -> usize {
+        self.model.parameters()
+    }
+
+    /// True if it needs time stamps.
+    fn needs_time(&self) -> bool {
+        self.model.needs_time()
+    }
+
+    /// Free run over one record, whose columns are read where they lie.
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        time: Option<Column<'_>>,
+        inputs: Vec<Column<'_>>,
+        rate: Option<Column<'_>>,
+    ) -> PyResult<NewColumn<'py>> {
+        let inputs = inputs.iter().map(|input| Ok(input.as_slice()?)).collect::<PyResult<_>>()?;
+        let time = time.as_ref().map(|time| time.as_slice()).transpose()?;
+        let rate = rate.as_ref().map(|rate| rate.as_slice()).transpose()?;
+        let response = py.detach(|| {
+            let mut excitation = Excitation::new(name, inputs)?;
+            if let Some(time) = time {
+                excitation = excitation.with_time(time)?;
+            }
+            if let Some(rate) = rate {
+                excitation = excitation.with_given_rate(rate)?;
+            }
+            self.model.response(&excitation)
+        });
+        Ok(PyArray1::from_vec(py, response.map_err(refused)?))
+    }
+
+    /// Errors of free runs over all records, as JSON.
+    fn evaluate(&self, py: Python<'_>, data: &Dataset) -> PyResult<String> {
+        let set = Arc::clone(&data.set);
+        let errors = py.detach(|| self.model.evaluate(&set)).map_err(refused)?;
+        serde_json::to_string(&errors).map_err(refused)
+    }
+
+    /// Warns of data beyond what the model was trained on.
+    fn range_warnings(&self, data: &Dataset) -> PyResult<Vec<String>> {
+        let warnings = self.model.range_warnings(&data.set).map_err(refused)?;
+        Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+
+    /// What kind of hysteresis it has learnt, as JSON.
+    fn diagnose(&self, py: Python<'_>) -> PyResult<String> {
+        let diagnosis = py.detach(|| ModelDiagnosis::of(&self.model)).map_err(refused)?;
+        serde_json::to_string(&diagnosis).map_err(refused)
+    }
+
+    /// Runs it sample by sample, from the virgin state.
+    fn stepper(&self) -> Stepper {
+        Stepper { stepper: model::Model::clone(&self.model).into_stepper() }
+    }
+}
+
+/// A model that is run sample by sample.
+#[pyclass(module = "hysid._hysid")]
+pub struct Stepper {
+    stepper: model::Stepper<'static>,
+}
+
+#[pymethods]
+impl Stepper {
+    /// The output at the next sample.
+    #[pyo3(signature = (x, time=None, rate=None))]
+    fn step(&mut self, x: &Bound<'_, PyAny>, time: Option<f64>, rate: Option<f64>) -> PyResult<f64> {
+        let time = time.unwrap_or(f64::NAN);
+        let output = match x.extract::<f64>() {
+            Ok(x) => self.stepper.step(&[x], time, rate),
+            Err(_) => self.stepper.step(&x.extract::<Vec<f64>>()?, time, rate),
+        };
+        output.map_err(refused)
+    }
+
+    /// Back to the virgin state.
+    fn reset(&mut self) {
+        self.stepper.reset();
+    }
+}

@@ -1,0 +1,58 @@
+"""Docstrings are run; everything public has one."""
+
+import doctest
+import importlib
+import inspect
+import pkgutil
+
+import numpy as np
+import pytest
+
+import hysid
+
+MODULES = ["hysid", *(f"hysid.{module.name}" for module in pkgutil.iter_modules(hysid.__path__))]
+
+
+def is_ours(thing):
+    return getattr(thing, "__module__", "").startswith("hysid") and not inspect.ismodule(thing)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings_are_true(name):
+    module = importlib.import_module(name)
+    failures = []
+    for test in doctest.DocTestFinder(exclude_empty=True).find(module, globs={"np": np, "hysid": hysid}):
+        doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(test, out=failures.append)
+    assert not failures, "".join(failures)
+
+
+def test_everything_public_is_explained():
+    """NumPy's style: a summary, and each parameter with its type or shape."""
+    public = [getattr(hysid, name) for name in hysid.__all__]
+    modules = [thing for thing in public if inspect.ismodule(thing)]
+    public += [getattr(module, name) for module in modules for name in module.__all__]
+    seen = 0
+    for thing in public:
+        for part in (thing, *(vars(thing).values() if inspect.isclass(thing) else ())):
+            if not is_ours(part) or not callable(part) or getattr(part, "__name__", "_").startswith("_"):
+                continue
+            text = inspect.getdoc(part)
+            assert text and text.splitlines()[0].endswith((".", ":")), part
+            if inspect.isfunction(part):
+                explained = [line for line in text.splitlines() if " : " in line or line.startswith("x, y")]
+                names = {name.strip("* ") for line in explained for name in line.split(" : ")[0].split(",")}
+                names |= {line.strip("* ") for line in text.splitlines()}
+                for parameter in inspect.signature(part).parameters:
+                    assert parameter in ("self", "cls") or parameter in names, (part, parameter)
+                seen += 1
+    assert seen > 30
+
+
+def test_importing_takes_in_only_numpy():
+    import subprocess
+    import sys
+
+    script = "import sys, hysid; print([name for name in sys.argv[1:] if name in sys.modules])"
+    heavy = ["sklearn", "matplotlib", "pandas", "tqdm", "dask", "scipy"]
+    said = subprocess.run([sys.executable, "-c", script, *heavy], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "[]"

@@ -1,0 +1,151 @@
+"""Fitted models: files, free runs, single steps."""
+
+import os
+import pickle
+import stat
+
+import numpy as np
+import pandas
+import pytest
+
+import hysid
+from hysid._data import columns
+
+
+def test_a_file_gives_the_same_model_back(quick_model, tmp_path):
+    path = tmp_path / "model.json"
+    path.write_text("an old one")
+    quick_model.save(path)
+    assert hysid.Model.load(path) == quick_model
+    assert os.listdir(tmp_path) == ["model.json"]
+    other = tmp_path / "other"
+    other.touch()
+    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
+
+
+def test_bad_files_are_value_errors(quick_model, tmp_path):
+    path = tmp_path / "model.json"
+    text = quick_model.to_json()
+    for content, words in [
+        ("", "is empty"),
+        (text[:500], "cut off"),
+        (text.replace('"samples": 600', '"samples": 601'), "checksum"),
+        ("[]", "not a Hysid model file"),
+    ]:
+        path.write_text(content)
+        with pytest.raises(ValueError, match=words) as raised:
+            hysid.Model.load(path)
+        assert str(raised.value).startswith(str(path))
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(ValueError, match="not a Hysid model file"):
+        hysid.Model.load(path)
+    with pytest.raises(FileNotFoundError):
+        hysid.Model.load(tmp_path / "none.json")
+
+
+def test_models_are_pickled_and_compared(quick_model):
+    again = pickle.loads(pickle.dumps(quick_model))
+    assert again == quick_model and hash(again) == hash(quick_model)
+    assert quick_model != hysid.Model.from_json(quick_model.to_json()).name
+
+
+def test_what_a_model_says_of_itself(quick_model):
+    assert (quick_model.name, quick_model.inputs, quick_model.output) == ("xpnn+", ["x"], "y")
+    assert quick_model.rate is None and not quick_model.needs_time
+    assert quick_model.train.samples == 600 and quick_model.validation is None
+    assert "xpnn+: x -> y" in repr(quick_model)
+    assert "<table>" in quick_model._repr_html_()
+
+
+def test_steps_give_what_a_free_run_gives():
+    train, test = hysid.specimen("piezo-actuator").data()
+    model = hysid.fit(
+        train.x, train.y, train.time, "backward", train.records, stops=4, hidden=3, starts=1, epochs=5
+    )
+    first = test.records == test.records[0]
+    x, time = test.x[first], test.time[first]
+    outputs = model.simulate(x, time)
+    assert [model.step(x, time) for x, time in zip(x, time)] == outputs.tolist()
+    with pytest.raises(ValueError, match="does not come after"):
+        model.step(0.0, time[0])
+    model.reset()
+    stepper = model.stepper()
+    assert model.step(x[0], time[0]) == stepper.step(x[0], time[0]) == outputs[0]
+    with pytest.raises(ValueError, match="2 inputs where the model has 1"):
+        stepper.step([1.0, 2.0], 1e9)
+    with pytest.raises(ValueError, match="not a finite number"):
+        stepper.step(np.nan, 1e9)
+    with pytest.raises(TypeError):
+        stepper.step("a", 1e9)
+    with pytest.raises(ValueError, match="no time column"):
+        model.simulate(x)
+
+
+def test_contiguous_columns_are_not_copied():
+    x = np.arange(10.0)
+    frame = pandas.DataFrame({"x": x})
+    for given in (x, x.reshape(10, 1), {"x": x}, frame["x"]):
+        taken = columns(given, None, x, None, None)
+        assert np.shares_memory(taken.time.values, x)
+        whole = frame["x"].to_numpy() if hasattr(given, "iloc") else x
+        assert np.shares_memory(taken.inputs[0].values, whole)
+    strided = columns(np.arange(20.0)[::2], None, None, None, None)
+    assert strided.inputs[0].values.tolist() == list(range(0, 20, 2))
+
+
+def test_anything_that_numpy_understands_is_taken(spring_and_slider, quick_model):
+    x, _ = spring_and_slider
+    expected = quick_model.simulate(x)
+    frozen = x.copy()
+    frozen.flags.writeable = False
+    wide = np.empty(1200)
+    wide[::2] = x
+    for given in (x.tolist(), frozen, x.reshape(-1, 1), wide[::2], x.astype(">f8"), {"any": x}):
+        assert np.array_equal(quick_model.simulate(given), expected)
+    whole = np.trunc(x)
+    expected = quick_model.simulate(whole)
+    for given in (np.int32, np.float32, object):
+        assert np.array_equal(quick_model.simulate(whole.astype(given)), expected)
+
+
+def test_pandas_goes_in_and_comes_out(spring_and_slider, quick_model):
+    x, y = spring_and_slider
+    index = pandas.Index(range(5, 605), name="row")
+    series = pandas.Series(x, index=index, name="u")
+    output = quick_model.simulate(series)
+    assert output.name == "y_model" and output.index.equals(index)
+    measured = pandas.Series(y, dtype="Float64")
+    measured[::2] = pandas.NA
+    assert quick_model.evaluate(series, measured).samples == 300
+
+
+def test_each_record_begins_virgin(spring_and_slider, quick_model):
+    x, y = spring_and_slider
+    twice = np.concatenate([x, x])
+    labels = np.repeat(["a", "b"], 600)
+    outputs = quick_model.simulate(twice, records=labels)
+    assert np.array_equal(outputs[600:], quick_model.simulate(x))
+    errors = quick_model.evaluate(twice, np.concatenate([y, y]), records=labels)
+    assert errors.records == 2 and errors.rmse == pytest.approx(quick_model.evaluate(x, y).rmse, rel=1e-12)
+
+
+def test_several_inputs():
+    generator = np.random.default_rng(1)
+    x = np.cumsum(generator.normal(size=(400, 2)), axis=0)
+    y = hysid.operators.stop(x[:, 0], r=2.0) + 0.5 * x[:, 1]
+    model = hysid.fit(x, y, starts=1, epochs=10, stops=4, hidden=3)
+    assert model.inputs == ["x1", "x2"]
+    outputs = model.simulate(x)
+    assert [model.step(row) for row in x[:20]] == outputs[:20].tolist()
+    with pytest.raises(ValueError, match="has 1 inputs where 2 are expected"):
+        model.simulate(x[:, 0])
+    with pytest.raises(ValueError, match="takes one input, not 2"):
+        hysid.fit(x, y, model="masing")
+
+
+def test_a_model_is_diagnosed(spring_and_slider):
+    model = hysid.fit(*spring_and_slider, model="prandtl-ishlinskii")
+    diagnosis = model.diagnose()
+    assert diagnosis.verdict("masing") == "yes"
+    assert diagnosis.content["model"] == "prandtl-ishlinskii"
+    assert "<table>" in diagnosis._repr_html_() and "masing" in str(diagnosis)

@@ -1,0 +1,105 @@
+//! The Python package: built, installed and tested in a virtual environment of its own, `target/python`.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::{program, workspace_root};
+
+/// The oldest Python that the package supports.
+const OLDEST: (u32, u32) = (3, 10);
+
+/// Every test of the package.
+pub fn test() -> Result<()> {
+    let python = environment()?;
+    install(&python)?;
+    let program = program::build()?;
+    let package = package();
+    let tests: [&OsStr; 4] = ["-m".as_ref(), "pytest".as_ref(), "-q".as_ref(), "tests".as_ref()];
+    step("pytest", Command::new(&python).args(tests).env("HYSID_PROGRAM", program).current_dir(&package))?;
+    step("mypy", Command::new(&python).args(["-m", "mypy", "--package", "hysid"]).current_dir(&package))?;
+    step(
+        "stubtest",
+        Command::new(&python).args(["-m", "mypy.stubtest", "hysid", "--concise"]).current_dir(&package),
+    )
+}
+
+fn package() -> PathBuf {
+    workspace_root().join("crates").join("hysid-python")
+}
+
+/// The Python of the virtual environment, with all that is pinned; made and filled if need be.
+fn environment() -> Result<PathBuf> {
+    let folder = program::target()?.join("python");
+    let python = match cfg!(windows) {
+        true => folder.join("Scripts").join("python.exe"),
+        false => folder.join("bin").join("python"),
+    };
+    let requirements = package().join("requirements.txt");
+    let wanted = fs::read_to_string(&requirements).context("step `python`: no list of requirements")?;
+    let installed = folder.join("installed.txt");
+    if fs::read_to_string(&installed).is_ok_and(|found| found == wanted) {
+        return Ok(python);
+    }
+    let make = ["-m", "venv", "--clear"];
+    step("python -m venv", Command::new(interpreter()?).args(make).arg(&folder))
+        .context("is the module venv installed? (on Debian: apt install python3-venv)")?;
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement"];
+    step("pip install", Command::new(&python).args(install).arg(&requirements))
+        .context("the tests of the Python package need the packages of PyPI once: is there a network?")?;
+    fs::write(installed, wanted).context("step `python`: the environment cannot be written to")?;
+    Ok(python)
+}
+
+/// The machine's Python, that of the environment variable `PYTHON` first.
+fn interpreter() -> Result<PathBuf> {
+    let named = std::env::var_os("PYTHON").map(PathBuf::from);
+    let candidates: Vec<PathBuf> = match named {
+        Some(named) => vec![named],
+        None => ["python3", "python"].map(PathBuf::from).to_vec(),
+    };
+    for candidate in &candidates {
+        let asked = ["-c", "import sys; print(*sys.version_info[:2])"];
+        let Ok(output) = Command::new(candidate).args(asked).stdin(Stdio::null()).output() else { continue };
+        let said = String::from_utf8_lossy(&output.stdout);
+        let mut numbers = said.split_whitespace().map_while(|number| number.parse().ok());
+        if let (Some(major), Some(minor)) = (numbers.next(), numbers.next()) {
+            let (oldest_major, oldest_minor) = OLDEST;
+            ensure!(
+                (major, minor) >= OLDEST,
+                "step `python`: {} is Python {major}.{minor}; name one from {oldest_major}.{oldest_minor} on in \
+                 the environment variable PYTHON",
+                candidate.display()
+            );
+            return Ok(candidate.clone());
+        }
+    }
+    bail!(
+        "step `python`: there is no Python: install Python 3, or name one in the environment variable PYTHON"
+    )
+}
+
+/// Builds the wheel and installs it: what is tested is what a user gets.
+fn install(python: &Path) -> Result<()> {
+    let wheels = program::target()?.join("wheels");
+    // A wheel of an earlier version would be found beside the new one.
+    if wheels.exists() {
+        fs::remove_dir_all(&wheels).context("step `python`: an old wheel cannot be removed")?;
+    }
+    let build = ["-m", "maturin", "build", "--release", "--locked", "--quiet", "--out"];
+    step("maturin build", Command::new(python).args(build).arg(&wheels).current_dir(package()))?;
+    let wheel = fs::read_dir(&wheels)?.next().context("step `python`: maturin made no wheel")??.path();
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps"];
+    step("pip install", Command::new(python).args(install).arg("--force-reinstall").arg(wheel))
+}
+
+/// Runs a command as one step.
+fn step(name: &str, command: &mut Command) -> Result<()> {
+    println!("==> {name}");
+    let status = command.status().with_context(|| format!("step `{name}` could not be started"))?;
+    ensure!(status.success(), "step `{name}` failed ({status})");
+    Ok(())
+}
