@@ -18,7 +18,7 @@ from hysid.model import Errors, Model
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns
+    from hysid._data import Columns, Values
 
 
 @dataclass(frozen=True)
@@ -126,8 +126,8 @@ class Comparison(Sequence[Compared]):
 
 
 def compare(
-    x: ArrayLike,
-    y: ArrayLike,
+    x: Values,
+    y: Values,
     time: ArrayLike | None = None,
     rate: str | ArrayLike = "auto",
     records: ArrayLike | None = None,

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hysid import _hysid
+
+Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike]]
+"""Numbers, or columns by their names; pandas objects are among the former."""
 
 RECORD = "data"
 """What the one record is called if no records are told apart."""

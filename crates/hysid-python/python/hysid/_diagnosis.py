@@ -13,7 +13,7 @@ from hysid._data import columns
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns
+    from hysid._data import Columns, Values
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,8 @@ class ModelDiagnosis(_Findings):
 
 
 def diagnose(
-    x: ArrayLike,
-    y: ArrayLike,
+    x: Values,
+    y: Values,
     time: ArrayLike | None = None,
     records: ArrayLike | None = None,
     *,

@@ -16,7 +16,7 @@ from hysid.model import Model
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns
+    from hysid._data import Columns, Values
 
 
 class Progress(NamedTuple):
@@ -44,8 +44,8 @@ class Progress(NamedTuple):
 
 
 def fit(
-    x: ArrayLike,
-    y: ArrayLike,
+    x: Values,
+    y: Values,
     time: ArrayLike | None = None,
     rate: str | ArrayLike = "auto",
     records: ArrayLike | None = None,

@@ -1,6 +1,28 @@
 from collections.abc import Callable, Sequence
+from typing import final
 
 import numpy as np
+
+__all__ = [
+    "Dataset",
+    "Model",
+    "Request",
+    "Stepper",
+    "__version__",
+    "deteriorating_stop",
+    "diagnose",
+    "identify",
+    "law",
+    "minimise",
+    "model_names",
+    "option_names",
+    "play",
+    "relaxation",
+    "relay",
+    "specimen",
+    "specimens",
+    "stop",
+]
 
 __version__: str
 
@@ -8,17 +30,20 @@ _Column = np.ndarray
 _Names = tuple[str | None, list[str], str | None, str]
 _Record = tuple[str, _Column | None, list[_Column], _Column | None, _Column]
 
+@final
 class Dataset:
     def __new__(cls, names: _Names, records: list[_Record]) -> Dataset: ...
     def names(self) -> _Names: ...
     def records(self) -> list[_Record]: ...
     def warnings(self) -> list[str]: ...
 
+@final
 class Request:
     def __new__(cls, options: str, rate: str, data: Dataset) -> Request: ...
     def model(self) -> str: ...
     def warnings(self) -> list[str]: ...
 
+@final
 class Model:
     @staticmethod
     def from_json(text: str) -> Model: ...
@@ -33,6 +58,7 @@ class Model:
     def diagnose(self) -> str: ...
     def stepper(self) -> Stepper: ...
 
+@final
 class Stepper:
     def step(
         self, x: float | Sequence[float], time: float | None = None, rate: float | None = None

@@ -15,6 +15,7 @@ from hysid import _hysid
 from hysid._data import columns
 
 if TYPE_CHECKING:
+    from hysid._data import Values
     from numpy.typing import ArrayLike
 
 __all__ = [
@@ -29,20 +30,21 @@ __all__ = [
 ]
 
 
-def _run(law: str, parameters: dict[str, Any], x: Any, time: Any = None, rate: str | None = None) -> Any:
+def _run(law: str, parameters: dict[str, Any], x: Any, time: Any = None, rate: str | None = None) -> np.ndarray:
     taken = columns(x, None, time, None, None)
     if len(taken.inputs) != 1:
         raise ValueError(f"{law} takes one input, not {len(taken.inputs)}")
     stamps = None if taken.time is None else taken.time.values
     description = json.dumps({law: parameters}, default=float)
-    return _hysid.law(description, taken.inputs[0].values, stamps, rate)
+    output: np.ndarray = _hysid.law(description, taken.inputs[0].values, stamps, rate)
+    return output
 
 
 def _list(values: Any) -> list[float]:
     return [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
 
 
-def masing(x: ArrayLike, thresholds: ArrayLike, slopes: ArrayLike, constant: float = 0.0) -> np.ndarray:
+def masing(x: Values, thresholds: ArrayLike, slopes: ArrayLike, constant: float = 0.0) -> np.ndarray:
     """Run a model by Masing's rule: every branch is the virgin curve, twice as large.
 
     Parameters
@@ -80,7 +82,7 @@ def _plays(thresholds: Any, weights: Any, linear: float, constant: float) -> dic
 
 
 def prandtl_ishlinskii(
-    x: ArrayLike, thresholds: ArrayLike, weights: ArrayLike, linear: float = 0.0, constant: float = 0.0
+    x: Values, thresholds: ArrayLike, weights: ArrayLike, linear: float = 0.0, constant: float = 0.0
 ) -> np.ndarray:
     """Run a Prandtl-Ishlinskii model: a sum of plays.
 
@@ -111,7 +113,7 @@ def prandtl_ishlinskii(
 
 
 def modified_prandtl_ishlinskii(
-    x: ArrayLike,
+    x: Values,
     thresholds: ArrayLike,
     weights: ArrayLike,
     dead_zone_thresholds: ArrayLike,
@@ -158,7 +160,7 @@ def _play_weights(weights: Any) -> dict[str, Any]:
 
 
 def generalized_prandtl_ishlinskii(
-    x: ArrayLike,
+    x: Values,
     left: ArrayLike,
     right: ArrayLike,
     spacing: float,
@@ -207,7 +209,7 @@ def generalized_prandtl_ishlinskii(
 
 
 def rate_dependent_prandtl_ishlinskii(
-    x: ArrayLike,
+    x: Values,
     time: ArrayLike,
     spacing: float,
     weights: ArrayLike | dict[str, float],
@@ -267,7 +269,7 @@ def rate_dependent_prandtl_ishlinskii(
 
 
 def preisach(
-    x: ArrayLike,
+    x: Values,
     lines: ArrayLike,
     cells: ArrayLike,
     reversible: ArrayLike | None = None,
@@ -314,7 +316,7 @@ def preisach(
 
 
 def bouc_wen(
-    x: ArrayLike,
+    x: Values,
     elastic_stiffness: float,
     hysteretic_stiffness: float,
     yield_displacement: float,
@@ -375,7 +377,7 @@ def bouc_wen(
 
 
 def jiles_atherton(
-    x: ArrayLike,
+    x: Values,
     saturation: float,
     a: float,
     k: float,

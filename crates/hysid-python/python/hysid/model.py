@@ -19,7 +19,7 @@ from hysid._warning import warn
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns
+    from hysid._data import Columns, Values
 
 __all__ = ["Errors", "Model", "Stepper"]
 
@@ -231,7 +231,7 @@ class Model:
 
     def simulate(
         self,
-        x: ArrayLike,
+        x: Values,
         time: ArrayLike | None = None,
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,
@@ -259,7 +259,15 @@ class Model:
         ValueError
             Inputs that the model cannot take.
         """
-        arranged = columns(x, None, time, rate, records)
+        output = self._simulated(columns(x, None, time, rate, records))
+        index = getattr(x, "index", None)
+        if not hasattr(x, "iloc"):
+            return output
+        import pandas
+
+        return pandas.Series(output, index=index, name=f"{self.output}_model")
+
+    def _simulated(self, arranged: Columns) -> np.ndarray:
         outputs = [
             self._native.simulate(
                 name,
@@ -271,12 +279,7 @@ class Model:
         ]
         if self._leaves_trained_range(arranged):
             warn(self._native.range_warnings(arranged.dataset()))
-        output = outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
-        if not hasattr(x, "iloc"):
-            return output
-        import pandas
-
-        return pandas.Series(output, index=x.index, name=f"{self.output}_model")
+        return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
 
     def _leaves_trained_range(self, arranged: Columns) -> bool:
         ranges = self.description["trained_ranges"]["inputs"]
@@ -287,8 +290,8 @@ class Model:
 
     def evaluate(
         self,
-        x: ArrayLike,
-        y: ArrayLike,
+        x: Values,
+        y: Values,
         time: ArrayLike | None = None,
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,

@@ -11,6 +11,7 @@ from hysid import _hysid
 from hysid._data import Column, columns
 
 if TYPE_CHECKING:
+    from hysid._data import Values
     import numpy as np
     from numpy.typing import ArrayLike
 
@@ -24,7 +25,7 @@ def _signal(x: Any, time: Any = None) -> tuple[np.ndarray, Column | None]:
     return taken.inputs[0].values, taken.time
 
 
-def relay(x: ArrayLike, r: float, s: float = 0.0) -> np.ndarray:
+def relay(x: Values, r: float, s: float = 0.0) -> np.ndarray:
     """Run a relay: a switch with two thresholds.
 
     Parameters
@@ -49,7 +50,7 @@ def relay(x: ArrayLike, r: float, s: float = 0.0) -> np.ndarray:
     return _hysid.relay(_signal(x)[0], r, s)
 
 
-def play(x: ArrayLike, r: float) -> np.ndarray:
+def play(x: Values, r: float) -> np.ndarray:
     """Run a play: a slider in a slot, the backlash of gears.
 
     Parameters
@@ -72,7 +73,7 @@ def play(x: ArrayLike, r: float) -> np.ndarray:
     return _hysid.play(_signal(x)[0], r)
 
 
-def stop(x: ArrayLike, r: float) -> np.ndarray:
+def stop(x: Values, r: float) -> np.ndarray:
     """Run a stop: a spring and a slider in series.
 
     Parameters
@@ -95,7 +96,7 @@ def stop(x: ArrayLike, r: float) -> np.ndarray:
     return _hysid.stop(_signal(x)[0], r)
 
 
-def deteriorating_stop(x: ArrayLike, r: float, beta: float) -> np.ndarray:
+def deteriorating_stop(x: Values, r: float, beta: float) -> np.ndarray:
     """Run a stop that wears out by sliding.
 
     Parameters
@@ -120,7 +121,7 @@ def deteriorating_stop(x: ArrayLike, r: float, beta: float) -> np.ndarray:
     return _hysid.deteriorating_stop(_signal(x)[0], r, beta)
 
 
-def relaxation(x: ArrayLike, time: ArrayLike, tau: float) -> np.ndarray:
+def relaxation(x: Values, time: ArrayLike, tau: float) -> np.ndarray:
     """Run a relaxation element: a spring and a dashpot in series.
 
     Parameters

@@ -1,0 +1,243 @@
+"""The estimator for scikit-learn."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from sklearn.base import BaseEstimator, RegressorMixin
+from sklearn.metrics import r2_score
+from sklearn.utils import check_array, check_consistent_length, check_random_state
+from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_data
+
+from hysid import _hysid
+from hysid._data import Column, Columns, runs
+from hysid._fitting import identified
+
+__all__ = ["HysteresisRegressor"]
+
+
+class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
+    """A model of hysteresis as an estimator of scikit-learn.
+
+    Rows are samples in the order of time: a model with memory answers to what came before. `predict` is a free
+    run over the rows in their order, from the virgin state; measured outputs are never looked at. Time stamps
+    and the labels of records are columns of `X` that `time` and `record` name, so that they stay with their rows
+    in a pipeline or a cross-validation, of which ``GroupKFold`` over the records is the one to choose.
+
+    Parameters
+    ----------
+    time : str or int, optional
+        The column of `X` with the time stamps, increasing within each record; by its name in a pandas object,
+        or its place.
+    record : str or int, optional
+        The column of `X` that tells the records apart: the memory starts afresh where it changes.
+    rate : str, default "auto"
+        As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
+    model, stops, hidden, relaxation, no_deterioration, training, starts, epochs, population, stall : optional
+        As of `hysid.fit`.
+    validation, operators, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
+        As of `hysid.fit`.
+    degradation, differential_form, time_limit, threads : optional
+        As of `hysid.fit`.
+    random_state : int, RandomState instance or None, default None
+        Seed of all randomness: an int is the seed of `hysid.fit`.
+
+    Attributes
+    ----------
+    model_ : Model
+        The fitted model.
+    n_iter_ : int
+        Epochs of the longest training run, 1 for a model that is found at once.
+    n_features_in_ : int
+        Columns of `X`.
+    feature_names_in_ : array of shape (n_features_in_,)
+        Their names, if `X` had any.
+
+    Examples
+    --------
+    >>> from hysid import HysteresisRegressor
+    >>> train, test = hysid.specimen("terfenol-rod").data()
+    >>> regressor = HysteresisRegressor(model="preisach").fit(train.x.reshape(-1, 1), train.y)
+    >>> scored = ~np.isnan(test.y)
+    >>> error = regressor.predict(test.x.reshape(-1, 1))[scored] - test.y[scored]
+    >>> bool(error.std() < 0.05 * test.y[scored].std())
+    True
+    """
+
+    def __init__(
+        self,
+        *,
+        time: str | int | None = None,
+        record: str | int | None = None,
+        rate: str = "auto",
+        model: str | None = None,
+        stops: int | None = None,
+        hidden: int | None = None,
+        relaxation: int | None = None,
+        no_deterioration: bool | None = None,
+        training: str | None = None,
+        starts: int | None = None,
+        epochs: int | None = None,
+        population: int | None = None,
+        stall: int | None = None,
+        validation: float | None = None,
+        operators: int | None = None,
+        thresholds: Any = None,
+        sign: str | None = None,
+        dead_zones: int | None = None,
+        free_weights: bool | None = None,
+        logarithmic_thresholds: bool | None = None,
+        degradation: bool | None = None,
+        differential_form: bool | None = None,
+        time_limit: float | None = None,
+        threads: int | None = None,
+        random_state: Any = None,
+    ) -> None:
+        self.time = time
+        self.record = record
+        self.rate = rate
+        self.model = model
+        self.stops = stops
+        self.hidden = hidden
+        self.relaxation = relaxation
+        self.no_deterioration = no_deterioration
+        self.training = training
+        self.starts = starts
+        self.epochs = epochs
+        self.population = population
+        self.stall = stall
+        self.validation = validation
+        self.operators = operators
+        self.thresholds = thresholds
+        self.sign = sign
+        self.dead_zones = dead_zones
+        self.free_weights = free_weights
+        self.logarithmic_thresholds = logarithmic_thresholds
+        self.degradation = degradation
+        self.differential_form = differential_form
+        self.time_limit = time_limit
+        self.threads = threads
+        self.random_state = random_state
+
+    def fit(self, X: Any, y: Any) -> HysteresisRegressor:  # noqa: N803 - scikit-learn's name
+        """Identify a model.
+
+        Parameters
+        ----------
+        X : array of shape (n, columns)
+            Inputs in the user's units, and the columns of time and records if there are any; rows in order.
+        y : array of shape (n,)
+            The measured output. NaN is a blank: such a row drives the memory, and is neither trained on nor
+            scored.
+
+        Returns
+        -------
+        HysteresisRegressor
+            Itself.
+        """
+        if y is None:
+            name = type(self).__name__
+            raise ValueError(f"This {name} estimator requires y to be passed, but the target y is None.")
+        output_name = getattr(y, "name", None)
+        values = self._validated(X, reset=True)
+        measured = check_array(
+            y, ensure_2d=False, ensure_all_finite="allow-nan", dtype=np.float64, input_name="y"
+        )
+        measured = column_or_1d(measured, warn=True)
+        check_consistent_length(values, measured)
+        output = Column(np.ascontiguousarray(measured), None if output_name is None else str(output_name))
+        options = {name: getattr(self, name) for name in _hysid.option_names() if name != "seed"}
+        self.model_ = identified(
+            self._columns(values)._replace(output=output),
+            self.rate,
+            {**options, "seed": self._seed()},
+            time_limit=self.time_limit,
+            threads=self.threads,
+        )
+        epochs = [run["history"][-1]["epoch"] for run in self.model_.description["training"]["runs"]]
+        self.n_iter_ = max([1, *epochs])
+        return self
+
+    def predict(self, X: Any) -> np.ndarray:  # noqa: N803 - scikit-learn's name
+        """Run freely over rows in their order.
+
+        Parameters
+        ----------
+        X : array of shape (n, columns)
+            As of `fit`.
+
+        Returns
+        -------
+        array of shape (n,)
+            The output, in the unit of the training.
+        """
+        check_is_fitted(self)
+        return self.model_._simulated(self._columns(self._validated(X, reset=False)))
+
+    def score(self, X: Any, y: Any, sample_weight: Any = None) -> float:  # noqa: N803
+        """Give the coefficient of determination of a free run; blank outputs are passed over.
+
+        Parameters
+        ----------
+        X : array of shape (n, columns)
+            As of `fit`.
+        y : array of shape (n,)
+            The measured output.
+        sample_weight : array of shape (n,), optional
+            Weights of the rows.
+
+        Returns
+        -------
+        float
+            1 for a perfect model, 0 for one that is no better than the mean.
+        """
+        measured = np.asarray(y, dtype=np.float64).ravel()
+        scored = ~np.isnan(measured)
+        weight = None if sample_weight is None else np.asarray(sample_weight)[scored]
+        return float(r2_score(measured[scored], self.predict(X)[scored], sample_weight=weight))
+
+    def _validated(self, X: Any, reset: bool) -> np.ndarray:  # noqa: N803
+        if hasattr(X, "columns") and self.record in getattr(X, "columns", ()):
+            # Labels may be words; only where they change matters.
+            labels = X[self.record].to_numpy()
+            X = X.assign(**{str(self.record): np.unique(labels, return_inverse=True)[1]})  # noqa: N806
+        few = 2 if reset else 1
+        return np.asarray(validate_data(self, X, dtype=np.float64, reset=reset, ensure_min_samples=few))
+
+    def _columns(self, values: np.ndarray) -> Columns:
+        """Inputs, time stamps and records of a table."""
+        names = list(getattr(self, "feature_names_in_", []))
+        place = {what: self._place(what, names) for what in ("time", "record")}
+        set_apart = {column for column in place.values() if column is not None}
+        inputs = [column for column in range(values.shape[1]) if column not in set_apart]
+        if not inputs:
+            raise ValueError("X has no column left for an input")
+
+        def column(index: int) -> Column:
+            return Column(np.ascontiguousarray(values[:, index]), str(names[index]) if names else None)
+
+        records = [("data", slice(0, len(values)))]
+        if place["record"] is not None:
+            labels = values[:, place["record"]]
+            records = [(f"{labels[rows.start]:g}", rows) for rows in runs(labels)]
+        time = None if place["time"] is None else column(place["time"])
+        return Columns([column(index) for index in inputs], time, None, None, records)
+
+    def _place(self, what: str, names: list[str]) -> int | None:
+        column: str | int | None = getattr(self, what)
+        if column is None:
+            return None
+        if isinstance(column, str):
+            if column not in names:
+                raise ValueError(f"{what}: X has no column {column!r}")
+            return names.index(column)
+        if not -self.n_features_in_ <= column < self.n_features_in_:
+            raise ValueError(f"{what}: X has no column {column}")
+        place: int = int(column) % self.n_features_in_
+        return place
+
+    def _seed(self) -> int:
+        if isinstance(self.random_state, (int, np.integer)):
+            return int(self.random_state)
+        return int(check_random_state(self.random_state).randint(2**31 - 1))
