@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -170,7 +170,8 @@ def compare(
     >>> comparison[0].name
     'generalized-prandtl-ishlinskii'
     """
-    import os
+    # Looked for here: it is slow to import, and only this function needs it.
+    from concurrent.futures import ThreadPoolExecutor
 
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -147,6 +146,9 @@ class Model:
         path : path
             The file; it can be read by the program `hysid` too.
         """
+        # Looked for here: it is slow to import, and only this method needs it.
+        import tempfile
+
         folder, name = os.path.split(os.path.abspath(path))
         with tempfile.NamedTemporaryFile(
             "w", encoding="utf-8", newline="", dir=folder, prefix=f".{name}.", delete=False
