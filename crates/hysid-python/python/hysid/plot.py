@@ -42,6 +42,9 @@ class _Run:
         self.x = taken.inputs[0].values
         self.y = taken.output.values if taken.output else None
         self.simulated = None if model is None else model._simulated(taken)
+        if self.simulated is not None and self.y is not None:
+            # Beside a measured curve, the way to its beginning would only confuse.
+            self.simulated = np.where(np.isnan(self.y), np.nan, self.simulated)
 
     def records(self) -> list[slice]:
         return [rows for _, rows in self.columns.records]
@@ -77,7 +80,8 @@ def loops(
     Parameters
     ----------
     x, y, time, rate, records
-        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model.
+        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Where it is blank, nothing
+        is drawn.
     model : Model, optional
         Whose free run is drawn.
     ax : Axes, optional
@@ -122,7 +126,8 @@ def histories(
     Parameters
     ----------
     x, y, time, rate, records
-        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model.
+        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Where it is blank, nothing
+        is drawn.
     model : Model, optional
         Whose free run is drawn.
     ax : Axes, optional
@@ -140,6 +145,7 @@ def histories(
             ax.plot(run.stamps(rows), run.y[rows], **MEASURED)
         if run.simulated is not None:
             ax.plot(run.stamps(rows), run.simulated[rows], **SIMULATED)
+    ax.xaxis.set_major_locator(MaxNLocator(6))
     ax.set(xlabel=run.time_label, ylabel=run.y_label)
     _legend(ax)
     return ax
@@ -180,6 +186,7 @@ def errors(
     ax.axhline(0.0, color="0.55", linewidth=0.8, zorder=0)
     rmse = np.sqrt(np.nanmean(error**2))
     percent = 100 * rmse / np.nanstd(run.y)
+    ax.xaxis.set_major_locator(MaxNLocator(6))
     ax.set(xlabel=run.time_label, ylabel=f"error of {run.y_label}")
     ax.set_title(f"RMSE {rmse:.3g}, {percent:.3g} % of std", fontsize="medium")
     return ax
@@ -347,10 +354,16 @@ def diagnosis(found: Diagnosis | ModelDiagnosis, *, ax: Axes | None = None) -> A
             ax.barh(place, length, color=colour, height=0.6)
         text = finding.verdict
         ax.annotate(
-            text, (max(length, 0.0), place), xytext=(5, 0), textcoords="offset points", va="center", color="0.25"
+            text,
+            (max(length, 0.0), place),
+            xytext=(5, 0),
+            textcoords="offset points",
+            va="center",
+            color="0.25",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
         )
     ax.axvline(1.0, color="0.3", linewidth=0.8, linestyle=":")
     ax.set_yticks(range(len(findings)), [finding.name for finding in findings])
-    ax.set(xlabel="index / threshold")
+    ax.set(xlabel="index / threshold", ylim=(-0.6, len(findings) - 0.4))
     ax.margins(x=0.15)
     return ax
