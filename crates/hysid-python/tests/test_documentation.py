@@ -4,6 +4,8 @@ import doctest
 import importlib
 import inspect
 import pkgutil
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,6 +48,22 @@ def test_everything_public_is_explained():
                     assert parameter in ("self", "cls") or parameter in names, (part, parameter)
                 seen += 1
     assert seen > 30
+
+
+@pytest.mark.parametrize("page", ["docs/python.md", "crates/hysid-python/README.md"])
+@pytest.mark.filterwarnings("ignore::hysid.HysidWarning")
+def test_pages_are_true(page, tmp_path, monkeypatch):
+    """The Python blocks of a page, one after the other, in a folder of their own."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[3] / page).read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    assert blocks
+    names = {}
+    for block in blocks:
+        exec(compile(block, page, "exec"), names)
 
 
 def test_importing_takes_in_only_numpy():
