@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Speed of the Python package beside the library's own: free runs, single steps, import.
 
-Run it with a Python that has the package: `target/python/bin/python benchmarks/python.py --program target/release/hysid`.
+    cargo xtask test       builds both
+    target/python/bin/python benchmarks/python.py target/release/hysid
 """
 
 import argparse
@@ -9,15 +10,15 @@ import json
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
-from pathlib import Path
 
 import numpy as np
 
 import hysid
 
 SAMPLES = 1_000_000
+STEPS = 100_000
+ROUNDS = 3
 
 
 def median_seconds(work, repetitions):
@@ -31,47 +32,56 @@ def median_seconds(work, repetitions):
 
 
 def fitted():
-    """A model of the default size with rate and deterioration, of a spring and a slider."""
-    time_stamps = np.linspace(0, 60, 1000)
-    x = 6 * time_stamps / 60 * np.sin(time_stamps)
-    y = 0.2 * x + hysid.operators.stop(x, r=1.0)
-    return hysid.fit(x, y, time_stamps, model="xpnn", starts=1, epochs=5)
+    """A network of the size and the parts that `hysid bench` runs: xpnn with rate and deterioration."""
+    stamps = np.linspace(0, 60, 1000)
+    x = 6 * stamps / 60 * np.sin(stamps)
+    return hysid.fit(x, 0.2 * x + hysid.operators.stop(x, r=1.0), stamps, model="xpnn", starts=1, epochs=5)
 
 
-def library_nanoseconds(program, model):
-    """What `hysid compare` and this have in common is the library: its own time for a sample, from the program."""
+def run_steps(model, x, stamps):
+    model.reset()
+    step = model.step
+    for value, stamp in zip(x, stamps):
+        step(value, stamp)
+
+
+def round_of(program, model):
+    """The library's figures from the program, then ours: in turns, as a shared machine is not always as fast."""
     said = subprocess.run([program, "bench", "--json"], capture_output=True, text=True, check=True).stdout
-    return {name: measured["value"] for name, measured in json.loads(said).items() if "ns" in name}
+    library = json.loads(said)
+    stamps = np.linspace(0, 60_000, SAMPLES)
+    x = 5 * np.sin(stamps)
+    few = x[:STEPS].tolist(), stamps[:STEPS].tolist()
+    return {
+        "simulate, library, ns a sample": library["simulate_record_ns_per_sample"]["value"],
+        "simulate, Python, ns a sample": 1e9 * median_seconds(lambda: model.simulate(x, stamps), 15) / SAMPLES,
+        "step, library, ns": library["step_ns"]["value"],
+        "step, Python, ns": 1e9 * median_seconds(lambda: run_steps(model, *few), 5) / STEPS,
+    }
+
+
+def import_milliseconds():
+    """Of `import hysid` with all that it takes in, a process without it taken off."""
+    bare, whole = (
+        median_seconds(lambda: subprocess.run([sys.executable, "-c", script], check=True), 15)
+        for script in ("pass", "import hysid")
+    )
+    return 1e3 * (whole - bare)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", required=True, metavar="PATH", help="the program hysid")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", metavar="HYSID", help="the program, of the same sources")
     program = parser.parse_args().program
     model = fitted()
-    stamps = np.linspace(0, 60_000, SAMPLES)
-    x = 5 * np.sin(stamps)
-    rounds = []
-    for _ in range(5):
-        rounds.append(
-            {
-                **library_nanoseconds(program, model),
-                "python simulate, ns a sample": 1e9 * median_seconds(lambda: model.simulate(x, stamps), 9) / SAMPLES,
-                "python step, ns": 1e9 * median_seconds(lambda: steps(model, x[:20_000]), 9) / 20_000,
-            }
-        )
-    imported = median_seconds(lambda: subprocess.run([sys.executable, "-c", "import hysid"], check=True), 15)
-    bare = median_seconds(lambda: subprocess.run([sys.executable, "-c", "pass"], check=True), 15)
+    rounds = [round_of(program, model) for _ in range(ROUNDS)]
     for name in rounds[0]:
-        print(f"{name:<40}{statistics.median(found[name] for found in rounds):9.1f}")
-    print(f"{'import hysid, ms':<40}{1e3 * (imported - bare):9.1f}")
-
-
-def steps(model, x):
-    model.reset()
-    step = model.step
-    for place, value in enumerate(x.tolist()):
-        step(value, place * 0.06)
+        print(f"{name:<32}{statistics.median(found[name] for found in rounds):8.1f}")
+    ratios = [
+        found["simulate, Python, ns a sample"] / found["simulate, library, ns a sample"] for found in rounds
+    ]
+    print(f"{'simulate, Python / library':<32}{statistics.median(ratios):8.3f}")
+    print(f"{'import hysid, ms':<32}{import_milliseconds():8.1f}")
 
 
 if __name__ == "__main__":
