@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask check | test | bench | cases | generate-cases | verdicts | tidy`.
+//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts | tidy`.
 
 mod bench;
 mod cases;
@@ -23,6 +23,7 @@ Usage: cargo xtask COMMAND
 Commands:
   check          formatting, lints, documentation, tidiness
   test           every test of the workspace, and of the Python package in an environment of its own
+  python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
   cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]
@@ -68,6 +69,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.as_slice() {
         ["check"] => check::run(),
         ["test"] => test::run(),
+        ["python"] => python::test(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
         ["cases", rest @ ..] => {
