@@ -11,6 +11,7 @@ use hysid::classical::linear_fit::Sign;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::identification::ModelName;
 use hysid::identification::options::{ChosenOptions, NEURONS, RateChoice, STARTS};
+use hysid::model::BAND_PROBABILITIES;
 use hysid::plant::Specimen;
 use hysid::training::genetic::POPULATIONS;
 use hysid::training::{FitOptions, Trainer};
@@ -37,6 +38,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Errors of a model's free run against measured data
     Evaluate(Evaluate),
+    /// How well does a model foretell data it was not fitted to? Cross-validation, fold by fold
+    Validate(Box<Validate>),
     /// Fit every model to the same data and compare them on data that none has seen
     Compare(Compare),
     /// What kind of hysteresis is this? Properties of measured data or of a model, each with its evidence
@@ -118,7 +121,8 @@ pub struct Fit {
     /// Stop after this time and keep the best model so far
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
-    /// Store the state of the fit in this file, every few seconds and at the end
+    /// Store the state of the fit in this file, every few seconds and at the end; for a single network, such as
+    /// --model xpnn+
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
     /// Go on where this checkpoint left off, with the options it was made with; give the same tables and
@@ -134,6 +138,36 @@ pub struct Fit {
     /// Write no report
     #[arg(long)]
     pub no_report: bool,
+}
+
+/// Arguments of `validate`.
+#[derive(Debug, Args)]
+pub struct Validate {
+    /// Tables of measured data: CSV with a header line
+    #[arg(value_name = "DATA.csv", required = true)]
+    pub data: Vec<PathBuf>,
+    /// Parts that records are dealt to, each held out in turn, at most; a single record is cut in time into five,
+    /// whatever is said here
+    #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
+    pub folds: usize,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// The model and its training.
+    #[command(flatten)]
+    pub training: TrainingOptions,
+    /// What can be chosen of models that are no networks.
+    #[command(flatten)]
+    pub rival: RivalOptions,
+    /// Time for each fold, after which its best model so far is judged
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Threads to use; the result does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// How a model is trained.
@@ -290,6 +324,10 @@ fn members(text: &str) -> Result<usize, String> {
     number_within(text, &(1..=MOST_MEMBERS))
 }
 
+fn folds(text: &str) -> Result<usize, String> {
+    number_within(text, &(2..=1000))
+}
+
 fn neurons(text: &str) -> Result<usize, String> {
     number_within(text, &NEURONS)
 }
@@ -305,6 +343,12 @@ fn starts(text: &str) -> Result<usize, String> {
 fn fraction(text: &str) -> Result<f64, String> {
     let fraction = text.parse().ok().filter(|&fraction: &f64| fraction > 0.0 && fraction < 1.0);
     fraction.ok_or_else(|| "a number between 0 and 1 is needed".into())
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let probability = text.parse().ok().filter(|probability| BAND_PROBABILITIES.contains(probability));
+    let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
+    probability.ok_or_else(|| format!("a probability from {least} to {most} is needed"))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -324,6 +368,10 @@ pub struct Simulate {
     /// Where to write [default: stdout, as with `-`]
     #[arg(short, long, value_name = "OUT.csv")]
     pub out: Option<PathBuf>,
+    /// Two further columns, `<output>_low` and `<output>_high`: between them lies the measured output with this
+    /// probability, such as 0.9, as far as the data are like those held out in training
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
+    pub band: Option<f64>,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -338,6 +386,9 @@ pub struct Evaluate {
     /// Table with the model's inputs and the measured output
     #[arg(value_name = "DATA.csv")]
     pub data: PathBuf,
+    /// Tell how many of the measured outputs lie within the model's band of this probability, such as 0.9
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
+    pub band: Option<f64>,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -355,7 +406,7 @@ pub struct Compare {
     /// Table of measured data that no model sees; without it, errors are those of the training
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
-    /// Models to compare, such as xpnn,preisach [default: all]
+    /// Models to compare, such as auto,xpnn,preisach [default: auto and all others]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = model)]
     pub models: Vec<ModelName>,
     /// The page with table and loops [default: first TRAIN with `-compared.html`, in this folder]

@@ -9,13 +9,25 @@ pub mod fit;
 pub mod generate;
 pub mod reproduce;
 pub mod simulate;
+pub mod validate;
 
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Result, anyhow, ensure};
 use hysid::model::Model;
 
 use crate::files;
+
+/// Refuses a model without a band.
+fn check_band(model: &Model, path: &Path) -> Result<()> {
+    ensure!(
+        model.band().is_some(),
+        "{}: this model has no band: `hysid fit` calibrates one with --model auto, or --members, where the data are \
+         enough to hold some out",
+        path.display()
+    );
+    Ok(())
+}
 
 /// Reads a model file.
 fn read_model(path: &Path) -> Result<Model> {

@@ -3,7 +3,6 @@
 mod page;
 
 use std::collections::VecDeque;
-use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -12,7 +11,6 @@ use anyhow::{Context, Result};
 use hysid::identification::{ModelName, Request, identify};
 use hysid::metrics::Errors;
 use hysid::model::Model;
-use hysid::record::Dataset;
 use hysid::training::Termination;
 use hysid::warning::Significant;
 
@@ -20,6 +18,9 @@ use crate::arguments::Compare;
 use crate::data::Data as Read;
 use crate::interrupt;
 use crate::messages::note;
+use crate::report::choice;
+use crate::timing::ns_per_sample;
+use crate::understanding;
 pub use page::page;
 
 /// A simulation is timed over at least this time.
@@ -92,7 +93,7 @@ pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec
     let mut rows = finished.into_inner().expect("all threads are done");
     for row in &mut rows {
         if let Ok(fitted) = &mut row.outcome {
-            fitted.simulate_ns_per_sample = simulate_ns(&fitted.model, &data.train.set)?;
+            fitted.simulate_ns_per_sample = ns_per_sample(&fitted.model, data.train.set.records(), TIMED)?;
         }
     }
     rows.sort_by(|a, b| error(a).total_cmp(&error(b)));
@@ -153,19 +154,6 @@ fn say(row: &Row, done: usize, all: usize) {
     }
 }
 
-/// Nanoseconds for a sample, over whole free runs.
-fn simulate_ns(model: &Model, data: &Dataset) -> Result<f64> {
-    let began = Instant::now();
-    let mut samples = 0usize;
-    while began.elapsed() < TIMED {
-        for record in data.records() {
-            black_box(model.simulate(black_box(record))?);
-            samples += record.len();
-        }
-    }
-    Ok(1e9 * began.elapsed().as_secs_f64() / samples.max(1) as f64)
-}
-
 fn percent(errors: &Errors) -> String {
     errors.nrmse_std_percent.map_or_else(|| "-".into(), |percent| format!("{:.3}", Significant(percent)))
 }
@@ -213,6 +201,8 @@ pub fn table(rows: &[Row], tested: bool) -> String {
 enum Printed<'a> {
     Fitted {
         model: &'static str,
+        /// What was chosen, or what a network is made of; `null` for a law.
+        structure: Option<String>,
         parameters: usize,
         train: &'a Errors,
         test: Option<&'a Errors>,
@@ -226,6 +216,15 @@ enum Printed<'a> {
     },
 }
 
+/// What a model is made of, in words; `None` for a law, whose name says it.
+fn structure(model: &Model) -> Option<String> {
+    let provenance = model.provenance();
+    match (&provenance.selection, model.network()) {
+        (Some(selection), _) => Some(choice(model, selection)[0].clone()),
+        (None, network) => Some(understanding::parts(network?.architecture())),
+    }
+}
+
 /// The comparison as a list of JSON objects.
 pub fn json(rows: &[Row]) -> Result<String> {
     let printed: Vec<Printed> = rows
@@ -233,6 +232,7 @@ pub fn json(rows: &[Row]) -> Result<String> {
         .map(|row| match &row.outcome {
             Ok(fitted) => Printed::Fitted {
                 model: row.model.name(),
+                structure: structure(&fitted.model),
                 parameters: fitted.model.parameters(),
                 train: &fitted.train,
                 test: fitted.test.as_ref(),

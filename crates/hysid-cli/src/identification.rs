@@ -1,14 +1,16 @@
-//! The work of `fit` and `demo`: say what was understood, train, and write model and report.
+//! The work of `fit` and `demo`: say what was understood, train, and write model and report. What comes before
+//! the training is that of `validate` too.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow};
 use hysid::identification::Request;
 use hysid::metrics::{ErrorSums, Errors};
-use hysid::model::{Model, Provenance};
-use hysid::record::Dataset;
+use hysid::model::{Model, Prediction, Provenance};
+use hysid::record::{Dataset, Record};
 use hysid::summary::Summary;
 use hysid::training::{Checkpoint, Progress, resume};
+use rayon::ThreadPool;
 
 use crate::data::Data;
 use crate::lines::{WIDTH, wrapped};
@@ -25,8 +27,7 @@ pub struct Identified {
     pub evaluations: usize,
     /// Seconds of training.
     pub seconds: f64,
-    understood: Vec<(String, String)>,
-    warnings: Vec<String>,
+    said: Said,
 }
 
 /// What is to be done with the data, and how.
@@ -50,13 +51,19 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Identifies a model, following the training on stderr.
-pub fn identify(data: &Data, work: Work) -> Result<Identified> {
-    let request = work.request;
+/// What was said before the work began.
+pub struct Said {
+    understood: Vec<(String, String)>,
+    warnings: Vec<String>,
+}
+
+/// Says what was understood of data and request, and what to be aware of. From now on Ctrl-C asks to stop, and gets
+/// this answer.
+pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -> Result<Said> {
     let model = match request {
         Request::Network(options) => {
             let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
-            understanding::parts(&architecture)
+            format!(": {} parameters; {}", architecture.parameters(), understanding::parts(&architecture))
         }
         Request::Auto(options) => understanding::choice(options),
         Request::Classical(_) => String::new(),
@@ -65,7 +72,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
         return Err(Usage(format!("{} {hindrance}", request.model().name())).into());
     }
     let summary = Summary::of(&data.set);
-    interrupt::listen("stopping to save the best model so far")?;
+    interrupt::listen(to_ctrl_c)?;
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
     let mut warnings: Vec<String> =
@@ -74,9 +81,20 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
         warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
     }
     warnings.iter().for_each(warning);
+    Ok(Said { understood, warnings })
+}
 
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(work.threads.unwrap_or(0).into()).build();
-    let pool = pool.context("cannot start the threads")?;
+/// So many threads; one for each processor if not said.
+pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
+    pool.context("cannot start the threads")
+}
+
+/// Identifies a model, following the training on stderr.
+pub fn identify(data: &Data, work: Work) -> Result<Identified> {
+    let request = work.request;
+    let said = say_beforehand(data, request, "stopping to save the best model so far")?;
+    let pool = thread_pool(work.threads)?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);
     let fitted = pool.install(|| match work.begun {
@@ -85,7 +103,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
-    Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, understood, warnings })
+    Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, said })
 }
 
 impl Identified {
@@ -108,8 +126,8 @@ impl Identified {
             title,
             model: &self.model,
             sets: sets.iter().map(|(name, data)| self.set(name, data)).collect::<Result<_>>()?,
-            warnings: &self.warnings,
-            understood: &self.understood,
+            warnings: &self.said.warnings,
+            understood: &self.said.understood,
             model_file: path.display().to_string(),
             seconds: self.seconds,
         }))
@@ -122,14 +140,20 @@ impl Identified {
 
     fn set<'a>(&self, name: &str, data: &'a Dataset) -> Result<ReportSet<'a>> {
         let mut sums = ErrorSums::default();
-        let mut simulated = Vec::with_capacity(data.records().len());
-        for record in data.records() {
-            let output = self.model.simulate(record)?;
-            sums.add(record.output(), &output);
-            simulated.push(output);
-        }
+        let predict = |record: &Record| self.model.predict(&record.excitation(), report::BAND);
+        let predicted = self.model.band().map(|_| data.records().iter().map(predict).collect());
+        let predicted: Option<Vec<Prediction>> = predicted.transpose()?;
+        let simulated: Vec<Vec<f64>> = match &predicted {
+            Some(predicted) => predicted.iter().map(|predicted| predicted.output.clone()).collect(),
+            None => data
+                .records()
+                .iter()
+                .map(|record| self.model.simulate(record))
+                .collect::<hysid::Result<_>>()?,
+        };
+        data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
         let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
-        Ok(ReportSet { name: name.into(), data, simulated, errors })
+        Ok(ReportSet { name: name.into(), data, simulated, predicted, errors })
     }
 
     /// Errors, size, time and files, for stdout.
@@ -144,8 +168,9 @@ impl Identified {
                 "(validation: data held out in {} folds, before all was trained on everything)\n",
                 selection.folds.len()
             );
-            for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
-                text += &format!("\n{}", labelled(label, &line));
+            text.push('\n');
+            for (label, line) in ["chosen", "why"].into_iter().zip(report::choice(&self.model, selection)) {
+                text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
             text += "(validation: data held out from the chosen start, before it was trained on all)\n";

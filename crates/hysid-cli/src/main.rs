@@ -4,6 +4,7 @@
 //! 2 (usage), 130 (Ctrl-C, after the best model so far is saved).
 
 mod arguments;
+mod band_coverage;
 mod cell;
 mod checkpoint;
 mod columns;
@@ -24,6 +25,7 @@ mod progress;
 mod report;
 mod reproduction;
 mod table;
+mod timing;
 mod understanding;
 
 use std::process::ExitCode;
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Demo(arguments) => commands::demo::run(&arguments),
         Command::Fit(arguments) => commands::fit::run(&arguments),
+        Command::Validate(arguments) => commands::validate::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),

@@ -47,6 +47,11 @@ pub fn note(text: &str) -> String {
     format!("<p class=\"note\">{}</p>\n", escape(text))
 }
 
+/// What is shown when it is asked for; `content` is HTML.
+pub fn folded(summary: &str, content: &str) -> String {
+    format!("<details>\n<summary>{}</summary>\n{content}</details>\n", escape(summary))
+}
+
 /// A table; the first cell of each row is its heading. A row that is cut short ends in words.
 pub fn table(headings: &[String], rows: &[Vec<String>]) -> String {
     let head: String =

@@ -51,6 +51,8 @@ pub enum Colour {
     Error,
     /// What is there for comparison only.
     Faint,
+    /// Where the measurement is to be expected: an area, which the points of its curve go round.
+    Band,
     /// One of several things of the same kind, counted from 0; colours repeat after [`SERIES`].
     Series(usize),
 }
@@ -76,6 +78,7 @@ impl Colour {
             Colour::Input => RGBColor(0x20, 0x80, 0x40),
             Colour::Error => RGBColor(0xC0, 0x40, 0x20),
             Colour::Faint => RGBColor(0xB0, 0xB0, 0xB0),
+            Colour::Band => RGBColor(0xA0, 0xC8, 0xF0),
             Colour::Series(index) => SERIES_MARKERS[index % SERIES],
         }
     }
@@ -84,7 +87,7 @@ impl Colour {
 const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
 const GRID: RGBColor = RGBColor(0xDD, 0xDD, 0xDD);
 
-/// A line, or dots where a point has no neighbours.
+/// A line, or dots where a point has no neighbours; of [`Colour::Band`], an area.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// Its points; one that is not finite leaves a gap.
@@ -188,6 +191,10 @@ impl Chart {
                         let dot = Circle::new(*point, fine(curve.width), style.filled());
                         chart.draw_series(std::iter::once(dot))?;
                     }
+                    _ if curve.colour == Colour::Band => {
+                        let area = Polygon::new(run.to_vec(), curve.colour.marker().filled());
+                        chart.draw_series(std::iter::once(area))?;
+                    }
                     _ => {
                         let line = PathElement::new(run.to_vec(), style);
                         chart.draw_series(std::iter::once(line))?;
@@ -239,7 +246,8 @@ impl Chart {
             let mut x = begin;
             for (colour, name) in line {
                 let dash = vec![(fine(x), middle(number)), (fine(x + 18.0), middle(number))];
-                area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(2.0) as u32)))?;
+                let width = if *colour == Colour::Band { 10.0 } else { 2.0 };
+                area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(width) as u32)))?;
                 area.draw(&Text::new(name.clone(), (fine(x + 23.0), middle(number)), style()))?;
                 x += entry_width(name);
             }

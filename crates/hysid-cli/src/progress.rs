@@ -19,11 +19,15 @@ const BETWEEN_LINES: Duration = Duration::from_secs(2);
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
 
-/// Follows a fit.
+/// Follows a fit, or the fits to several folds one after the other.
 pub struct Follower {
     started: Instant,
+    /// Time for each fold.
     limit: Option<Duration>,
     starts: usize,
+    /// The fold that is fitted to, counted from 0, and how many there are; a fit to everything is the only one.
+    fold: (usize, usize),
+    fold_started: Instant,
     keeper: Option<Keeper>,
     /// A checkpoint could not be written, and that was said.
     failed: bool,
@@ -48,6 +52,8 @@ impl Follower {
             started: now,
             limit,
             starts,
+            fold: (0, 1),
+            fold_started: now,
             keeper: checkpoint.map(Keeper::new),
             failed: false,
             best: f64::INFINITY,
@@ -56,17 +62,27 @@ impl Follower {
         }
     }
 
+    /// From now on a fold is fitted to, of so many; it has the time limit for itself.
+    pub fn begin_fold(&mut self, place: usize, of: usize) {
+        self.fold = (place, of);
+        self.fold_started = Instant::now();
+        self.best = f64::INFINITY;
+    }
+
     /// Hears of an iteration; breaks after Ctrl-C or at the time limit.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.best = self.best.min(progress.train_nrmse_percent);
+        let (place, of) = self.fold;
+        let done = (place as f64 + progress.done) / of as f64;
         if let Some(bar) = &self.bar {
-            bar.set_position((progress.done * STEPS) as u64);
-            bar.set_message(self.text(progress));
+            bar.set_position((done * STEPS) as u64);
+            bar.set_message(self.text(progress, done));
         } else if self.last_line.elapsed() >= BETWEEN_LINES {
             self.last_line = Instant::now();
-            note(format_args!("{:3.0} % {}", 100.0 * progress.done, self.text(progress)));
+            note(format_args!("{:3.0} % {}", 100.0 * done, self.text(progress, done)));
         }
-        let over = self.limit.is_some_and(|limit| self.started.elapsed() >= limit) || interrupt::requested();
+        let over =
+            self.limit.is_some_and(|limit| self.fold_started.elapsed() >= limit) || interrupt::requested();
         if let Some(keeper) = &mut self.keeper
             && let Err(error) = keeper.observe(progress, over)
             && !std::mem::replace(&mut self.failed, true)
@@ -77,6 +93,14 @@ impl Follower {
         if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
+    /// Says a line without disturbing the bar.
+    pub fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => note(format_args!("{text}")),
+        }
+    }
+
     /// Takes the bar away; tells the seconds spent.
     pub fn finish(self) -> f64 {
         if let Some(bar) = &self.bar {
@@ -85,19 +109,36 @@ impl Follower {
         self.started.elapsed().as_secs_f64()
     }
 
-    fn text(&self, progress: &Progress) -> String {
-        let part = match (progress.phase, progress.method) {
-            (Phase::Starts, _) => format!("{} starts", self.starts),
-            (Phase::AllData, Method::LevenbergMarquardt) => "all data".to_string(),
-            (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
-            (Phase::AllData, Method::LeastSquares) => format!("round {}", progress.epoch),
-            (Phase::AllData, Method::Subgradient) => format!("sub-gradient {}", progress.epoch),
-        };
-        let elapsed = self.started.elapsed().as_secs_f64();
-        let mut left = elapsed / progress.done.max(1e-3) * (1.0 - progress.done);
-        if let Some(limit) = self.limit {
-            left = left.min(limit.as_secs_f64() - elapsed).max(0.0);
-        }
-        format!("{part}, error {:.3} % of std, {left:.0} s left", Significant(self.best))
+    fn text(&self, progress: &Progress, done: f64) -> String {
+        let (place, of) = self.fold;
+        let fold = if of > 1 { format!("fold {} of {of}, ", place + 1) } else { String::new() };
+        format!("{fold}{}, {:.0} s left", part(progress, self.starts, self.best), self.seconds_left(done))
     }
+
+    /// As far as the work done so far tells, and at most what the limit leaves.
+    fn seconds_left(&self, done: f64) -> f64 {
+        let elapsed = self.started.elapsed().as_secs_f64();
+        let left = elapsed / done.max(1e-3) * (1.0 - done);
+        let Some(limit) = self.limit.map(|limit| limit.as_secs_f64()) else { return left };
+        let (place, of) = self.fold;
+        let of_this = (limit - self.fold_started.elapsed().as_secs_f64()).max(0.0);
+        left.min(of_this + (of - place - 1) as f64 * limit)
+    }
+}
+
+/// What is being done, in words.
+fn part(progress: &Progress, starts: usize, best: f64) -> String {
+    // One fit of many: its starts, epochs and errors say nothing of the whole.
+    if progress.is_part {
+        return format!("at {}", progress.model.name());
+    }
+    let part = match (progress.phase, progress.method) {
+        (Phase::Starts, _) => format!("{starts} starts"),
+        (Phase::AllData, Method::LevenbergMarquardt) => "all data".to_string(),
+        (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
+        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY => return "least squares".into(),
+        (Phase::AllData, Method::LeastSquares) => format!("round {}", progress.epoch),
+        (Phase::AllData, Method::Subgradient) => format!("sub-gradient {}", progress.epoch),
+    };
+    format!("{part}, error {:.3} % of std", Significant(best))
 }

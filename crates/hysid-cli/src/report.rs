@@ -1,5 +1,7 @@
 //! The report of a fit: one page of HTML that needs nothing but itself.
 
+mod band;
+mod ensemble;
 mod errors;
 mod figures;
 mod histories;
@@ -10,8 +12,11 @@ mod unit;
 mod usage;
 
 use hysid::metrics::Errors;
-use hysid::model::Model;
+use hysid::model::{Model, Prediction};
 use hysid::record::Dataset;
+
+/// Probability of the band that is drawn and judged.
+pub const BAND: f64 = 0.9;
 
 /// What is reported.
 pub struct Report<'a> {
@@ -39,6 +44,8 @@ pub struct ReportSet<'a> {
     pub data: &'a Dataset,
     /// Free run over each record.
     pub simulated: Vec<Vec<f64>>,
+    /// The same with the band of probability [`BAND`], if the model has one.
+    pub predicted: Option<Vec<Prediction>>,
     /// Errors of these.
     pub errors: Errors,
 }
@@ -47,6 +54,8 @@ pub struct ReportSet<'a> {
 pub fn page(report: &Report) -> String {
     let sections = [
         errors::section(report),
+        ensemble::section(report),
+        band::section(report),
         report.sets.iter().map(figures::loops_section).collect(),
         report.sets.iter().map(histories::section).collect(),
         figures::convergence_section(report.model),
@@ -60,6 +69,8 @@ pub fn page(report: &Report) -> String {
     .concat();
     crate::page::whole(&report.title, &(errors::verdict(report) + &sections))
 }
+
+pub use ensemble::choice;
 
 /// Measured and simulated loops of a set in one chart, an `svg` element.
 /// [`plot::standalone`] makes a file of it.
@@ -85,6 +96,18 @@ pub fn unit_of(column: &str) -> String {
 /// A column's name as the label of an axis.
 pub fn unit_label(column: &str) -> String {
     unit::label(column)
+}
+
+/// The first input as the model sees it, with its unit: spread about zero, maybe.
+fn seen_label(report: &Report) -> String {
+    let input = &report.model.names().inputs[0];
+    match report.model.preprocessing().companding {
+        None => unit::label(input),
+        Some(scale) => {
+            let scale = unit::with(&crate::page::number(scale, 3), input);
+            format!("asinh({} / {scale})", unit::split(input).0)
+        }
+    }
 }
 
 #[cfg(test)]

@@ -95,7 +95,7 @@ pub fn parts(architecture: &Architecture) -> String {
     if architecture.relaxation > 0 {
         parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
     }
-    format!(": {} parameters; {}", architecture.parameters(), parts.join(", "))
+    parts.join(", ")
 }
 
 fn samples(summary: &Summary) -> String {

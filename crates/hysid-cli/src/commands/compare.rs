@@ -32,7 +32,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     let outputs: Vec<&Path> = page.iter().map(PathBuf::as_path).collect();
     check_outputs(&outputs, &inputs)?;
     let models: Vec<ModelName> =
-        if arguments.models.is_empty() { ModelName::all().collect() } else { arguments.models.clone() };
+        if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
     let requests: Result<Vec<Request>> = models
         .iter()
         .map(|&model| {
@@ -61,6 +61,11 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         note(format_args!("page    {}", files::shown(page)));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// The automatic model, which takes longest and is begun first, and all others.
+fn every_model() -> Vec<ModelName> {
+    std::iter::once(ModelName::AUTO).chain(ModelName::all()).collect()
 }
 
 /// The page: as asked, or the first table's name in the present folder.

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use hysid::identification::options::RateChoice;
+use hysid::automatic::Selection;
+use hysid::identification::options::{ChosenOptions, RateChoice};
 use hysid::identification::{ModelName, Request};
 use hysid::metrics::Errors;
+use hysid::model::Model;
 use hysid::network::Architecture;
 use hysid::rate::RateMethod;
 use hysid::training::{Checkpoint, FitOptions, Termination};
@@ -34,22 +36,13 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let chosen = arguments.training.chosen(&arguments.rival);
     let request = match &begun {
         Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
-        None => {
-            let rate = rate_method(&arguments.columns.rate, &roles, chosen.model())
-                .with_context(|| tables[0].file.clone())?;
-            let is_decided =
-                !matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Auto | RateChoice::None));
-            chosen.request(rate, is_decided)
-        }
+        None => request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?,
     };
-    if arguments.checkpoint.is_some() && !matches!(request, Request::Network(_)) {
-        let model = request.model().name();
-        return Err(Usage(format!("{model} has no checkpoints: only networks have")).into());
+    if arguments.checkpoint.is_some() {
+        check_checkpoints(&request)?;
     }
     let data = Data::new(tables, roles, true)?;
-    for option in chosen.useless() {
-        warning(format_args!("{} has no use for --{}", chosen.trained_by(), option.replace('_', "-")));
-    }
+    warn_of_useless(&chosen);
     let work = Work {
         request: &request,
         begun,
@@ -121,6 +114,31 @@ fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
     Ok(options)
 }
 
+/// Refuses checkpoints of what has none.
+fn check_checkpoints(request: &Request) -> Result<()> {
+    let what = match request {
+        Request::Network(_) => return Ok(()),
+        Request::Classical(options) => options.model.name(),
+        Request::Auto(options) if options.only.is_some() => "an ensemble",
+        Request::Auto(_) => "auto",
+    };
+    let advice = "only a single network has, such as that of --model xpnn+";
+    Err(Usage(format!("{what} has no checkpoints: {advice}")).into())
+}
+
+/// What the options ask for, with these columns.
+pub fn request(chosen: &ChosenOptions, rate: &RateOption, roles: &Roles) -> Result<Request> {
+    let is_decided = !matches!(rate, RateOption::Choice(RateChoice::Auto | RateChoice::None));
+    Ok(chosen.request(rate_method(rate, roles, chosen.model())?, is_decided))
+}
+
+/// Warns of options that the model makes no use of.
+pub fn warn_of_useless(chosen: &ChosenOptions) {
+    for option in chosen.useless() {
+        warning(format_args!("{} has no use for --{}", chosen.trained_by(), option.replace('_', "-")));
+    }
+}
+
 /// The rate that `--rate` means for these columns and this model.
 pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
     Ok(match option {
@@ -143,6 +161,10 @@ struct Printed<'a> {
     model: String,
     architecture: PrintedArchitecture,
     parameters: usize,
+    /// Those that answer together; `null` for a single model.
+    members: Option<Vec<PrintedMember>>,
+    /// What was tried and how it did; `null` where there was no choice.
+    selection: Option<&'a Selection>,
     train: &'a Errors,
     validation: Option<&'a Errors>,
     seconds: f64,
@@ -157,15 +179,33 @@ struct PrintedArchitecture {
     parts: Option<Architecture>,
 }
 
+#[derive(serde::Serialize)]
+struct PrintedMember {
+    #[serde(flatten)]
+    architecture: PrintedArchitecture,
+    parameters: usize,
+}
+
+impl PrintedArchitecture {
+    fn of(model: &Model) -> Self {
+        Self { family: model.name(), parts: model.network().map(|network| *network.architecture()) }
+    }
+}
+
+impl PrintedMember {
+    fn of(model: &Model) -> Self {
+        Self { architecture: PrintedArchitecture::of(model), parameters: model.parameters() }
+    }
+}
+
 fn json(identified: &Identified, out: &Path) -> Result<String> {
     let (model, provenance) = (&identified.model, identified.model.provenance());
     let printed = Printed {
         model: out.display().to_string(),
-        architecture: PrintedArchitecture {
-            family: model.name(),
-            parts: model.network().map(|network| *network.architecture()),
-        },
+        architecture: PrintedArchitecture::of(model),
         parameters: model.parameters(),
+        members: model.ensemble().map(|ensemble| ensemble.members().iter().map(PrintedMember::of).collect()),
+        selection: provenance.selection.as_ref(),
         train: &provenance.train,
         validation: provenance.validation.as_ref(),
         seconds: identified.seconds,

@@ -37,7 +37,8 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
             let simulated: Result<Vec<Vec<f64>>, hysid::Error> =
                 shown.records().iter().map(|record| fitted.model.simulate(record)).collect();
             let errors = fitted.judged().clone();
-            let set = ReportSet { name: data.into(), data: shown, simulated: simulated?, errors };
+            let set =
+                ReportSet { name: data.into(), data: shown, simulated: simulated?, predicted: None, errors };
             let title = format!("{name}: {} %", super::percent(fitted.judged()));
             multiples += &figure(&small_loops(&set, title), false);
         }

@@ -53,6 +53,18 @@ fn blanks_leave_gaps_and_lone_points_are_dots() {
 }
 
 #[test]
+fn a_band_is_an_area_with_gaps() {
+    let around = |x: f64| vec![(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)];
+    let points = [around(0.0), vec![(f64::NAN, 0.0)], around(3.0)].concat();
+    let mut chart = chart(points);
+    (chart.curves[0].colour, chart.legend) = (Colour::Band, vec![(Colour::Band, "90 % band".into())]);
+    let svg = chart.svg();
+    assert_eq!(svg.split("<polygon").filter(|piece| piece.contains("fill=\"#A0C8F0\"")).count(), 2, "{svg}");
+    assert!(svg.contains("90 % band"));
+    assert_balanced(&svg);
+}
+
+#[test]
 fn odd_series_can_be_drawn() {
     let cases = [vec![], vec![(1.0, 2.0)], vec![(0.0, 5.0); 9], vec![(f64::NAN, 1.0)], vec![(1e150, -1e150)]];
     for points in cases {
@@ -62,7 +74,8 @@ fn odd_series_can_be_drawn() {
 
 #[test]
 fn every_marker_is_recoloured() {
-    let colours = [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint];
+    let colours =
+        [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint, Colour::Band];
     let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
     for RGBColor(r, g, b) in markers {
         assert!(STYLE.contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));

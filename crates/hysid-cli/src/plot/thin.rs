@@ -16,6 +16,20 @@ pub fn thin(points: &[Point], most: usize) -> Vec<Point> {
     points.chunks(points.len().div_ceil(buckets)).flat_map(extremes).collect()
 }
 
+/// The outline of the area between two curves over the same places, which rise: there along the upper one and
+/// back along the lower, at about `most` places. Neighbours are joined to what contains them, so that no part of
+/// the area is lost.
+pub fn outline(places: &[f64], low: &[f64], high: &[f64], most: usize) -> Vec<Point> {
+    let size = places.len().div_ceil(most.max(1)).max(1);
+    let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let places: Vec<f64> =
+        places.chunks(size).map(|chunk| 0.5 * (chunk[0] + chunk[chunk.len() - 1])).collect();
+    let upper = places.iter().copied().zip(high.chunks(size).map(most));
+    let lower: Vec<Point> = places.iter().copied().zip(low.chunks(size).map(least)).collect();
+    upper.chain(lower.into_iter().rev()).collect()
+}
+
 /// The points of a bucket that its picture needs.
 fn extremes(bucket: &[Point]) -> Vec<Point> {
     let finite = || (0..bucket.len()).filter(|&i| is_drawable(bucket[i]));
@@ -110,6 +124,21 @@ mod tests {
         let gaps = thinned.windows(2).filter(|pair| is_drawable(pair[0]) && !is_drawable(pair[1])).count();
         assert_eq!(gaps, 1);
         assert!(thin(&[], 10).is_empty());
+    }
+
+    #[test]
+    fn an_outline_goes_round_everything() {
+        let places: Vec<f64> = (0..7).map(f64::from).collect();
+        let low: Vec<f64> = places.iter().map(|t| -t).collect();
+        let high: Vec<f64> = places.iter().map(|t| (t - 2.0).abs()).collect();
+        let exact = outline(&places, &low, &high, 100);
+        assert_eq!(
+            (exact.len(), exact[0], exact[6], exact[7], exact[13]),
+            (14, (0.0, 2.0), (6.0, 4.0), (6.0, -6.0), (0.0, 0.0))
+        );
+        let coarse = outline(&places, &low, &high, 3);
+        assert_eq!(coarse, [(1.0, 2.0), (4.0, 3.0), (6.0, 4.0), (6.0, -6.0), (4.0, -5.0), (1.0, -2.0)]);
+        assert!(outline(&[], &[], &[], 10).is_empty());
     }
 
     #[test]

@@ -25,7 +25,8 @@ pub fn verdict(report: &Report) -> String {
     let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
     parts.push(match &provenance.validation {
         Some(errors) => {
-            format!("{} on data held out from it, before it was trained on everything", judged(errors))
+            let before = "before it was trained on everything";
+            format!("{} on data held out from it, {before}", judged(errors))
         }
         None if provenance.options.starts() == 1 => "unknown on new data, since none were held out".into(),
         None => "unknown on new data, since there were too few to hold any out".into(),
@@ -85,12 +86,17 @@ fn explanation(report: &Report) -> String {
          start of each record. RMSE is the root of the mean square error; NRMSE is the same in percent of \
          the measured output's standard deviation or range; fit is 100 % less the former. ",
     );
-    text += match report.model.provenance().validation {
-        Some(_) => {
+    let provenance = report.model.provenance();
+    text += match (&provenance.validation, &provenance.selection) {
+        (Some(_), Some(_)) => {
+            "“Validation” is what was foretold of data held out, all folds together, before the model was trained \
+             on everything; what counts how much was chosen there, so it is a little flattered."
+        }
+        (Some(_), None) => {
             "“Validation” is the chosen start on the data held out from it, before it was trained on \
              everything; having won the choice among the starts there, it is a little flattered."
         }
-        None => "Nothing was held out, so there is no validation.",
+        (None, _) => "Nothing was held out, so there is no validation.",
     };
     note(&text)
 }

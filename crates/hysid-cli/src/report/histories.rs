@@ -1,8 +1,10 @@
 //! Output, error and input over time.
 
-use super::{ReportSet, unit};
+use hysid::model::Prediction;
+
+use super::{BAND, ReportSet, unit};
 use crate::page::{figure, note, number, section as section_of};
-use crate::plot::thin::{Point, thin};
+use crate::plot::thin::{Point, outline, thin};
 use crate::plot::{Axis, Chart, Colour, Curve, escape};
 
 /// Most records drawn; of more, those with the largest errors.
@@ -67,6 +69,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> String {
         Some(unit) => format!("error ({unit})"),
         None => "error".into(),
     };
+    let predicted = set.predicted.as_ref().map(|predicted| &predicted[index]);
     let mut charts = panel.figure(
         &output,
         220.0,
@@ -74,10 +77,16 @@ fn record(set: &ReportSet, index: usize, points: usize) -> String {
             (Colour::Measured, "measured", 2.4, record.output()),
             (Colour::Simulated, "model", 1.1, &set.simulated[index]),
         ],
+        predicted.map(|predicted| panel.band(&predicted.low, &predicted.high)),
     );
-    charts += &panel.figure(&error, 165.0, &[(Colour::Error, "model − measured", 1.1, &errors(set, index))]);
+    let error_lines = [(Colour::Error, "model − measured", 1.1, errors(set, index))];
+    let error_lines = error_lines
+        .each_ref()
+        .map(|(colour, name, width, values)| (*colour, *name, *width, values.as_slice()));
+    charts +=
+        &panel.figure(&error, 165.0, &error_lines, predicted.map(|predicted| panel.error_band(predicted)));
     for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
-        charts += &panel.figure(&unit::label(name), 165.0, &[(Colour::Input, "input", 1.2, input)]);
+        charts += &panel.figure(&unit::label(name), 165.0, &[(Colour::Input, "input", 1.2, input)], None);
     }
     let rmse = rmse(set, index);
     let rmse = match rmse < 0.0 {
@@ -104,23 +113,68 @@ struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    fn figure(&self, label: &str, height: f64, lines: &[(Colour, &str, f64, &[f64])]) -> String {
+    /// The area between two curves.
+    fn band(&self, low: &[f64], high: &[f64]) -> Curve {
+        Curve { points: outline(self.time, low, high, self.points), colour: Colour::Band, width: 0.0 }
+    }
+
+    /// Where the error is to be expected.
+    fn error_band(&self, predicted: &Prediction) -> Curve {
+        let from = |edges: &[f64]| -> Vec<f64> {
+            predicted.output.iter().zip(edges).map(|(output, edge)| output - edge).collect()
+        };
+        self.band(&from(&predicted.high), &from(&predicted.low))
+    }
+
+    /// Lines over time, in front of a band if there is one.
+    fn figure(
+        &self,
+        label: &str,
+        height: f64,
+        lines: &[(Colour, &str, f64, &[f64])],
+        band: Option<Curve>,
+    ) -> String {
         let curve = |&(colour, _, width, values): &(Colour, &str, f64, &[f64])| {
             let points: Vec<Point> = self.time.iter().copied().zip(values.iter().copied()).collect();
             Curve { points: thin(&points, self.points), colour, width }
         };
-        let curves: Vec<Curve> = lines.iter().map(curve).collect();
-        let ordinates = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let mut legend: Vec<(Colour, String)> =
+            lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect();
+        if band.is_some() {
+            legend.push((Colour::Band, format!("{} % band", number(100.0 * BAND, 3))));
+        }
+        let lines: Vec<Curve> = lines.iter().map(curve).collect();
+        let y = Axis::linear(label, reach(&lines, band.as_ref()).into_iter());
+        let curves = band.into_iter().chain(lines).collect();
         let chart = Chart {
             labels: Vec::new(),
             description: format!("{label} over {}, record {}", self.time_label, self.record),
             title: String::new(),
             size: (860.0, height),
             x: Axis::linear(self.time_label.clone(), self.time.iter().copied()),
-            y: Axis::linear(label, ordinates),
-            legend: lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect(),
+            y,
+            legend,
             curves,
         };
         figure(&chart.svg(), true)
     }
+}
+
+/// How far beyond the lines, as a share of their range, a band is drawn: where it is wider still, it is cut off, or it
+/// would press the lines together.
+const MOST_BEYOND: f64 = 1.0;
+
+/// What the vertical axis must show of lines and the band behind them.
+fn reach(lines: &[Curve], band: Option<&Curve>) -> Vec<f64> {
+    let range = |curves: &[Curve]| {
+        let ordinates = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+        let finite = ordinates.filter(|y| y.is_finite());
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)))
+    };
+    let (low, high) = range(lines);
+    let Some((band_low, band_high)) = band.map(|band| range(std::slice::from_ref(band))) else {
+        return vec![low, high];
+    };
+    let most = MOST_BEYOND * (high - low);
+    vec![low, high, band_low.max(low - most), band_high.min(high + most)]
 }

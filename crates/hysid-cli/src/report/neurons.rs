@@ -2,10 +2,10 @@
 
 use hysid::network::{Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator};
-use hysid::record::Record;
+use hysid::record::{Dataset, Record};
 use hysid::scaling::Scaling;
 
-use super::{Report, unit};
+use super::{Report, seen_label, unit};
 use crate::page::{count, figure, note, number, section as section_of, table};
 use crate::plot::{Axis, Chart, Colour, Curve};
 
@@ -91,10 +91,9 @@ fn stops(report: &Report) -> Vec<Stop> {
 }
 
 fn stop_table(report: &Report, stops: &[Stop]) -> String {
-    let names = report.model.names();
     let a = network(report).architecture();
     let channels = a.channels().min(MOST_CHANNELS);
-    let mut headings = vec!["stop".to_string(), format!("threshold of {}", unit::label(&names.inputs[0]))];
+    let mut headings = vec!["stop".to_string(), format!("threshold of {}", seen_label(report))];
     headings.extend((0..channels).map(|channel| format!("weight of {}", channel_name(report, channel))));
     if a.deterioration {
         headings.push("capacity β".into());
@@ -141,18 +140,33 @@ fn stop_note(report: &Report, stops: &[Stop]) -> String {
 }
 
 fn channel_name(report: &Report, channel: usize) -> String {
-    let names = report.model.names();
     match (channel, network(report).architecture().rate) {
+        (1, true) if report.model.preprocessing().rate_companding.is_some() => "the spread rate".into(),
         (1, true) => "the rate".into(),
-        (channel, rate) => unit::split(&names.inputs[channel - usize::from(rate && channel > 0)]).0,
+        (channel, rate) => input_name(report, channel - usize::from(rate && channel > 0)),
+    }
+}
+
+/// An input of the network: one that was measured, or what its past comes to.
+fn input_name(report: &Report, input: usize) -> String {
+    let names = &report.model.names().inputs;
+    let name = |input: usize| unit::split(&names[input]).0;
+    match input.checked_sub(names.len()) {
+        None if input == 0 && report.model.preprocessing().companding.is_some() => seen_label(report),
+        None => name(input),
+        Some(0) => format!("largest |{}| so far", name(0)),
+        Some(_) => format!("path of {} so far", name(0)),
     }
 }
 
 /// Share of each stop's strength that is left at the end of the longest record.
 fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
-    let longest: &Record = report.sets.first()?.data.records().iter().max_by_key(|record| record.len())?;
-    let model = report.model;
-    let drive = scaling(report).drive(longest, network(report).architecture(), model.rate()).ok()?;
+    let data = report.sets.first()?.data;
+    let longest: &Record = data.records().iter().max_by_key(|record| record.len())?;
+    let longest = Dataset::new(data.names().clone(), vec![longest.clone()]).ok()?;
+    let (seen, rate) = report.model.preprocessing().data(&longest, report.model.rate()).ok()?;
+    let longest = &seen.records()[0];
+    let drive = scaling(report).drive(longest, network(report).architecture(), rate).ok()?;
     let left = |stop: &Stop| {
         let mut element = DeterioratingStop::new(1.0, stop.beta).ok()?;
         for row in 0..longest.len() {
@@ -166,7 +180,6 @@ fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
 
 /// Thresholds on a logarithmic axis, beside the range of the input.
 fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
-    let input = &report.model.names().inputs[0];
     let largest = scaling(report).inputs[0];
     let shown = |stop: &Stop| stop.threshold.clamp(1e-4 * largest, 1e4 * largest);
     let top = stops.len() as f64 + 0.5;
@@ -183,7 +196,7 @@ fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
         description: format!("Thresholds of the {} stops", stops.len()),
         title: String::new(),
         size: (860.0, 240.0),
-        x: Axis::logarithmic(format!("threshold of {}", unit::label(input)), thresholds),
+        x: Axis::logarithmic(format!("threshold of {}", seen_label(report)), thresholds),
         y: Axis::linear("stops by threshold", [0.5, top].into_iter()),
         curves,
         legend: vec![
@@ -207,7 +220,7 @@ fn relaxation_table(report: &Report) -> String {
     let mut neurons: Vec<(usize, f64)> = ln_taus.iter().map(|ln_tau| ln_tau.exp()).enumerate().collect();
     neurons.sort_by(|p, q| (p.0 / a.relaxation).cmp(&(q.0 / a.relaxation)).then(p.1.total_cmp(&q.1)));
     let row = |&(m, tau): &(usize, f64)| {
-        vec![(m + 1).to_string(), unit::split(&names.inputs[m / a.relaxation]).0, number(tau, 3)]
+        vec![(m + 1).to_string(), input_name(report, m / a.relaxation), number(tau, 3)]
     };
     let rows: Vec<Vec<String>> = neurons.iter().take(MOST_ROWS).map(row).collect();
     let headings = ["neuron".into(), "of input".into(), format!("relaxation time ({time})")];

@@ -4,7 +4,7 @@ use hysid::classical::Law;
 use hysid::model::Body;
 use hysid::unit::of_column;
 
-use super::Report;
+use super::{Report, seen_label};
 use crate::page::{count, note, number, section as section_of, table};
 
 /// Most rows of the table.
@@ -14,7 +14,8 @@ const MOST_ROWS: usize = 60;
 pub fn section(report: &Report) -> String {
     let Body::Law(law) = report.model.body() else { return String::new() };
     let names = report.model.names();
-    let input = of_column(&names.inputs[0]);
+    let is_companded = report.model.preprocessing().companding.is_some();
+    let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
     let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
     let parameters = law.parameters();
     let bound = |value: f64| match value.abs() >= 1e50 {
@@ -41,6 +42,12 @@ pub fn section(report: &Report) -> String {
     if parameters.len() > rows.len() {
         let more = count(parameters.len() - rows.len(), "more parameter");
         content += &note(&format!("{more} are in the model file."));
+    }
+    if is_companded {
+        let seen = seen_label(report);
+        content += &note(&format!(
+            "The law sees its input as {seen}, a number without a unit; so do its parameters."
+        ));
     }
     section_of("Parameters", &content)
 }

@@ -6,7 +6,7 @@ use hysid::identification::Request;
 use hysid::rate::RateMethod;
 use hysid::training::FitOptions;
 
-use super::Report;
+use super::{Report, seen_label};
 use crate::page::{count, definitions, number, section as section_of};
 use crate::plot::escape;
 
@@ -44,6 +44,16 @@ pub fn section(report: &Report) -> String {
         Request::Auto(options) => of_auto(report, options),
     };
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
+    let preprocessing = report.model.preprocessing();
+    if preprocessing.companding.is_some() {
+        say("Input as it is seen", seen_label(report));
+    }
+    if let Some(scale) = preprocessing.rate_companding {
+        say("Rate as it is seen", format!("asinh(rate / {})", number(scale, 3)));
+    }
+    if preprocessing.history.is_some() {
+        say("Past as it is seen", "largest input and path so far".into());
+    }
     say("Rate", rate.into());
     say(
         "Trained on",
@@ -62,14 +72,17 @@ fn pair(name: &str, value: impl Into<String>) -> (String, String) {
 
 fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
     let provenance = report.model.provenance();
-    let held_out = match &provenance.validation {
-        Some(errors) => format!(
+    let held_out = match (&provenance.validation, &provenance.selection) {
+        (_, Some(selection)) => {
+            format!("{} in turn, to choose this model among others", count(selection.folds.len(), "part"))
+        }
+        (Some(errors), None) => format!(
             "{} % asked for: {}",
             number(100.0 * options.validation, 3),
             count(errors.samples, "sample")
         ),
-        None if options.starts == 1 => "nothing: there was but one start".into(),
-        None => "nothing: too few data".into(),
+        (None, None) if options.starts == 1 => "nothing: there was but one start".into(),
+        (None, None) => "nothing: too few data".into(),
     };
     let (starts, epochs) = match options.starts {
         1 => ("1".into(), format!("at most {}", options.epochs)),
@@ -104,9 +117,13 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
 
 fn of_auto(report: &Report, options: &AutoOptions) -> Vec<(String, String)> {
     let members = report.model.ensemble().map_or(1, |ensemble| ensemble.members().len());
+    let (of, candidates) = match &options.only {
+        Some(request) => (format!(" of {}", request.model().name()), "the model"),
+        None => (String::new(), "each candidate"),
+    };
     vec![
-        pair("Model", format!("auto: {}", count(members, "member"))),
-        pair("Training", "each candidate on data of which a part was held out, then on everything"),
+        pair("Model", format!("auto: {}{of}, {} at most", count(members, "member"), options.members)),
+        pair("Training", format!("{candidates} on data of which a part was held out, then on everything")),
         pair("Seed", options.seed.to_string()),
     ]
 }

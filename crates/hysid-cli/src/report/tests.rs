@@ -44,7 +44,7 @@ fn model(data: &Dataset) -> Model {
 
 fn set<'a>(name: &str, model: &Model, data: &'a Dataset) -> ReportSet<'a> {
     let simulated = data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
-    ReportSet { name: name.into(), data, simulated, errors: model.evaluate(data).unwrap() }
+    ReportSet { name: name.into(), data, simulated, predicted: None, errors: model.evaluate(data).unwrap() }
 }
 
 fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Report<'a> {

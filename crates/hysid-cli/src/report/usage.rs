@@ -1,5 +1,7 @@
 //! How to go on with the model, and what it cannot do.
 
+use hysid::model::Model;
+
 use super::{Report, unit};
 use crate::page::{note, paragraph, section as section_of, span, table};
 use crate::plot::escape;
@@ -12,11 +14,15 @@ pub fn section(report: &Report) -> String {
 fn commands(report: &Report) -> String {
     let file = quoted(&report.model_file);
     let command = |text: String| format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(&text));
+    let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
     let content = [
         paragraph("Judge it on a measurement that it has not seen:"),
         command(format!("hysid evaluate {file} NEW.csv")),
-        paragraph("Simulate an input; the output is added as a column:"),
-        command(format!("hysid simulate {file} NEW.csv -o OUT.csv")),
+        paragraph(match band {
+            "" => "Simulate an input; the output is added as a column:",
+            _ => "Simulate an input; the output and its band are added as columns:",
+        }),
+        command(format!("hysid simulate {file} NEW.csv -o OUT.csv{band}")),
         note(
             "NEW.csv needs the columns of the training data under the same names; evaluate needs the output too.",
         ),
@@ -50,7 +56,7 @@ fn limits(report: &Report) -> String {
             "It knows no time: the same input path gives the same output, however fast it is run.".into(),
         );
     }
-    if report.model.network().is_some_and(|network| network.architecture().deterioration) {
+    if wears_out(report.model) {
         items.push(
             "It wears out by sliding: a history longer or harsher than the training records wears it further \
              than anything measured vouches for."
@@ -62,6 +68,12 @@ fn limits(report: &Report) -> String {
     }
     let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escape(item))).collect();
     section_of("What the model cannot do", &format!("{}<ul>\n{items}</ul>\n", table(&headings, &rows)))
+}
+
+/// True if a network in it deteriorates.
+fn wears_out(model: &Model) -> bool {
+    let network = model.network().is_some_and(|network| network.architecture().deterioration);
+    network || model.ensemble().is_some_and(|ensemble| ensemble.members().iter().any(wears_out))
 }
 
 /// A file name as a shell takes it.

@@ -1,0 +1,154 @@
+//! `hysid validate`: how well a model foretells data that it was not fitted to.
+
+use anyhow::{Context, Result, anyhow};
+use hysid::identification::identify;
+use hysid::model::Model;
+use hysid::training::{Progress, Termination};
+use hysid::unit;
+use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
+use hysid::warning::Significant;
+
+use crate::Outcome;
+use crate::arguments::Validate;
+use crate::columns::Roles;
+use crate::commands::fit::{request, warn_of_useless};
+use crate::data::{Data, read_tables};
+use crate::identification::{say_beforehand, thread_pool};
+use crate::interrupt;
+use crate::lines::{WIDTH, aligned, wrapped};
+use crate::messages::{note, results};
+use crate::progress::Follower;
+
+/// What came of the folds, and how it came about.
+#[derive(serde::Serialize)]
+struct Validated {
+    model: &'static str,
+    /// Folds that there are; those not reached before Ctrl-C have no errors.
+    folds_in_all: usize,
+    /// Folds whose fit the time limit ended.
+    folds_stopped: usize,
+    seconds: f64,
+    #[serde(flatten)]
+    errors: CrossValidation,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Validate) -> Result<Outcome> {
+    let tables = read_tables(&arguments.data)?;
+    let file = tables[0].file.clone();
+    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let chosen = arguments.training.chosen(&arguments.rival);
+    let request = request(&chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
+    let data = Data::new(tables, roles, true)?;
+    warn_of_useless(&chosen);
+    let mut validator =
+        CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;
+    say_beforehand(&data, &request, "stopping; the folds that are done are told")?;
+
+    let pool = thread_pool(arguments.threads)?;
+    let mut follower = Follower::new(request.starts(), arguments.time_limit, None);
+    let (all, mut stopped) = (validator.folds().len(), 0);
+    for fold in 0..all {
+        follower.begin_fold(fold, all);
+        let mut observer = |progress: &Progress| follower.observe(progress);
+        let fitted = pool.install(|| identify(&validator.folds()[fold].train, &request, &mut observer));
+        let model = fitted.map_err(|error| data.explain(error))?.model;
+        if is_stopped(&model) {
+            if interrupt::requested() {
+                break;
+            }
+            stopped += 1;
+        }
+        let errors = validator.judge(fold, &model).map_err(|error| data.explain(error))?;
+        follower.say(&format!("fold {} of {all}: {} % of std unseen", fold + 1, percent(&errors.unseen)));
+        if interrupt::requested() {
+            break;
+        }
+    }
+    let seconds = follower.finish();
+    let Some(errors) = validator.result() else {
+        note(format_args!("interrupted before the first fold was done"));
+        return Ok(Outcome::Interrupted);
+    };
+    let model = request.model().name();
+    let validated = Validated { model, folds_in_all: all, folds_stopped: stopped, seconds, errors };
+    results(&match arguments.json {
+        true => serde_json::to_string_pretty(&validated)? + "\n",
+        false => validated.text(),
+    })?;
+    if interrupt::requested() {
+        note(format_args!("interrupted: {} of {all} folds are done", validated.errors.folds.len()));
+        return Ok(Outcome::Interrupted);
+    }
+    Ok(Outcome::Done)
+}
+
+fn is_stopped(model: &Model) -> bool {
+    model.provenance().termination == Termination::Stopped
+}
+
+impl Validated {
+    /// The folds as a table, in 80 columns where units are short.
+    fn text(&self) -> String {
+        let unit = unit::of_column(&self.errors.unseen.output).unwrap_or_else(|| "RMSE".into());
+        let headings =
+            ["%".to_string(), unit].map(|unit| [format!("train {unit}"), format!("unseen {unit}")]);
+        let row = |name: &str, numbers: [String; 4]| [vec![name.to_string()], numbers.to_vec()].concat();
+        let mut rows = vec![row("held out", headings.concat().try_into().expect("two times two"))];
+        rows.extend(self.errors.folds.iter().map(|fold| row(&fold.held_out, cells(fold))));
+        let blank = String::new;
+        let all = &self.errors.unseen;
+        rows.push(row("all together", [blank(), percent(all), blank(), number(all.rmse)]));
+        let mean = self.errors.unseen_nrmse_std_percent.map_or_else(|| "-".into(), number);
+        rows.push(row("geometric mean", [blank(), mean, blank(), blank()]));
+        shorten_names(&mut rows);
+        let mut text = aligned(&rows).join("\n") + "\n\n";
+        text += &wrapped(
+            "Errors of free runs: RMSE, and the same in % of the standard deviation of the output there. Unseen is \
+             what was held out of the fit. A single record is cut in time, and parts of it are held out more than \
+             once.",
+            WIDTH,
+        )
+        .join("\n");
+        text += &format!("\n{}: {} in {:.1} s\n", self.model, self.count(), self.seconds);
+        text
+    }
+
+    fn count(&self) -> String {
+        let done = match self.errors.folds.len() {
+            all if all == self.folds_in_all => format!("{all} folds"),
+            some => format!("{some} of {} folds", self.folds_in_all),
+        };
+        match self.folds_stopped {
+            0 => done,
+            stopped => format!("{done}, {stopped} of them ended by the time limit,"),
+        }
+    }
+}
+
+fn cells(fold: &FoldErrors) -> [String; 4] {
+    [percent(&fold.train), percent(&fold.unseen), number(fold.train.rmse), number(fold.unseen.rmse)]
+}
+
+fn percent(errors: &hysid::metrics::Errors) -> String {
+    errors.nrmse_std_percent.map_or_else(|| "-".into(), number)
+}
+
+fn number(value: f64) -> String {
+    format!("{:.3}", Significant(value))
+}
+
+/// Cuts names off where a line would be too long for a terminal.
+fn shorten_names(rows: &mut [Vec<String>]) {
+    const FEWEST: usize = 20;
+    let letters = |text: &String| text.chars().count();
+    let numbers: usize = (1..rows[0].len())
+        .map(|column| 2 + rows.iter().map(|row| letters(&row[column])).max().unwrap_or(0))
+        .sum();
+    let room = WIDTH.saturating_sub(numbers).max(FEWEST);
+    for name in rows.iter_mut().map(|row| &mut row[0]) {
+        if letters(name) > room {
+            *name = name.chars().take(room - 1).chain(['…']).collect();
+        }
+    }
+}
