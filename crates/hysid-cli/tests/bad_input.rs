@@ -5,7 +5,7 @@ mod workbench;
 use workbench::{Workbench, csv, rows, table, with_cell, with_column};
 
 /// A quick fit of a file.
-const QUICK: &str = "--no-report --starts 1 --epochs 1 -o out.json";
+const QUICK: &str = "--no-report --model xpnn+ --starts 1 --epochs 1 -o out.json";
 
 /// Runs a quick fit of each text and compares the last line of stderr.
 fn check_fits(cases: &[(&str, Vec<u8>, &str)]) {

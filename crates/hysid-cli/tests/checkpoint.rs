@@ -9,10 +9,10 @@ use workbench::{Ran, Workbench, table};
 
 /// Trainers with so many epochs that they take a second or two.
 const FITS: [&str; 4] = [
-    "--training hybrid --epochs 300 --population 20 --stall 0",
-    "--training genetic --epochs 200 --population 20 --stall 0",
-    "--training subgradient --epochs 1500 --stall 0",
-    "--starts 6 --epochs 60",
+    "--model xpnn+ --training hybrid --epochs 300 --population 20 --stall 0",
+    "--model xpnn+ --training genetic --epochs 200 --population 20 --stall 0",
+    "--model xpnn+ --training subgradient --epochs 1500 --stall 0",
+    "--model xpnn+ --starts 6 --epochs 60",
 ];
 
 fn bench() -> Workbench {
@@ -86,7 +86,7 @@ fn killed_at_any_moment_a_fit_is_taken_up_again_to_the_same_model() {
 #[test]
 fn a_fit_that_is_interrupted_says_how_to_go_on() {
     let bench = bench();
-    let options = "--training hybrid --epochs 100000 --stall 0 --population 20";
+    let options = "--model xpnn+ --training hybrid --epochs 100000 --stall 0 --population 20";
     let mut child = bench
         .command(&fit(&format!("{options} -o m.json --checkpoint c.bin")))
         .stdout(Stdio::null())
@@ -109,7 +109,7 @@ fn a_fit_that_is_interrupted_says_how_to_go_on() {
 #[test]
 fn resuming_is_refused_with_other_options_or_data() {
     let bench = bench();
-    ran(&bench, "--starts 2 --epochs 2 -o m.json --checkpoint c.bin");
+    ran(&bench, "--model xpnn+ --starts 2 --epochs 2 -o m.json --checkpoint c.bin");
     let table = table();
     let all_but_the_last = table.trim_end().rsplit_once('\n').unwrap().0;
     bench.put("other.csv", format!("{all_but_the_last}\n"));
@@ -126,6 +126,16 @@ fn resuming_is_refused_with_other_options_or_data() {
         (format!("fit good.csv {resume} text.bin"), 1, "text.bin: this is no checkpoint of hysid"),
         (format!("fit good.csv {resume} none.bin"), 1, "none.bin: cannot be read"),
         ("fit good.csv -o m.json --checkpoint good.csv".into(), 2, "would be overwritten"),
+        (
+            "fit good.csv -o n.json --checkpoint d.bin".into(),
+            2,
+            "auto has no checkpoints: only a single network has, such as that of --model xpnn+",
+        ),
+        (
+            "fit good.csv -o n.json --model xpnn --members 3 --checkpoint d.bin".into(),
+            2,
+            "an ensemble has no checkpoints",
+        ),
         ("fit good.csv -o m.json --checkpoint m.json".into(), 2, "would be overwritten"),
     ] {
         let ran = bench.run(&arguments);

@@ -39,7 +39,7 @@ const ERRORS: [&str; 9] = [
 fn fit_simulate_and_evaluate_agree() {
     let bench = Workbench::new();
     bench.put("loop.csv", csv("Time (s),x_mm,force [kN]", ",", "\n", &rows()));
-    let fit = bench.run("fit loop.csv --starts 2 --epochs 5");
+    let fit = bench.run("fit loop.csv --model xpnn+ --starts 2 --epochs 5");
     assert_eq!(fit.status, Some(0), "{}", fit.stderr);
     for said in
         ["samples  60, all scored, in 1 record", "Time (s): steps of 0.1 s", "x_mm:", "central differences"]
@@ -72,11 +72,14 @@ fn fit_simulate_and_evaluate_agree() {
 fn json_has_the_promised_keys() {
     let bench = Workbench::new();
     bench.put("loop.csv", table());
-    let fit = json(&bench.run("fit loop.csv -o m.json --no-report --starts 2 --epochs 2 --json"));
+    let fit =
+        json(&bench.run("fit loop.csv -o m.json --no-report --model xpnn+ --starts 2 --epochs 2 --json"));
     let promised = [
         "model",
         "architecture",
         "parameters",
+        "members",
+        "selection",
         "train",
         "validation",
         "seconds",
@@ -96,7 +99,8 @@ fn the_model_depends_on_the_seed_and_not_on_the_threads() {
     let bench = Workbench::new();
     bench.put("loop.csv", table());
     let model = |options: &str| {
-        let ran = bench.run(&format!("fit loop.csv -o m.json --no-report --starts 3 --epochs 4 {options}"));
+        let fit = "fit loop.csv -o m.json --no-report --model xpnn+ --starts 3 --epochs 4";
+        let ran = bench.run(&format!("{fit} {options}"));
         assert_eq!(ran.status, Some(0), "{}", ran.stderr);
         bench.text("m.json")
     };
@@ -143,7 +147,7 @@ fn further_inputs_and_a_given_rate_are_found_by_name() {
         .map(|row| vec![row[1].clone(), format!("{}", number(&row[0]).cos()), row[2].clone(), row[2].clone()])
         .collect();
     bench.put("wide.csv", csv("x_mm,v_mm_s,load,y", ",", "\n", &wide));
-    let fit = bench.run("fit wide.csv --rate v_mm_s --starts 1 --epochs 2 --no-report");
+    let fit = bench.run("fit wide.csv --rate v_mm_s --model xpnn+ --starts 1 --epochs 2 --no-report");
     assert_eq!(fit.status, Some(0), "{}", fit.stderr);
     assert!(fit.stderr.contains("of x_mm from column v_mm_s"), "{}", fit.stderr);
     assert!(fit.stderr.contains("load:"), "{}", fit.stderr);
@@ -170,7 +174,7 @@ fn several_files_and_records_are_named_after_their_origin() {
     };
     bench.put("one.csv", cut("r"));
     bench.put("two.csv", cut("r"));
-    let ran = bench.run("fit one.csv two.csv --starts 1 --epochs 1 --no-report");
+    let ran = bench.run("fit one.csv two.csv --model xpnn+ --starts 1 --epochs 1 --no-report");
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     assert!(ran.stderr.contains("4 records: one/r0, one/r1, two/r0, two/r1"), "{}", ran.stderr);
     assert!(bench.path("one.json").exists());
@@ -198,7 +202,7 @@ fn an_old_model_survives_a_failed_write() {
     let old = bench.text("model.json");
     // The signal for a too large file is ignored, so that the program sees an error instead.
     let ran = bench.shell(
-        "trap '' XFSZ; ulimit -f 1; hysid fit good.csv -o model.json --starts 1 --epochs 4 --seed 9 --no-report",
+        "trap '' XFSZ; ulimit -f 1; hysid fit good.csv -o model.json --model pnn --seed 9 --no-report",
     );
     assert_eq!(
         ran.last_line(),
@@ -211,7 +215,7 @@ fn an_old_model_survives_a_failed_write() {
 }
 
 /// A fit that takes minutes, of many cheap iterations.
-const LONG: &str = "--no-report --stops 20 --hidden 20 --starts 20 --epochs 100000";
+const LONG: &str = "--no-report --model xpnn+ --stops 20 --hidden 20 --starts 20 --epochs 100000";
 
 #[cfg(unix)]
 #[test]
@@ -252,7 +256,7 @@ fn the_time_limit_is_kept() {
 fn output_to_a_pipe_has_no_colours_and_may_be_cut_off() {
     let bench = Workbench::with_model();
     let ran: Ran = bench
-        .command("fit good.csv -o c.json --no-report --starts 1 --epochs 2")
+        .command("fit good.csv -o c.json --no-report --model xpnn+ --starts 1 --epochs 2")
         .env("NO_COLOR", "1")
         .env("CLICOLOR_FORCE", "1")
         .output()
@@ -276,7 +280,10 @@ fn the_demo_needs_nothing_and_can_be_typed_after() {
     for column in ["train", "validation", "unseen test"] {
         assert!(ran.stdout.contains(column), "{}", ran.stdout);
     }
-    assert!(bench.text("hysid-demo/demo.html").contains("<svg"));
+    let page = bench.text("hysid-demo/demo.html");
+    for words in ["<svg", "The ensemble", "Tried and left out: ", "90 % band"] {
+        assert!(page.contains(words), "{words}");
+    }
     assert!(bench.text("hysid-demo/demo-loops.svg").starts_with("<svg"));
     let demo = bench.text("hysid-demo/demo.json");
     let typed: Vec<&str> = ran.stdout.lines().filter(|line| line.starts_with("  hysid ")).collect();

@@ -187,7 +187,7 @@ fn a_page_shows_every_property_and_needs_nothing_else() {
     succeeds(&bench, "generate reinforced-concrete-joint -o joint.csv");
     let text = bench.text("joint.csv").replacen("force_kN", "<b>&force_kN", 1);
     bench.put("joint.csv", text);
-    succeeds(&bench, "fit joint.csv -o joint.json --starts 1 --epochs 3 --no-report");
+    succeeds(&bench, "fit joint.csv -o joint.json --model xpnn+ --starts 1 --epochs 3 --no-report");
     for (file, page, more) in [
         ("joint.csv", "joint.diagnosis.html", "Loops: 16 cycles"),
         ("joint.json", "of-model.html", "Neurons"),

@@ -42,7 +42,7 @@ fn what_is_to_be_typed_next_works_for_every_specimen() {
         }
         let typed: Vec<&str> = ran.stderr.lines().filter(|line| line.starts_with("  hysid ")).collect();
         assert_eq!(typed.len(), 2, "{}", ran.stderr);
-        for (line, quick) in typed.iter().zip([" --starts 1 --epochs 1 --no-report", ""]) {
+        for (line, quick) in typed.iter().zip([" --model xpnn+ --starts 1 --epochs 1 --no-report", ""]) {
             let ran = bench.shell(&format!("{line}{quick}"));
             assert_eq!(ran.status, Some(0), "{line}: {}", ran.stderr);
         }

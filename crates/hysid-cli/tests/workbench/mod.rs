@@ -50,7 +50,7 @@ impl Workbench {
     pub fn with_model() -> Self {
         let bench = Self::new();
         bench.put("good.csv", table());
-        let ran = bench.run("fit good.csv -o model.json --no-report --starts 1 --epochs 3");
+        let ran = bench.run("fit good.csv -o model.json --no-report --model xpnn+ --starts 1 --epochs 3");
         assert_eq!(ran.status, Some(0), "{}", ran.stderr);
         bench
     }
