@@ -58,6 +58,9 @@ const EPOCHS: usize = 25;
 const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
 const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 
+/// Starts of a search that is repeated on every fold.
+const STARTS_OF_JILES_ATHERTON: usize = 3;
+
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 3000;
 
@@ -95,11 +98,11 @@ impl Candidate {
         request
     }
 
-    /// True if another start gives another model.
+    /// True if another start gives another model; a classical model is searched from several in any case.
     pub fn is_random(&self) -> bool {
         match &self.request {
             Request::Network(_) => true,
-            Request::Classical(options) => options.model == Rival::RandomStops || options.model.is_searched(),
+            Request::Classical(options) => options.model == Rival::RandomStops,
             Request::Auto(_) => false,
         }
     }
@@ -220,7 +223,15 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         }
     }
     if !timed {
-        add(Kind::Classical, classical(Rival::JilesAtherton, as_it_is));
+        let starts = Some(STARTS_OF_JILES_ATHERTON);
+        add(
+            Kind::Classical,
+            Request::Classical(ClassicalOptions {
+                starts,
+                seed: options.seed,
+                ..ClassicalOptions::of(Rival::JilesAtherton)
+            }),
+        );
     }
     all.retain(|candidate| options.allows(candidate, data));
     all
