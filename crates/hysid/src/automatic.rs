@@ -73,7 +73,9 @@ pub struct AutoOptions {
     pub stops: Option<usize>,
     /// Tanh neurons of a network.
     pub hidden: Option<usize>,
-    /// Epochs of a network.
+    /// Plays, intervals of each axis of a Preisach plane, or random stops.
+    pub operators: Option<usize>,
+    /// Epochs of a search.
     pub epochs: Option<usize>,
     /// Whether the input is companded.
     pub companding: Option<bool>,
@@ -98,6 +100,7 @@ impl Default for AutoOptions {
             relaxation: None,
             stops: None,
             hidden: None,
+            operators: None,
             epochs: None,
             companding: None,
             history: None,

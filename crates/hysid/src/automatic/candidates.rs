@@ -197,7 +197,7 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
             rate,
             shaping,
             deterioration: Some(deterioration),
-            operators: Some(stops),
+            operators: Some(options.operators.unwrap_or(stops)),
             hidden: Some(hidden),
             seed: options.seed,
             ..ClassicalOptions::of(Rival::RandomStops)
@@ -215,7 +215,8 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
     }
 
     let classical = |model, shaping| {
-        Request::Classical(ClassicalOptions { shaping, seed: options.seed, ..ClassicalOptions::of(model) })
+        let operators = options.operators;
+        Request::Classical(ClassicalOptions { shaping, operators, ..ClassicalOptions::of(model) })
     };
     for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
         for shaping in [as_it_is, tenth, fiftieth] {
@@ -228,6 +229,7 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
             Kind::Classical,
             Request::Classical(ClassicalOptions {
                 starts,
+                epochs: options.epochs,
                 seed: options.seed,
                 ..ClassicalOptions::of(Rival::JilesAtherton)
             }),

@@ -34,8 +34,12 @@ pub fn small(model: ModelName, rate: Option<RateMethod>) -> Request {
             epochs: options.model.is_searched().then_some(6),
             ..options
         }),
-        Request::Auto(options) => {
-            Request::Auto(AutoOptions { members: 6, starts: 2, epochs: Some(3), ..options })
-        }
+        Request::Auto(options) => Request::Auto(AutoOptions {
+            members: 6,
+            starts: 2,
+            epochs: Some(3),
+            operators: Some(8),
+            ..options
+        }),
     }
 }
