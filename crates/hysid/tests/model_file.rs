@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
+use hysid::classical::identification::Rival;
 use hysid::error::Error;
 use hysid::identification::{ModelName, Request};
 use hysid::model::{FORMAT_VERSION, Model};
@@ -340,6 +341,23 @@ fn a_file_of_version_1_is_read() {
         approx::assert_relative_eq!(*found, written, max_relative = 1e-12);
     }
     let again = model.to_json();
-    assert!(again.contains("\"version\": 2") && !again.contains("\"trainer\""));
+    assert!(again.contains(&format!("\"version\": {FORMAT_VERSION}")) && !again.contains("\"trainer\""));
     assert_eq!(Model::from_json(&again).unwrap(), model);
+}
+
+#[test]
+fn a_file_of_version_2_is_read() {
+    // Written before there were ensembles; the outputs are what it simulated.
+    let model = Model::from_json(include_str!("data/model-version-2.json")).unwrap();
+    assert_eq!(model.name(), ModelName::Rival(Rival::PrandtlIshlinskii));
+    assert!(model.preprocessing().is_none() && model.band().is_none());
+    let history = |k: usize| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs());
+    // The file's table had six decimals.
+    let x: Vec<f64> = (0..120).map(|k| (1e6 * history(k)).round() / 1e6).collect();
+    let record = Record::new("r", vec![x], vec![f64::NAN; 120]).unwrap();
+    let y = model.simulate(&record).unwrap();
+    for (row, written) in [(29, -1.7640965545054068), (59, -3.0102206180520863), (118, -1.284065683250112)] {
+        approx::assert_relative_eq!(y[row], written, max_relative = 1e-9);
+    }
+    assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
 }
