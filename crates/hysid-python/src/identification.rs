@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use hysid::identification::options::{ChosenOptions, RateChoice};
 use hysid::identification::{self, ModelName};
-use hysid::training;
+use hysid::training::{self, Observer};
+use hysid::validation::cross_validate;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
@@ -34,8 +35,9 @@ impl Request {
     fn new(options: &str, rate: &str, data: &Dataset) -> PyResult<Self> {
         let chosen = ChosenOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
         let rate: RateChoice = rate.parse().map_err(refused)?;
+        let is_decided = matches!(rate, RateChoice::Method(_));
         let rate = rate.method(chosen.model(), data.set.has_time());
-        let request = chosen.request(rate);
+        let request = chosen.request(rate, is_decided);
         if let Some(hindrance) = chosen.model().hindrance(&data.set, rate) {
             return Err(refused(format!("{} {hindrance}", chosen.model().name())));
         }
@@ -72,15 +74,17 @@ pub fn option_names() -> Vec<String> {
 }
 
 /// What a progress callback is told: share of the work done, error on the training rows in percent of std,
-/// start, epoch, what is being done.
-type Report = (f64, f64, usize, usize, String);
+/// start, epoch, what is being done, the model that is being fitted, and whether that fit is one of many.
+type Report = (f64, f64, usize, usize, String, &'static str, bool);
 
 fn report(progress: &training::Progress<'_>) -> Report {
     let word = |value: serde_json::Result<serde_json::Value>| -> String {
         value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
     };
     let phase = word(serde_json::to_value(progress.phase));
-    (progress.done, progress.train_nrmse_percent, progress.start, progress.epoch, phase)
+    let model = progress.model.name();
+    let error = progress.train_nrmse_percent;
+    (progress.done, error, progress.start, progress.epoch, phase, model, progress.is_part)
 }
 
 /// What the fit's thread and the caller's tell each other.
@@ -125,6 +129,39 @@ pub fn identify(
     time_limit: Option<f64>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(Model, usize, bool)> {
+    let (set, request) = (Arc::clone(&data.set), request.request.clone());
+    let work = move |observer: &mut Observer<'_>| identification::identify(&set, &request, observer);
+    let (fitted, interrupted) = attended(py, threads, time_limit, progress, work)?;
+    Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
+}
+
+/// Cross-validates a request. Gives what came of it as JSON, and whether Ctrl-C ended it; otherwise as
+/// [`identify`].
+#[pyfunction]
+pub fn validate(
+    py: Python<'_>,
+    data: &Dataset,
+    request: &Request,
+    folds: usize,
+    threads: Option<usize>,
+    time_limit: Option<f64>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(String, bool)> {
+    let (set, request) = (Arc::clone(&data.set), request.request.clone());
+    let work = move |observer: &mut Observer<'_>| cross_validate(&set, &request, folds, observer);
+    let (validation, interrupted) = attended(py, threads, time_limit, progress, work)?;
+    Ok((serde_json::to_string(&validation).map_err(refused)?, interrupted))
+}
+
+/// Does the work in a thread of its own, while the caller's looks for Ctrl-C and tells the progress. Gives
+/// what came of it, and whether Ctrl-C ended it.
+fn attended<T: Send + 'static>(
+    py: Python<'_>,
+    threads: Option<usize>,
+    time_limit: Option<f64>,
+    progress: Option<Bound<'_, PyAny>>,
+    work: impl FnOnce(&mut Observer<'_>) -> hysid::Result<T> + Send + 'static,
+) -> PyResult<(T, bool)> {
     let deadline = match time_limit {
         Some(limit) if !(limit > 0.0 && limit < 1e9) => {
             return Err(refused("time_limit: a number of seconds above 0 is needed"));
@@ -135,20 +172,19 @@ pub fn identify(
     let pool = pool.map_err(|error| PyRuntimeError::new_err(format!("cannot start the threads: {error}")))?;
     let exchange = Arc::new(Exchange::default());
     let (answer, mut answers) = channel();
-    let (set, request) = (Arc::clone(&data.set), request.request.clone());
-    let with_fit = Arc::clone(&exchange);
+    let with_work = Arc::clone(&exchange);
     std::thread::spawn(move || {
-        let mut observer = |progress: &training::Progress<'_>| with_fit.observe(progress, deadline);
-        let fitted = pool.install(|| identification::identify(&set, &request, &mut observer));
+        let mut observer = |progress: &training::Progress<'_>| with_work.observe(progress, deadline);
+        let done = pool.install(|| work(&mut observer));
         // Nobody listens any more after a second Ctrl-C.
-        let _ = answer.send(fitted);
+        let _ = answer.send(done);
     });
     let mut interrupted = false;
     let mut failure = None;
-    let fitted = loop {
+    let done = loop {
         let answers = &mut answers;
         match py.detach(move || answers.recv_timeout(PAUSE)) {
-            Ok(fitted) => break fitted,
+            Ok(done) => break done,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("the fit broke down: this is a fault of hysid"));
@@ -169,9 +205,9 @@ pub fn identify(
     if let Some(error) = failure {
         return Err(error);
     }
-    let fitted = fitted.map_err(refused)?;
+    let done = done.map_err(refused)?;
     tell(&exchange, progress.as_ref())?;
-    Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
+    Ok((done, interrupted))
 }
 
 /// Tells the progress since the last time, and asks the fit to stop if that is the answer.

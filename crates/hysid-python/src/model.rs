@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use hysid::automatic::Selection;
 use hysid::diagnosis::ModelDiagnosis;
-use hysid::model;
+use hysid::model::{self, Prediction};
 use hysid::record::Excitation;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -55,20 +56,29 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
     ) -> PyResult<NewColumn<'py>> {
-        let inputs = inputs.iter().map(|input| Ok(input.as_slice()?)).collect::<PyResult<_>>()?;
-        let time = time.as_ref().map(|time| time.as_slice()).transpose()?;
-        let rate = rate.as_ref().map(|rate| rate.as_slice()).transpose()?;
-        let response = py.detach(|| {
-            let mut excitation = Excitation::new(name, inputs)?;
-            if let Some(time) = time {
-                excitation = excitation.with_time(time)?;
-            }
-            if let Some(rate) = rate {
-                excitation = excitation.with_given_rate(rate)?;
-            }
-            self.model.response(&excitation)
-        });
-        Ok(PyArray1::from_vec(py, response.map_err(refused)?))
+        let run = |excitation: &Excitation<'_>| self.model.response(excitation);
+        Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
+    }
+
+    /// As `simulate`, with a band of this probability: output, lower and upper edge.
+    #[allow(clippy::too_many_arguments)]
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        time: Option<Column<'_>>,
+        inputs: Vec<Column<'_>>,
+        rate: Option<Column<'_>>,
+        probability: f64,
+    ) -> PyResult<[NewColumn<'py>; 3]> {
+        let run = |excitation: &Excitation<'_>| self.model.predict(excitation, probability);
+        let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
+        Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
+    }
+
+    /// What was chosen among candidates and why, in two lines; `None` where there was no choice.
+    fn selection(&self) -> Option<[String; 2]> {
+        self.model.provenance().selection.as_ref().map(Selection::summary)
     }
 
     /// Errors of free runs over all records, as JSON.
@@ -94,6 +104,31 @@ impl Model {
     fn stepper(&self) -> Stepper {
         Stepper { stepper: model::Model::clone(&self.model).into_stepper() }
     }
+}
+
+/// Runs something over one record, whose columns are read where they lie.
+fn driven<T: Send>(
+    py: Python<'_>,
+    name: &str,
+    time: Option<Column<'_>>,
+    inputs: Vec<Column<'_>>,
+    rate: Option<Column<'_>>,
+    run: impl Fn(&Excitation<'_>) -> hysid::Result<T> + Sync,
+) -> PyResult<T> {
+    let inputs = inputs.iter().map(|input| Ok(input.as_slice()?)).collect::<PyResult<_>>()?;
+    let time = time.as_ref().map(|time| time.as_slice()).transpose()?;
+    let rate = rate.as_ref().map(|rate| rate.as_slice()).transpose()?;
+    let outcome = py.detach(|| {
+        let mut excitation = Excitation::new(name, inputs)?;
+        if let Some(time) = time {
+            excitation = excitation.with_time(time)?;
+        }
+        if let Some(rate) = rate {
+            excitation = excitation.with_given_rate(rate)?;
+        }
+        run(&excitation)
+    });
+    outcome.map_err(refused)
 }
 
 /// A model that is run sample by sample.

@@ -22,6 +22,7 @@ __all__ = [
     "specimen",
     "specimens",
     "stop",
+    "validate",
 ]
 
 __version__: str
@@ -53,6 +54,15 @@ class Model:
     def simulate(
         self, name: str, time: _Column | None, inputs: list[_Column], rate: _Column | None
     ) -> _Column: ...
+    def predict(
+        self,
+        name: str,
+        time: _Column | None,
+        inputs: list[_Column],
+        rate: _Column | None,
+        probability: float,
+    ) -> list[_Column]: ...
+    def selection(self) -> list[str] | None: ...
     def evaluate(self, data: Dataset) -> str: ...
     def range_warnings(self, data: Dataset) -> list[str]: ...
     def diagnose(self) -> str: ...
@@ -73,6 +83,14 @@ def identify(
     time_limit: float | None,
     progress: Callable[..., object] | None,
 ) -> tuple[Model, int, bool]: ...
+def validate(
+    data: Dataset,
+    request: Request,
+    folds: int,
+    threads: int | None,
+    time_limit: float | None,
+    progress: Callable[..., object] | None,
+) -> tuple[str, bool]: ...
 def model_names() -> list[str]: ...
 def option_names() -> list[str]: ...
 def minimise(
