@@ -40,4 +40,10 @@ def spring_and_slider():
 @pytest.fixture(scope="session")
 def quick_model(spring_and_slider):
     """A small network fitted to the spring and slider."""
-    return hysid.fit(*spring_and_slider, stops=4, hidden=3, starts=1, epochs=5)
+    return hysid.fit(*spring_and_slider, model="xpnn+", stops=4, hidden=3, starts=1, epochs=5)
+
+
+@pytest.fixture(scope="session")
+def quick_ensemble(spring_and_slider):
+    """What answers together, of hasty candidates."""
+    return hysid.fit(*spring_and_slider, stops=3, hidden=2, starts=2, epochs=2, members=6, warm_up=0)

@@ -13,7 +13,7 @@ import pytest
 
 import hysid
 
-LONG = {"starts": 200, "epochs": 100_000, "stops": 30, "hidden": 30}
+LONG = {"model": "xpnn+", "starts": 200, "epochs": 100_000, "stops": 30, "hidden": 30}
 """A fit that would take hours."""
 
 
@@ -61,7 +61,7 @@ def test_a_poor_record_is_warned_of():
 
 def test_any_number_of_threads_gives_the_same_model(spring_and_slider):
     models = [
-        hysid.fit(*spring_and_slider, stops=3, hidden=2, starts=3, epochs=4, threads=threads)
+        hysid.fit(*spring_and_slider, model="xpnn+", stops=3, hidden=2, starts=3, epochs=4, threads=threads)
         for threads in (1, 2, 3)
     ]
     assert models[0] == models[1] == models[2]
@@ -95,7 +95,7 @@ def test_an_error_of_the_callback_ends_the_fit(spring_and_slider):
 
 def test_a_bar_of_tqdm_is_filled_and_closed(spring_and_slider, capsys):
     bar = hysid.tqdm_progress(mininterval=0)
-    hysid.fit(*spring_and_slider, starts=2, epochs=30, progress=bar)
+    hysid.fit(*spring_and_slider, model="xpnn+", starts=2, epochs=30, progress=bar)
     assert "% of std" in capsys.readouterr().err
     assert bar._bar.disable, "tqdm says so of a bar that is closed"
 
@@ -141,7 +141,7 @@ INTERRUPTED = """
 
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        model = hysid.fit(x, y, starts=200, epochs=100_000, stops=30, hidden=30, progress=progress)
+        model = hysid.fit(x, y, epochs=100_000, stops=30, hidden=30, progress=progress)
     ended = time.time()
     assert [warning.category for warning in warned] == [hysid.HysidWarning]
     assert "interrupted" in str(warned[0].message)

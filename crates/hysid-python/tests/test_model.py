@@ -60,7 +60,7 @@ def test_what_a_model_says_of_itself(quick_model):
 def test_steps_give_what_a_free_run_gives():
     train, test = hysid.specimen("piezo-actuator").data()
     model = hysid.fit(
-        train.x, train.y, train.time, "backward", train.records, stops=4, hidden=3, starts=1, epochs=5
+        train.x, train.y, train.time, "backward", train.records, model="xpnn+", stops=4, hidden=3, starts=1, epochs=5
     )
     first = test.records == test.records[0]
     x, time = test.x[first], test.time[first]
@@ -133,7 +133,7 @@ def test_several_inputs():
     generator = np.random.default_rng(1)
     x = np.cumsum(generator.normal(size=(400, 2)), axis=0)
     y = hysid.operators.stop(x[:, 0], r=2.0) + 0.5 * x[:, 1]
-    model = hysid.fit(x, y, starts=1, epochs=10, stops=4, hidden=3)
+    model = hysid.fit(x, y, model="xpnn+", starts=1, epochs=10, stops=4, hidden=3)
     assert model.inputs == ["x1", "x2"]
     outputs = model.simulate(x)
     assert [model.step(row) for row in x[:20]] == outputs[:20].tolist()
@@ -141,6 +141,65 @@ def test_several_inputs():
         model.simulate(x[:, 0])
     with pytest.raises(ValueError, match="takes one input, not 2"):
         hysid.fit(x, y, model="masing")
+
+
+def test_members_share_out_the_whole(quick_ensemble):
+    members = quick_ensemble.members
+    assert 2 <= len(members) <= 6 and quick_ensemble.name == "auto"
+    assert len(members) == len(quick_ensemble.description["ensemble"]["members"])
+    for shares in ([one.share for one in members], [one.share_outside for one in members]):
+        assert sum(shares) == pytest.approx(1) and min(shares) >= 0
+    assert {one.kind for one in members} <= {"classical", "networks", "random stops"}
+    assert {one.model for one in members} <= set(hysid.models)
+    # What was chosen of all candidates is told with the same shares; its names are those of the members.
+    candidates = quick_ensemble.description["training"]["selection"]["candidates"]
+    told = {one["name"]: one["members"] for one in candidates if one["members"]}
+    assert {one.name for one in members} <= set(told)
+    assert f"auto of {len(members)}" in repr(quick_ensemble)
+    assert "the weighted median of" in quick_ensemble._repr_html_()
+    assert "on data held out" in quick_ensemble._repr_html_()
+
+
+def test_a_single_model_has_no_members_and_no_band(quick_model, spring_and_slider):
+    assert quick_model.members == () and not quick_model.has_band
+    with pytest.raises(ValueError, match="this model of xpnn\\+ has no band"):
+        quick_model.predict(spring_and_slider[0])
+
+
+def test_members_of_one_model_answer_by_their_median(spring_and_slider):
+    model = hysid.fit(
+        *spring_and_slider, model="xpnn", members=3, stops=3, hidden=2, epochs=3, warm_up=0
+    )
+    assert [one.model for one in model.members] == ["xpnn"] * 3
+    assert [one.share for one in model.members] == pytest.approx([1 / 3] * 3)
+
+
+def test_a_band_widens_with_its_probability_and_holds_what_is_measured(quick_ensemble, spring_and_slider):
+    x, y = spring_and_slider
+    output, low, high = quick_ensemble.predict(x)
+    assert np.array_equal(output, quick_ensemble.simulate(x))
+    assert ((low < output) & (output < high)).all()
+    wide = quick_ensemble.predict(x, probability=0.99)
+    assert (wide.low <= low).all() and (wide.high >= high).all() and (wide.high > high).any()
+    # The members have been trained on these very rows, so more of them than promised must be held.
+    assert np.mean((low <= y) & (y <= high)) > 0.9
+    twice = quick_ensemble.predict(np.concatenate([x, x]), records=np.repeat(["a", "b"], len(x)))
+    assert np.array_equal(twice.low, np.concatenate([low, low]))
+    series = quick_ensemble.predict(pandas.Series(x, index=range(7, 607)))
+    assert [one.name for one in series] == ["y_model", "y_model_low", "y_model_high"]
+    assert series.high.index[0] == 7 and np.array_equal(series.high, high)
+    with pytest.raises(ValueError, match="0.5"):
+        quick_ensemble.predict(x, probability=0.3)
+
+
+def test_an_ensemble_is_saved_stepped_and_pickled(quick_ensemble, spring_and_slider, tmp_path):
+    x, _ = spring_and_slider
+    quick_ensemble.save(tmp_path / "model.json")
+    again = hysid.Model.load(tmp_path / "model.json")
+    assert again == pickle.loads(pickle.dumps(quick_ensemble)) == quick_ensemble
+    outputs = again.simulate(x)
+    stepper = again.stepper()
+    assert [stepper.step(one) for one in x] == pytest.approx(outputs.tolist(), rel=1e-12, abs=1e-12)
 
 
 def test_a_model_is_diagnosed(spring_and_slider):

@@ -12,6 +12,9 @@ import hysid
 from hysid import plot
 
 
+SMALL = {"model": "xpnn+", "stops": 4, "hidden": 3, "starts": 2, "epochs": 5}
+
+
 @pytest.fixture(autouse=True)
 def _close_all():
     yield
@@ -22,7 +25,7 @@ def _close_all():
 def actuator():
     train, _ = hysid.specimen("piezo-actuator").data()
     parts = ({train.names["input"]: train.x}, {train.names["output"]: train.y}, {"t_s": train.time})
-    model = hysid.fit(*parts[:2], train.time, records=train.records, stops=4, hidden=3, starts=2, epochs=5)
+    model = hysid.fit(*parts[:2], train.time, records=train.records, **SMALL)
     return model, parts, train.records
 
 
@@ -94,13 +97,19 @@ def test_a_diagnosis_has_a_bar_or_a_word_for_each_property(spring_and_slider):
     assert [text.get_text() for text in ax.texts] == [f.verdict for f in reversed(found.properties)]
 
 
-def test_what_a_model_does_not_have_is_not_drawn(quick_model, spring_and_slider):
+def test_what_a_model_does_not_have_is_not_drawn(quick_model, quick_ensemble, spring_and_slider):
     found_at_once = hysid.fit(*spring_and_slider, model="preisach", operators=5)
     for draw, model, text in [
         (plot.preisach_plane, quick_model, "has no Preisach plane"),
         (plot.thresholds, found_at_once, "has no thresholds"),
         (plot.convergence, found_at_once, "was found at once"),
+        (plot.thresholds, quick_ensemble, "has no thresholds of its own: its [2-6] members have"),
+        (plot.convergence, quick_ensemble, "has no one training: its [2-6] members have"),
     ]:
         with pytest.raises(ValueError, match=text):
             draw(model)
+    companded = hysid.fit(*spring_and_slider, model="preisach", operators=5, companding=0.1)
+    for draw in (plot.preisach_plane, plot.thresholds):
+        with pytest.raises(ValueError, match="is companded"):
+            draw(companded)
     assert plt.get_fignums() == []

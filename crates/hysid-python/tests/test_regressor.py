@@ -21,7 +21,7 @@ EXPECTED_FAILURES = {
     "check_methods_sample_order_invariance": REMEMBERS,
 }
 
-SMALL = {"stops": 3, "hidden": 3, "starts": 1, "epochs": 5, "random_state": 0}
+SMALL = {"model": "xpnn+", "stops": 3, "hidden": 3, "starts": 1, "epochs": 5, "random_state": 0}
 
 
 @parametrize_with_checks(

@@ -32,10 +32,19 @@ def options(keywords):
             yield f"{flag}={str(value).lower() if isinstance(value, bool) else value}"
 
 
-SMALL = {"stops": 4, "hidden": 3, "starts": 2, "epochs": 6}
+SMALL = {"model": "xpnn+", "stops": 4, "hidden": 3, "starts": 2, "epochs": 6}
+HASTY = {"stops": 3, "hidden": 2, "starts": 2, "epochs": 2, "members": 6}
 
 CASES = {
-    "defaults, few epochs": ("terfenol-rod", SMALL, "auto", None),
+    "chosen by validation": ("terfenol-rod", HASTY, "auto", None),
+    "members of one model": ("terfenol-rod", {**SMALL, "members": 3, "seed": 2}, "auto", None),
+    "few epochs": ("terfenol-rod", SMALL, "auto", None),
+    "companded, history, warm-up": (
+        "piezo-actuator",
+        {**SMALL, "companding": 0.1, "rate_companding": 0.2, "history": True, "warm_up": 5},
+        "auto",
+        None,
+    ),
     "rate-dependent, records, seed": ("piezo-actuator", {**SMALL, "model": "xpnn", "seed": 7}, "auto", None),
     "other rate": ("piezo-actuator", {**SMALL, "validation": 0.4, "seed": 3}, "backward", None),
     "blanks": ("reinforced-concrete-joint", {**SMALL, "no_deterioration": True}, "none", 3),
@@ -131,6 +140,7 @@ def test_useless_options_are_warned_of_in_the_same_words(keywords, program, tmp_
     said = program("fit", "train.csv", *options(keywords), folder=tmp_path).stderr
     with pytest.warns(hysid.HysidWarning) as warned:
         hysid.fit(train.x, train.y, **keywords)
+    assert warned
     for warning in warned:
         assert re.search(str(warning.message), said.replace("--", ""))
         assert warning.filename == __file__
@@ -139,7 +149,7 @@ def test_useless_options_are_warned_of_in_the_same_words(keywords, program, tmp_
 @pytest.mark.parametrize(
     ("keywords", "text"),
     [
-        ({"model": "masin"}, "model `masin` is unknown: choose one of pnn, gpnn"),
+        ({"model": "masin"}, "model `masin` is unknown: choose one of auto, pnn, gpnn"),
         ({"starts": 0}, "choose 1 to 10000"),
         ({"validation": 2.0}, "a number between 0 and 1 is needed"),
         ({"training": "lm"}, "training `lm` is unknown"),
@@ -160,7 +170,7 @@ def test_options_outside_their_meaning_are_value_errors(keywords, text, spring_a
 def test_an_unknown_option_is_refused(spring_and_slider):
     with pytest.raises(TypeError, match="stop"):
         hysid.fit(*spring_and_slider, stop=3)
-    with pytest.raises(ValueError, match="there is no option `stop`: the options are dead_zones"):
+    with pytest.raises(ValueError, match="there is no option `stop`: the options are companding"):
         _hysid.Request('{"stop": 3}', "auto", hysid._data.columns(*spring_and_slider, *[None] * 3).dataset())
 
 

@@ -1,7 +1,7 @@
 """Identification of hysteresis: measured input and output in, a small, stable model out.
 
-`fit` identifies a `Model`, `diagnose` tells what kind of hysteresis data have, `compare` sets all models side by
-side. `operators` and `classical` are the field's laws as functions on arrays, `specimens` what to try them on.
+`fit` identifies a `Model`, `validate` tells how it does on data held out, `diagnose` what kind of hysteresis data
+have, `compare` sets all models side by side. `operators` and `classical` are the field's laws as functions on arrays, `specimens` what to try them on.
 `HysteresisRegressor` is the estimator for scikit-learn, `plot` draws with matplotlib; both are looked for when they
 are first used.
 """
@@ -16,8 +16,9 @@ from hysid._comparison import Compared, Comparison, compare
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import Progress, fit
 from hysid._minimiser import Minimum, minimise
+from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
-from hysid.model import Errors, Model, Stepper
+from hysid.model import Errors, Member, Model, Prediction, Stepper
 from hysid.progress import tqdm_progress
 from hysid.specimens import Records, Specimen, specimen, specimens
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 __version__: str = _hysid.__version__
 
 models: tuple[str, ...] = tuple(_hysid.model_names())
-"""Names of all models, the networks first."""
+"""Names of all models, the networks first; ``"auto"`` chooses among them."""
 
 __all__ = [
     "Compared",
@@ -36,15 +37,19 @@ __all__ = [
     "Diagnosis",
     "Errors",
     "Finding",
+    "FoldErrors",
     "HysidWarning",
     "HysteresisRegressor",
+    "Member",
     "Minimum",
     "Model",
     "ModelDiagnosis",
+    "Prediction",
     "Progress",
     "Records",
     "Specimen",
     "Stepper",
+    "Validation",
     "classical",
     "compare",
     "diagnose",
@@ -56,6 +61,7 @@ __all__ = [
     "specimen",
     "specimens",
     "tqdm_progress",
+    "validate",
 ]
 
 

@@ -148,7 +148,7 @@ def compare(
         Data that no model sees: x, y, and time, rate, records where there are any. Without it, errors are
         those of the training.
     models : sequence of str, optional
-        Names of the models; all of `hysid.models` by default.
+        Names of the models, also ``"auto"``; all of `hysid.models` by default.
     time_limit : float
         Seconds for each model, after which its search ends with what it has.
     seed : int, optional
@@ -178,8 +178,8 @@ def compare(
     unseen = None if test is None else columns(*_parts(test))
     names = _hysid.model_names() if models is None else list(models)
     for name in names:
-        if name not in (*_hysid.model_names(), "epnn"):
-            raise ValueError(f"model `{name}` is unknown: choose one of {', '.join(_hysid.model_names())}")
+        if name not in ("auto", *_hysid.model_names(), "epnn"):
+            raise ValueError(f"model `{name}` is unknown: choose one of auto, {', '.join(_hysid.model_names())}")
 
     def row(name: str) -> Compared:
         return _compared(name, arranged, unseen, str(rate) if named else "given", seed, time_limit)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,13 +28,19 @@ class Progress(NamedTuple):
     done : float
         Share of the work done, 0 to 1, if every start takes all its epochs.
     train_nrmse_percent : float
-        Error on the training rows, in percent of the output's standard deviation.
+        Error on the training rows, in percent of the output's standard deviation; NaN in the midst of a fit
+        that has no rounds.
     start : int
         Start, counted from 0.
     epoch : int
         Epochs done by this start in this phase.
     phase : str
         ``"starts"`` or ``"all-data"``.
+    model : str
+        The model that is being fitted.
+    is_part : bool
+        Whether this is one fit of many: of a candidate of ``auto``, or to a fold of `hysid.validate`. Only
+        ``done`` speaks of the whole work then.
     """
 
     done: float
@@ -41,6 +48,8 @@ class Progress(NamedTuple):
     start: int
     epoch: int
     phase: str
+    model: str
+    is_part: bool
 
 
 def fit(
@@ -51,10 +60,15 @@ def fit(
     records: ArrayLike | None = None,
     *,
     model: str | None = None,
+    members: int | None = None,
     stops: int | None = None,
     hidden: int | None = None,
     relaxation: int | None = None,
     no_deterioration: bool | None = None,
+    companding: float | None = None,
+    rate_companding: float | None = None,
+    history: bool | None = None,
+    warm_up: int | None = None,
     training: str | None = None,
     starts: int | None = None,
     epochs: int | None = None,
@@ -76,6 +90,9 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
+    Without a choice of `model`, candidates are judged by what they foretell of data held out, and those that do
+    best answer together: that is the most accurate, and takes minutes. One named model takes seconds.
+
     Every option has the name that it has on the command line of the program `hysid`; ``None`` is its default.
     The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the fit, warns, and
     returns the best model so far.
@@ -95,11 +112,23 @@ def fit(
     records : array of shape (n,), optional
         A label for each row: the memory starts afresh where the label changes.
     model : str, optional
-        A network: pnn, gpnn, preisach-nn, xpnn or xpnn+; or another model, see `hysid.models`.
+        ``"auto"``, the default: what does best on data held out, alone or together. Or a network: pnn, gpnn,
+        preisach-nn, xpnn or xpnn+; or another model, see `hysid.models`.
+    members : int, optional
+        Models that answer together, at most; 1 for a single small one. Of a model that is named, so many
+        starts answer together. 32 for auto, otherwise 1.
     stops, hidden, relaxation : int, optional
         Stop neurons, tanh neurons, and relaxation neurons of each input.
     no_deterioration : bool, optional
         Stops do not deteriorate, whatever the family.
+    companding, rate_companding : float, optional
+        Spreads the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
+        0.1; 0 for never. The same for the rate.
+    history : bool, optional
+        The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops.
+    warm_up : int, optional
+        Rows at the beginning of each record that drive the memory and are not trained on, where records do
+        not begin in the virgin state.
     training : str, optional
         levenberg-marquardt, hybrid, genetic or subgradient.
     starts, epochs : int, optional
@@ -151,10 +180,15 @@ def fit(
     """
     given = dict(
         model=model,
+        members=members,
         stops=stops,
         hidden=hidden,
         relaxation=relaxation,
         no_deterioration=no_deterioration,
+        companding=companding,
+        rate_companding=rate_companding,
+        history=history,
+        warm_up=warm_up,
         training=training,
         starts=starts,
         epochs=epochs,
@@ -193,25 +227,37 @@ def identified(
     progress: Callable[[Progress], object] | None = None,
 ) -> Model:
     """Fits, warns before and after, and gives the model."""
-    if rate in ("given", "none", "auto") or arranged.time is not None:
-        pass
-    elif rate in ("central", "backward", "savitzky-golay"):
+    data, request = requested(arranged, rate, options, threads)
+    with told(progress) as tell:
+        native, _, interrupted = _hysid.identify(data, request, threads, time_limit, tell)
+    if interrupted:
+        warn(["interrupted: this is the best model so far"])
+    return Model(native)
+
+
+def requested(
+    arranged: Columns, rate: str, options: dict[str, Any], threads: int | None
+) -> tuple[_hysid.Dataset, _hysid.Request]:
+    """Data and request as the native module takes them; refuses and warns before there is any work."""
+    if rate in ("central", "backward", "savitzky-golay") and arranged.time is None:
         raise ValueError("there is no time to take the rate from (give time, or use rate='none')")
     if threads is not None and not 1 <= threads <= 1024:
         raise ValueError(f"threads {threads}: choose 1 to 1024")
     data = arranged.dataset()
     request = _hysid.Request(as_json(options), rate, data)
     warn(request.warnings() + data.warnings())
-    tell = None if progress is None else _Teller(progress)
+    return data, request
+
+
+@contextmanager
+def told(callback: Callable[[Progress], object] | None) -> Iterator[_Teller | None]:
+    """Calls a user's callback while there is work, and closes it then if it can be closed."""
     try:
-        native, _, interrupted = _hysid.identify(data, request, threads, time_limit, tell)
+        yield None if callback is None else _Teller(callback)
     finally:
-        close = getattr(progress, "close", None)
+        close = getattr(callback, "close", None)
         if close is not None:
             close()
-    if interrupted:
-        warn(["interrupted: this is the best model so far"])
-    return Model(native)
 
 
 class _Teller:

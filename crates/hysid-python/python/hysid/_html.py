@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hysid._diagnosis import Finding
+    from hysid._validation import Validation
     from hysid.model import Errors, Model
 
 
@@ -44,7 +45,19 @@ def model_html(model: Model) -> str:
     if model.validation is not None:
         rows.append(row("held out", model.validation))
     head = ["", "% of std", "% of range", f"RMSE of {model.output}", "largest"]
-    return f"<p><b>{escape(model.name)}</b>: {escape(about)}</p>{_table(head, rows)}"
+    chosen = "".join(f"<p>{escape(line)}</p>" for line in model._native.selection() or ())
+    return f"<p><b>{escape(model.name)}</b>: {escape(about)}</p>{_table(head, rows)}{chosen}"
+
+
+def validation_html(validation: Validation) -> str:
+    """Errors fold by fold."""
+    head = ["held out", "unseen, % of std", "train, % of std"]
+    rows = [
+        [fold.held_out, _number(fold.unseen.nrmse_std_percent), _number(fold.train.nrmse_std_percent)]
+        for fold in validation.folds
+    ]
+    rows.append(["geometric mean", _number(validation.unseen_nrmse_std_percent), ""])
+    return _table(head, rows)
 
 
 def diagnosis_html(findings: Sequence[Finding]) -> str:

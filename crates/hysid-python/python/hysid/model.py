@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
     from hysid._data import Columns, Values
 
-__all__ = ["Errors", "Model", "Stepper"]
+__all__ = ["Errors", "Member", "Model", "Prediction", "Stepper"]
 
 Stepper = _hysid.Stepper
 
@@ -61,6 +62,46 @@ class Errors:
         return asdict(self)
 
 
+class Prediction(NamedTuple):
+    """A free run with its band, in the unit of the training.
+
+    Attributes
+    ----------
+    output : array or Series of shape (n,)
+        The output, as `Model.simulate` gives it.
+    low, high : array or Series of shape (n,)
+        The edges of the band.
+    """
+
+    output: Any
+    low: Any
+    high: Any
+
+
+@dataclass(frozen=True)
+class Member:
+    """One of several models that answer together.
+
+    Attributes
+    ----------
+    name : str
+        What it is, such as a network with its way of seeing the input; members of the same name are starts.
+    kind : str
+        Its kind, such as ``"networks"``.
+    model : str
+        Which model, such as ``"xpnn+"``.
+    share, share_outside : float
+        What it counts in the whole while the input stays in the trained range, and once it has left it far;
+        of all members the sum is 1.
+    """
+
+    name: str
+    kind: str
+    model: str
+    share: float
+    share_outside: float
+
+
 class Model:
     """A fitted model: it simulates in the units of the data it was trained on.
 
@@ -80,9 +121,13 @@ class Model:
         Number of parameters that were found from the data.
     needs_time : bool
         Whether it can run without time stamps.
+    members : tuple of Member
+        Those who answer together; empty for a single model.
+    has_band : bool
+        Whether it can `predict` a band.
     train, validation : Errors
-        Errors on the data it was trained on; and of the chosen start on the data held out from it, None if
-        there are none.
+        Errors on the data it was trained on; and on data held out before it was trained on all, None if there
+        are none.
     termination : str
         Why the last training run ended.
     """
@@ -213,6 +258,25 @@ class Model:
         """Whether it can run without time stamps."""
         return self._native.needs_time()
 
+    @cached_property
+    def members(self) -> tuple[Member, ...]:
+        """Those who answer together; empty for a single model."""
+        ensemble = self.description.get("ensemble")
+        if ensemble is None:
+            return ()
+        models = [member["model"] for member in ensemble["members"]]
+        found = sorted(_members(ensemble["group"], (), 1.0, 1.0), key=lambda one: one[0])
+        # The outermost group has all in it; below it are the kinds.
+        return tuple(
+            Member(path[-1], path[min(1, len(path) - 1)], models[place], inside, outside)
+            for place, path, inside, outside in found
+        )
+
+    @property
+    def has_band(self) -> bool:
+        """Whether it can `predict` a band."""
+        return "band" in self.description
+
     @property
     def train(self) -> Errors:
         """Errors on the data it was trained on."""
@@ -220,7 +284,7 @@ class Model:
 
     @property
     def validation(self) -> Errors | None:
-        """Errors of the chosen start on the data held out from it."""
+        """Errors on data held out before it was trained on all."""
         errors = self.description["training"]["validation"]
         return None if errors is None else Errors(**errors)
 
@@ -261,27 +325,68 @@ class Model:
         ValueError
             Inputs that the model cannot take.
         """
-        output = self._simulated(columns(x, None, time, rate, records))
-        index = getattr(x, "index", None)
-        if not hasattr(x, "iloc"):
-            return output
-        import pandas
+        return _like(x, self._simulated(columns(x, None, time, rate, records)), f"{self.output}_model")
 
-        return pandas.Series(output, index=index, name=f"{self.output}_model")
+    def predict(
+        self,
+        x: Values,
+        time: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        records: ArrayLike | None = None,
+        *,
+        probability: float = 0.9,
+    ) -> Prediction:
+        """Run freely as `simulate`, with a band that holds the measured output with this probability.
+
+        The band was calibrated on data held out in training, and holds as far as new data are like them.
+
+        Parameters
+        ----------
+        x : array of shape (n,) or (n, inputs)
+            The inputs, in the units of the training.
+        time, rate, records : array of shape (n,), optional
+            As of `simulate`.
+        probability : float
+            0.5 to 0.99.
+
+        Returns
+        -------
+        Prediction
+            Output, lower and upper edge; each a Series with the index of `x` if that is a pandas object.
+
+        Raises
+        ------
+        ValueError
+            Inputs that the model cannot take, a probability outside these bounds, or a model without a band:
+            ``model="auto"``, or ``members`` above 1, calibrates one where the data are enough to hold some out.
+
+        Examples
+        --------
+        >>> import hysid
+        >>> train, test = hysid.specimen("terfenol-rod").data(noise=0.5)
+        >>> model = hysid.fit(train.x, train.y, model="xpnn", members=2, stops=4, hidden=3, epochs=10)
+        >>> output, low, high = model.predict(test.x, probability=0.95)
+        >>> bool((low < output).all() and (output < high).all())
+        True
+        """
+        arranged = columns(x, None, time, rate, records)
+        runs = [
+            self._native.predict(name, *driving, probability) for name, driving in _of_records(arranged)
+        ]
+        self._warn_of_range(arranged)
+        name = f"{self.output}_model"
+        low_high = (f"{name}_low", f"{name}_high")
+        columns_of = (np.concatenate(parts) for parts in zip(*runs))
+        return Prediction(*(_like(x, *one) for one in zip(columns_of, (name, *low_high))))
 
     def _simulated(self, arranged: Columns) -> np.ndarray:
-        outputs = [
-            self._native.simulate(
-                name,
-                arranged.time.values[rows] if arranged.time else None,
-                [column.values[rows] for column in arranged.inputs],
-                arranged.rate.values[rows] if arranged.rate else None,
-            )
-            for name, rows in arranged.records
-        ]
+        outputs = [self._native.simulate(name, *driving) for name, driving in _of_records(arranged)]
+        self._warn_of_range(arranged)
+        return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
+
+    def _warn_of_range(self, arranged: Columns) -> None:
         if self._leaves_trained_range(arranged):
             warn(self._native.range_warnings(arranged.dataset()))
-        return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
 
     def _leaves_trained_range(self, arranged: Columns) -> bool:
         ranges = self.description["trained_ranges"]["inputs"]
@@ -395,12 +500,49 @@ class Model:
         inputs = ", ".join(self.inputs)
         percent = self.train.nrmse_std_percent
         error = "" if percent is None else f", training error {percent:.3g} % of std"
-        return f"<hysid.Model {self.name}: {inputs} -> {self.output}, {self.parameters} parameters{error}>"
+        name = f"{self.name} of {len(self.members)}" if self.members else self.name
+        return f"<hysid.Model {name}: {inputs} -> {self.output}, {self.parameters} parameters{error}>"
 
     def _repr_html_(self) -> str:
         from hysid._html import model_html
 
         return model_html(self)
+
+
+def _of_records(
+    arranged: Columns,
+) -> Iterator[tuple[str, tuple[np.ndarray | None, list[np.ndarray], np.ndarray | None]]]:
+    """Name, and time, inputs and rate of each record."""
+    for name, rows in arranged.records:
+        yield name, (
+            arranged.time.values[rows] if arranged.time else None,
+            [column.values[rows] for column in arranged.inputs],
+            arranged.rate.values[rows] if arranged.rate else None,
+        )
+
+
+def _like(x: Any, values: np.ndarray, name: str) -> Any:
+    """Values as a Series if that is what came in."""
+    if not hasattr(x, "iloc"):
+        return values
+    import pandas
+
+    return pandas.Series(values, index=x.index, name=name)
+
+
+def _members(
+    group: dict[str, Any], above: tuple[str, ...], inside: float, outside: float
+) -> Iterator[tuple[int, tuple[str, ...], float, float]]:
+    """Place of each member below a group, the names of its groups, and its shares."""
+    path = (*above, group["name"])
+    sums = [sum(voice["weights"][where] for voice in group["voices"]) for where in ("inside", "outside")]
+    for voice in group["voices"]:
+        weights, ((kind, who),) = voice["weights"], voice["who"].items()
+        shares = (inside * weights["inside"] / sums[0], outside * weights["outside"] / sums[1])
+        if kind == "member":
+            yield who, path, *shares
+        else:
+            yield from _members(who, path, *shares)
 
 
 def _readable(path: str) -> None:

@@ -211,9 +211,11 @@ def convergence(model: Model, *, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        A model that was found at once.
+        A model that was found at once, or one of several members.
     """
     runs = model.description["training"]["runs"]
+    if model.members:
+        raise ValueError(f"{model.name} has no one training: its {len(model.members)} members have")
     if not runs:
         raise ValueError(f"{model.name} was found at once, without a search")
     ax = _axes(ax)
@@ -227,6 +229,12 @@ def convergence(model: Model, *, ax: Axes | None = None) -> Axes:
     ax.set(xlabel="epoch", ylabel="training error, % of std", yscale="log")
     _legend(ax)
     return ax
+
+
+def _not_companded(model: Model) -> None:
+    """Refuses thresholds that are not in the unit of the input."""
+    if model.description.get("preprocessing", {}).get("companding") is not None:
+        raise ValueError(f"the input of this {model.name} is companded: its thresholds have no unit")
 
 
 def _play_weights(law: dict[str, Any], name: str) -> tuple[list[float], list[float], str]:
@@ -259,10 +267,13 @@ def thresholds(model: Model, *, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        A model that has no thresholds.
+        A model that has no thresholds, or one of several members, or whose input is companded.
     """
     described = model.description
     network = described.get("network")
+    if model.members:
+        raise ValueError(f"{model.name} has no thresholds of its own: its {len(model.members)} members have")
+    _not_companded(model)
     if network is None:
         ((name, law),) = described["law"].items()
         places, weights, label = _play_weights(law, name)
@@ -303,11 +314,12 @@ def preisach_plane(model: Model, *, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        Another model.
+        Another model, or one whose input is companded.
     """
     law = (model.description.get("law") or {}).get("preisach")
     if law is None:
         raise ValueError(f"{model.name} has no Preisach plane: fit one with model='preisach'")
+    _not_companded(model)
     ax = _axes(ax)
     lines = np.array(law["lines"])
     steps = np.diff(lines)

@@ -34,7 +34,10 @@ class tqdm_progress:  # noqa: N801 - used like a function
         self._bar = tqdm(**{"total": _STEPS, "unit": "‰", "leave": False, **options})
 
     def __call__(self, progress: Progress) -> None:
-        self._bar.set_postfix_str(f"error {progress.train_nrmse_percent:.3g} % of std", refresh=False)
+        about = progress.model
+        if progress.train_nrmse_percent == progress.train_nrmse_percent:
+            about += f", error {progress.train_nrmse_percent:.3g} % of std"
+        self._bar.set_postfix_str(about, refresh=False)
         self._bar.update(max(0, int(_STEPS * progress.done) - self._bar.n))
 
     def close(self) -> None:

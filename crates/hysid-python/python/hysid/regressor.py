@@ -34,7 +34,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         The column of `X` that tells the records apart: the memory starts afresh where it changes.
     rate : str, default "auto"
         As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
-    model, stops, hidden, relaxation, no_deterioration, training, starts, epochs, population, stall : optional
+    model, members, stops, hidden, relaxation, no_deterioration : optional
+        As of `hysid.fit`: without a choice, the slow and accurate ``"auto"``. In a search or a cross-validation
+        name a model, which takes seconds.
+    companding, rate_companding, history, warm_up, training, starts, epochs, population, stall : optional
         As of `hysid.fit`.
     validation, operators, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
         As of `hysid.fit`.
@@ -48,7 +51,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     model_ : Model
         The fitted model.
     n_iter_ : int
-        Epochs of the longest training run, 1 for a model that is found at once.
+        Epochs of the longest training run, of any member; 1 for a model that is found at once.
     n_features_in_ : int
         Columns of `X`.
     feature_names_in_ : array of shape (n_features_in_,)
@@ -72,10 +75,15 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         record: str | int | None = None,
         rate: str = "auto",
         model: str | None = None,
+        members: int | None = None,
         stops: int | None = None,
         hidden: int | None = None,
         relaxation: int | None = None,
         no_deterioration: bool | None = None,
+        companding: float | None = None,
+        rate_companding: float | None = None,
+        history: bool | None = None,
+        warm_up: int | None = None,
         training: str | None = None,
         starts: int | None = None,
         epochs: int | None = None,
@@ -98,10 +106,15 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.record = record
         self.rate = rate
         self.model = model
+        self.members = members
         self.stops = stops
         self.hidden = hidden
         self.relaxation = relaxation
         self.no_deterioration = no_deterioration
+        self.companding = companding
+        self.rate_companding = rate_companding
+        self.history = history
+        self.warm_up = warm_up
         self.training = training
         self.starts = starts
         self.epochs = epochs
@@ -155,8 +168,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             time_limit=self.time_limit,
             threads=self.threads,
         )
-        epochs = [run["history"][-1]["epoch"] for run in self.model_.description["training"]["runs"]]
-        self.n_iter_ = max([1, *epochs])
+        described = self.model_.description
+        trained = [described, *(described.get("ensemble") or {"members": []})["members"]]
+        runs = [run for one in trained for run in one["training"]["runs"]]
+        self.n_iter_ = max([1, *(run["history"][-1]["epoch"] for run in runs if run["history"])])
         return self
 
     def predict(self, X: Any) -> np.ndarray:  # noqa: N803 - scikit-learn's name
