@@ -369,7 +369,7 @@ pub struct Simulate {
     #[arg(short, long, value_name = "OUT.csv")]
     pub out: Option<PathBuf>,
     /// Two further columns, `<output>_low` and `<output>_high`: between them lies the measured output with this
-    /// probability, such as 0.9, as far as the data are like those held out in training
+    /// probability, such as 0.9, as far as the data are like those that were held out in training
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
     /// Which columns are what.

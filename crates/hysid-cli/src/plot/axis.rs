@@ -54,12 +54,20 @@ impl Axis {
         if self.logarithmic {
             self.ticks = self.decades(count);
         } else {
-            self.step = round_step(wanted);
-            let (first, last) = ((self.low / self.step).ceil(), (self.high / self.step).floor());
-            let count = (last - first).clamp(0.0, 50.0) as usize;
-            self.ticks = (0..=count).map(|k| (first + k as f64) * self.step).collect();
+            self.tick_every(round_step(wanted));
+            // A single tick does not tell the scale.
+            if self.ticks.len() < 2 {
+                self.tick_every(round_step(0.5 * wanted));
+            }
         }
         self
+    }
+
+    fn tick_every(&mut self, step: f64) {
+        let (first, last) = ((self.low / step).ceil(), (self.high / step).floor());
+        let count = (last - first).clamp(0.0, 50.0) as usize;
+        self.ticks = (0..=count).map(|k| (first + k as f64) * step).collect();
+        self.step = step;
     }
 
     /// Ticks of a logarithmic axis: powers of ten, with 2 and 5 between them if there is room.
@@ -155,6 +163,8 @@ mod tests {
             ["−1.0", "−0.5", "0.0", "0.5", "1.0"]
         );
         assert_eq!(texts(Axis::linear("", [0.0, 3e7].into_iter()), 4), ["0", "1e7", "2e7", "3e7"]);
+        // Steps of 2 would leave 0 alone.
+        assert_eq!(texts(Axis::linear("", [-1.7, 1.7].into_iter()), 2), ["−1", "0", "1"]);
         let narrow = texts(Axis::linear("", [1e6, 1e6 + 1.0].into_iter()), 4);
         assert!(narrow.windows(2).all(|pair| pair[0] != pair[1]), "{narrow:?}");
         assert_eq!(

@@ -22,9 +22,9 @@ pub fn section(report: &Report) -> String {
     let rows: Vec<Vec<String>> = report.sets.iter().filter_map(row).collect();
     let words = format!(
         "The band is wider where the members disagree, and beyond the trained range if the model was worse there. It \
-         holds {probability} % of the measured outputs as far as new data are like those held out (split conformal \
-         prediction); other probabilities by hysid simulate --band. Training data were fitted to, so more than \
-         {probability} % of them lie within."
+         was made to hold {probability} % of the rows held out (split conformal prediction), and does so for others \
+         as far as these are like them and the members disagree there as they did then. How many of the training \
+         data lie within says little, since they were fitted to. Other probabilities: hysid simulate --band."
     );
     section_of("The prediction band", &(paragraph(&calibration) + &table(&headings, &rows) + &note(&words)))
 }
