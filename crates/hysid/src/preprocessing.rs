@@ -221,7 +221,7 @@ impl Preprocessing {
     /// Data as the model sees them, and how the rate is found there.
     ///
     /// # Errors
-    /// As [`Preprocessing::columns`].
+    /// A rate that cannot be computed.
     pub fn data<'d>(
         &self,
         data: &'d Dataset,
