@@ -84,6 +84,8 @@ def test_what_validation_chooses_is_the_same_by_default(program, spring_and_slid
     x, y = spring_and_slider
     frame = pandas.DataFrame({"u": x[::3], "f": y[::3]})
     frame.to_csv(tmp_path / "train.csv", index=False)
+    # A flag of the program is there or is not: it cannot say that there shall be no history.
+    hasty = {name: value for name, value in hasty.items() if value is not False}
     done = program("fit", "train.csv", "-o", "m.json", "--no-report", *options(hasty), folder=tmp_path)
     assert done.returncode == 0, done.stderr
     model = hysid.fit(frame["u"], frame["f"], records=["train"] * len(frame), **hasty)

@@ -120,12 +120,13 @@ def fit(
     stops, hidden, relaxation : int, optional
         Stop neurons, tanh neurons, and relaxation neurons of each input.
     no_deterioration : bool, optional
-        Stops do not deteriorate, whatever the family.
+        Stops do not deteriorate, whatever the family. Of auto, False is a decision too: they do.
     companding, rate_companding : float, optional
         Spreads the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
         0.1; 0 for never. The same for the rate.
     history : bool, optional
-        The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops.
+        The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops. Of
+        auto, False is a decision too: they are not.
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, where records do
         not begin in the virgin state.
