@@ -8,7 +8,7 @@
 //! 3. *Choice*: candidates of a kind count by the mean logarithm of their errors, the best three answer by
 //!    their weighted median; the kinds count among each other in the same way. Rows inside the trained
 //!    range and beyond it are judged apart.
-//! 4. *Fit on everything* of all that count, and an [`Ensemble`] of them, or one model that follows it.
+//! 4. *Fit on everything* of all that count, and an [`Ensemble`](crate::model::Ensemble) of them, or one model that follows it.
 //! 5. *Band*, calibrated on what was foretold in step 2.
 //!
 //! Which settings were tried, on which cases, and what they gave: docs/accuracy.md.
@@ -215,7 +215,7 @@ fn ensemble(
         train: body.errors(None, data)?,
         validation: jury.validation(judges, &data.names().output),
         runs: Vec::new(),
-        selection: (!judges.is_empty()).then(|| Selection::of(jury, judges)),
+        selection: (!judges.is_empty()).then(|| Selection::of(jury, judges, most)),
     };
     let model = Model::new(body, Preprocessing::default(), options.rate, data, provenance)?;
     Ok(model.with_band(Band::calibrate(&jury.rows_held_out(judges))))

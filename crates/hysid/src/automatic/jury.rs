@@ -114,7 +114,7 @@ impl Jury {
 
     /// Panel and panelist of each member that is kept: the first of each candidate before the second of
     /// any, and those that count most before the others.
-    fn members_kept(&self, most: usize) -> Vec<(usize, usize)> {
+    pub fn members_kept(&self, most: usize) -> Vec<(usize, usize)> {
         let mut all: Vec<(usize, f64, (usize, usize))> = Vec::new();
         for (place, (panel, kind)) in self.panels.iter().zip(&self.weights).enumerate() {
             for (of_panel, panelist) in panel.panelists.iter().enumerate().filter(|(_, one)| one.counts()) {

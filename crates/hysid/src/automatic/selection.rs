@@ -44,7 +44,9 @@ fn percent(score: Score) -> (f64, f64) {
 }
 
 impl Selection {
-    pub(super) fn of(jury: &Jury, judges: &[Judge]) -> Self {
+    /// Of a jury of which so many members answer, at most.
+    pub(super) fn of(jury: &Jury, judges: &[Judge], most: usize) -> Self {
+        let kept = jury.members_kept(most);
         let score = |without: Option<(usize, usize)>| {
             let foretold: Vec<Vec<f64>> =
                 judges.iter().enumerate().map(|(fold, judge)| jury.foretold(fold, judge, without)).collect();
@@ -74,7 +76,7 @@ impl Selection {
                         inside: kind.inside / kinds.0 * panelist.weights.inside / inside,
                         outside: kind.outside / kinds.1 * panelist.weights.outside / outside,
                     },
-                    members: panelist.members.len(),
+                    members: kept.iter().filter(|one| **one == (place, of_panel)).count(),
                     without_percent: (panelist.counts() && voices > 1)
                         .then(|| score(Some((place, of_panel)))),
                 })
