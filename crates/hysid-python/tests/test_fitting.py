@@ -126,10 +126,12 @@ def test_others_work_while_a_fit_runs(spring_and_slider):
 
 
 INTERRUPTED = """
-    import sys, time, warnings
+    import signal, sys, time, warnings
     import numpy as np
     import hysid
 
+    # What runs in the background of a shell inherits that Ctrl-C is ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     x = 6 * np.linspace(0, 1, 600) * np.sin(np.linspace(0, 60, 600))
     y = 0.2 * x + hysid.operators.stop(x, r=1.0)
     begun = []
