@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use hysid::plant::cases::{Case, generated};
+use hysid::plant::cases::{Case, generated, one_loop};
 use hysid::record::{Dataset, Record};
 
 pub use request::Request;
@@ -16,7 +16,8 @@ pub use request::Request;
 use crate::files;
 
 pub fn run(request: &Request) -> Result<()> {
-    let cases = generated(request.count, request.seed)?;
+    let cases = if request.one_loop { one_loop } else { generated };
+    let cases = cases(request.count, request.seed)?;
     println!("| case | law | design | train: scored of rows, records | test: scored of rows, records |");
     println!("|---|---|---|---|---|");
     for case in &cases {

@@ -31,9 +31,10 @@ Commands:
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
                  training errors, seconds, what auto chose. LIST, time limit and ARG are passed on to it; a case that takes longer
                  than its limit is given up; HYSID takes the place of the release build
-  generate-cases DIR [--count NUMBER] [--seed NUMBER]
+  generate-cases DIR [--count NUMBER] [--seed NUMBER] [--one-loop]
                  writes folders with train.csv and test.csv for `cases`: laws with parameters of their own, driven as
-                 engineers measure, with noise. The same seed (1) gives the same cases; the first 36 all differ in kind
+                 engineers measure, with noise. The same seed (1) gives the same cases; the first 36 all differ in
+                 kind. With --one-loop, one loop to train on and smaller loops inside it to test
   verdicts DIR [--case-limit SECONDS] [--out FILE.md] [--program HYSID] [-- ARG..]
                  `hysid diagnose` on every subfolder of DIR that has train.csv, as a table of verdicts; otherwise as
                  `cases`

@@ -3,9 +3,10 @@
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{ArgAction, Args, Parser, Subcommand};
+use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use hysid::automatic::MOST_MEMBERS;
 use hysid::classical::linear_fit::Sign;
 use hysid::diagnosis::DiagnosisOptions;
@@ -14,6 +15,7 @@ use hysid::identification::options::{ChosenOptions, NEURONS, RateChoice, STARTS}
 use hysid::model::BAND_PROBABILITIES;
 use hysid::plant::Specimen;
 use hysid::training::genetic::POPULATIONS;
+use hysid::training::options::PENALTIES;
 use hysid::training::{FitOptions, Trainer};
 
 use crate::reproduction::Experiment;
@@ -25,6 +27,32 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// What stands for a number in the usage of an option.
+const NUMBERS: [&str; 7] = ["N", "SHARE", "ROWS", "SECONDS", "FRACTION", "PROBABILITY", "PERCENT"];
+
+impl Arguments {
+    /// What was typed.
+    ///
+    /// # Errors
+    /// A command line that cannot be obeyed, and requests for help.
+    pub fn typed() -> Result<Self, clap::Error> {
+        // What begins with a minus sign is the value of an option that takes a number, so that it is the option that
+        // says what is wrong with it. Of other options, only a plain number is: a column may have that name.
+        let takes_numbers = |option: clap::Arg| {
+            let takes_value = matches!(option.get_action(), ArgAction::Set | ArgAction::Append);
+            let names = option.get_value_names().unwrap_or_default();
+            let is_number = names.iter().any(|name| NUMBERS.contains(&name.as_str()));
+            match option.get_long() {
+                Some(_) if is_number => option.allow_hyphen_values(true),
+                Some(_) if takes_value => option.allow_negative_numbers(true),
+                _ => option,
+            }
+        };
+        let command = Self::command().mut_subcommands(|command| command.mut_args(takes_numbers));
+        Self::from_arg_matches(&command.try_get_matches()?)
+    }
 }
 
 /// The commands.
@@ -58,6 +86,17 @@ pub struct Demo {
     /// Folder for the data, the model and the report
     #[arg(short, long, value_name = "DIR", default_value = "hysid-demo")]
     pub out: PathBuf,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+}
+
+/// Which files may be replaced.
+#[derive(Debug, Clone, Args)]
+pub struct Overwriting {
+    /// Replace a file even if Hysid did not write it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Which column is what.
@@ -109,6 +148,9 @@ pub struct Fit {
     /// The model file; the report gets its name with `.html` [default: first TRAIN with `.json`, in this folder]
     #[arg(short, long, value_name = "MODEL.json")]
     pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -189,24 +231,24 @@ pub struct TrainingOptions {
     #[arg(long, value_name = "N", value_parser = neurons)]
     pub hidden: Option<usize>,
     /// Relaxation neurons of each input, for xpnn+ with time stamps; 0 for none [default: 4]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
     pub relaxation: Option<usize>,
     /// Stops do not deteriorate, whatever the family
     #[arg(long)]
     pub no_deterioration: bool,
     /// Spread the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
     /// 0.1; 0 for never [default: what validates best for auto, otherwise never]
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
     pub companding: Option<f64>,
     /// The same for the rate, as a share of the rates that are common [default: as above]
-    #[arg(long, value_name = "SHARE")]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
     pub rate_companding: Option<f64>,
     /// The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops
     #[arg(long)]
     pub history: bool,
     /// Rows at the beginning of each record that drive the memory and are not trained on, where records do
     /// not begin in the virgin state [default: what validates best for auto, otherwise 0]
-    #[arg(long, value_name = "ROWS")]
+    #[arg(long, value_name = "ROWS", value_parser = whole::<usize>)]
     pub warm_up: Option<usize>,
     /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
     /// method with space dilatation, or either alone
@@ -218,21 +260,29 @@ pub struct TrainingOptions {
     pub starts: Option<usize>,
     /// Epochs of each start: iterations or generations, in a hybrid half of each; the best of several
     /// starts get as many again on all data [default: 40 for levenberg-marquardt, otherwise 2000]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
     pub epochs: Option<usize>,
     /// Individuals of the genetic algorithm [default: 50]
     #[arg(long, value_name = "N", value_parser = population)]
     pub population: Option<usize>,
     /// Epochs without noticeable improvement after which genetic algorithm or sub-gradient method end; 0
     /// for never [default: 50]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
     pub stall: Option<usize>,
     /// Seed of the random starts
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed)]
+    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed, value_parser = whole::<u64>)]
     pub seed: u64,
-    /// Share of the data held out to choose among the starts of a network [default: 0.25]
+    /// Share of the data held out to validate a network on [default: the folds of a cross-validation]
     #[arg(long, value_name = "FRACTION", value_parser = fraction)]
     pub validation: Option<f64>,
+    /// Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in the
+    /// paper [default: 1e-6, left out where cross-validation finds that it does harm; chosen by
+    /// cross-validation for auto]
+    #[arg(long, value_name = "PENALTY", value_parser = penalty)]
+    pub ridge: Option<f64>,
+    /// Penalty on the squared weights of stops and tanh neurons [default: 1e-7, otherwise as --ridge]
+    #[arg(long, value_name = "PENALTY", value_parser = penalty)]
+    pub decay: Option<f64>,
 }
 
 /// What can be chosen of the models that are no networks.
@@ -243,7 +293,7 @@ pub struct RivalOptions {
     #[arg(long, value_name = "N", value_parser = neurons)]
     pub operators: Option<usize>,
     /// Thresholds of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii in the unit of the input, such as 0.1,0.2,0.5
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = threshold, allow_hyphen_values = true)]
     pub thresholds: Option<Vec<f64>>,
     /// Sign of the weights of plays or cells: any, non-negative or non-positive [default: what validates best]
     #[arg(long, value_name = "SIGN", value_parser = sign())]
@@ -286,6 +336,8 @@ impl TrainingOptions {
             stall: self.stall,
             seed: Some(self.seed),
             validation: self.validation,
+            ridge: self.ridge,
+            decay: self.decay,
             operators: rival.operators,
             thresholds: rival.thresholds.clone(),
             sign: rival.sign,
@@ -320,6 +372,23 @@ fn number_within(text: &str, range: &RangeInclusive<usize>) -> Result<usize, Str
     if range.contains(&number) { Ok(number) } else { Err(format!("choose {low} to {high}")) }
 }
 
+/// A whole number without a bound above.
+fn whole<N: FromStr>(text: &str) -> Result<N, String> {
+    let is_below = text.strip_prefix('-').is_some_and(|number| number.parse::<N>().is_ok());
+    let advice = if is_below { "choose 0 or more" } else { "a whole number, 0 or more, is needed" };
+    text.parse().map_err(|_| advice.into())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| *share == 0.0 || (1e-6..=1e3).contains(share));
+    share.ok_or_else(|| "choose 0 for never, or 1e-6 to 1e3".into())
+}
+
+fn threshold(text: &str) -> Result<f64, String> {
+    let threshold = text.parse().ok().filter(|threshold: &f64| threshold.is_finite() && *threshold > 0.0);
+    threshold.ok_or_else(|| "thresholds are numbers above 0, such as 0.1,0.2,0.5".into())
+}
+
 fn members(text: &str) -> Result<usize, String> {
     number_within(text, &(1..=MOST_MEMBERS))
 }
@@ -345,6 +414,11 @@ fn fraction(text: &str) -> Result<f64, String> {
     fraction.ok_or_else(|| "a number between 0 and 1 is needed".into())
 }
 
+fn penalty(text: &str) -> Result<f64, String> {
+    let penalty = text.parse().ok().filter(|penalty| PENALTIES.contains(penalty));
+    penalty.ok_or_else(|| format!("a number from {} to {:e} is needed", PENALTIES.start(), PENALTIES.end()))
+}
+
 fn probability(text: &str) -> Result<f64, String> {
     let probability = text.parse().ok().filter(|probability| BAND_PROBABILITIES.contains(probability));
     let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
@@ -368,6 +442,9 @@ pub struct Simulate {
     /// Where to write [default: stdout, as with `-`]
     #[arg(short, long, value_name = "OUT.csv")]
     pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// Two further columns, `<output>_low` and `<output>_high`: between them lies the measured output with this
     /// probability, such as 0.9, as far as the data are like those that were held out in training
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
@@ -412,6 +489,9 @@ pub struct Compare {
     /// The page with table and loops [default: first TRAIN with `-compared.html`, in this folder]
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -419,7 +499,7 @@ pub struct Compare {
     #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = seconds)]
     pub time_limit: f64,
     /// Seed of all randomness
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed)]
+    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed, value_parser = whole::<u64>)]
     pub seed: u64,
     /// Models fitted at a time, each on one thread [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -441,6 +521,9 @@ pub struct Diagnose {
     /// The page with pictures [default: first file with `.diagnosis.html`, in this folder]
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -475,11 +558,14 @@ pub struct Reproduce {
     /// --quick is not run again
     #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
     pub out: PathBuf,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// A fraction of the effort, to see how it looks
     #[arg(long)]
     pub quick: bool,
     /// Seed of all randomness; of several repetitions that of the first
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     pub seed: u64,
 }
 
@@ -500,11 +586,14 @@ pub struct Generate {
     /// Where to write the test data [default: not written; `-` is stdout]
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
     /// Deviation of Gaussian noise on the output, in percent of the output's own standard deviation
-    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = noise, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = noise)]
     pub noise: f64,
     /// Seed of the noise; training and test data get different noise from the same seed
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     pub seed: u64,
     /// Describe all specimens
     #[arg(long, conflicts_with_all = ["specimen", "out", "test", "noise", "seed"])]
@@ -535,7 +624,6 @@ pub struct Bench {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_sound() {

@@ -1,6 +1,6 @@
 //! How many measured outputs lie within a model's band.
 
-use hysid::model::{Model, Prediction};
+use hysid::model::Prediction;
 use hysid::record::Dataset;
 use hysid::warning::Significant;
 
@@ -16,12 +16,9 @@ pub struct BandCoverage {
 }
 
 impl BandCoverage {
-    /// Of a model with a band, on data with an output.
-    pub fn of(model: &Model, data: &Dataset, probability: f64) -> hysid::Result<Self> {
-        let predict = |record: &hysid::record::Record| model.predict(&record.excitation(), probability);
-        let predictions: Vec<Prediction> =
-            data.records().iter().map(predict).collect::<hysid::Result<_>>()?;
-        Ok(Self::counted(&predictions, data, probability))
+    /// Of so many outputs within the band, and so many in all.
+    pub fn of((covered, samples): (usize, usize), probability: f64) -> Self {
+        Self { probability, coverage_percent: 100.0 * covered as f64 / samples.max(1) as f64, samples }
     }
 
     /// Of bands that are there already, one for each record.
@@ -29,7 +26,7 @@ impl BandCoverage {
         let of_records = predictions.iter().zip(data.records());
         let of_records = of_records.map(|(predicted, record)| predicted.covered(record.output()));
         let (covered, samples) = of_records.fold((0, 0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
-        Self { probability, coverage_percent: 100.0 * covered as f64 / samples.max(1) as f64, samples }
+        Self::of((covered, samples), probability)
     }
 
     /// In words.

@@ -1,10 +1,11 @@
 //! Checkpoint files: what is needed to go on with a fit that was cut short.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
 use hysid::training::{Checkpoint, Progress};
+use hysid_files::{Destination, Failure, Lock};
 
 use crate::files;
 
@@ -20,16 +21,30 @@ pub fn read(path: &Path) -> Result<Checkpoint> {
     Checkpoint::from_bytes(&bytes).map_err(|error| anyhow!("{}: {error}", path.display()))
 }
 
-/// Keeps a checkpoint file up to date.
+/// Keeps a checkpoint file up to date. No other process can meanwhile.
 pub struct Keeper {
-    path: PathBuf,
+    destination: Destination,
     due: Instant,
+    _lock: Lock,
 }
 
 impl Keeper {
     /// Writes the first checkpoint at once, so that from then on there is one.
-    pub fn new(path: &Path) -> Self {
-        Self { path: path.to_path_buf(), due: Instant::now() }
+    pub fn new(destination: Destination) -> Result<Self> {
+        let lock = Lock::acquire(destination.path()).map_err(|failure| match failure {
+            Failure::InUse(path) => anyhow!(
+                "{}: another fit keeps its checkpoint in this file: wait for its end, or name another file with \
+                 --checkpoint",
+                path.display()
+            ),
+            failure => files::explained(failure),
+        })?;
+        Ok(Self { destination, due: Instant::now(), _lock: lock })
+    }
+
+    /// The checkpoint file.
+    pub fn path(&self) -> &Path {
+        self.destination.path()
     }
 
     /// Writes the file if it is time to, or if this is the `last` chance.
@@ -39,7 +54,9 @@ impl Keeper {
             return Ok(());
         }
         let Some(checkpoint) = progress.checkpoint() else { return Ok(()) };
-        files::replace(&self.path, &checkpoint.to_bytes())?;
+        files::write(&self.destination, &checkpoint.to_bytes())?;
+        // What the first one replaced is kept; what this fit wrote itself need not be.
+        self.destination = self.destination.clone().keeping_the_old(false);
         // A slow disk or a large network must not make the fit slow.
         let spent = now.elapsed();
         self.due = Instant::now() + BETWEEN.max(spent.div_f64(LARGEST_SHARE));

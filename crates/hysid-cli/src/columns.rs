@@ -1,5 +1,7 @@
 //! Which column is what: found from the names, from options, or from a model.
 
+use std::collections::HashMap;
+
 use anyhow::{Result, anyhow, bail, ensure};
 use hysid::identification::options::RateChoice;
 use hysid::model::Model;
@@ -8,7 +10,8 @@ use hysid::record::ColumnNames;
 
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
-use crate::table::Table;
+use crate::table::{Head, Table};
+use crate::terminal::{clipped, listed};
 use hysid::unit;
 
 /// The columns of each role, by name.
@@ -33,7 +36,7 @@ impl Roles {
             RateOption::Column(name) => Some(name.clone()),
             _ => None,
         };
-        let mut taken: Vec<(&str, &str)> = Vec::new();
+        let mut taken: HashMap<&str, &str> = HashMap::new();
         let named = [
             ("--record", &options.record),
             ("--time", &options.time),
@@ -43,15 +46,16 @@ impl Roles {
         let named = named.into_iter().filter_map(|(option, name)| name.as_ref().map(|name| (option, name)));
         for (option, name) in named.chain(options.input.iter().map(|name| ("--input", name))) {
             require(table, name, option)?;
-            if let Some((other, _)) = taken.iter().find(|(_, taken)| taken == name) {
-                return Err(
-                    Usage(format!("column \"{name}\" is named twice, by {other} and {option}")).into()
-                );
+            if let Some(other) = taken.insert(name, option) {
+                return Err(Usage(format!(
+                    "column \"{}\" is named twice, by {other} and {option}",
+                    clipped(name)
+                ))
+                .into());
             }
-            taken.push((option, name));
         }
         let mut free: Vec<&String> =
-            table.header.iter().filter(|name| !taken.iter().any(|(_, taken)| taken == name)).collect();
+            table.header.iter().filter(|name| !taken.contains_key(name.as_str())).collect();
         let mut claim = |given: &Option<String>, suits: &dyn Fn(&str) -> bool| {
             given.clone().or_else(|| {
                 let place = free.iter().position(|name| suits(name))?;
@@ -71,23 +75,24 @@ impl Roles {
             output => bail!(
                 "{}: no column is left for the input beside output \"{}\" (columns: {})",
                 table.file,
-                output.unwrap_or_default(),
-                table.header.join(", ")
+                clipped(&output.unwrap_or_default()),
+                listed(&table.header)
             ),
         }
     }
 
     /// Finds the columns that a model needs, by the names it was trained on or those of options.
     /// `scored` tells if the output is needed too.
-    pub fn of_model(model: &Model, table: &Table, options: &ColumnOptions, scored: bool) -> Result<Self> {
+    pub fn of_model(model: &Model, table: &Head, options: &ColumnOptions, scored: bool) -> Result<Self> {
         let names = model.names();
         let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
             Some(name) => require(table, name, option).map(|()| name.clone()),
             None if table.column(trained).is_some() => Ok(trained.to_string()),
             None => Err(anyhow!(
-                "{}: there is no column \"{trained}\", the model's {what} (columns: {}; name another with {option})",
+                "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
                 table.file,
-                table.header.join(", ")
+                clipped(trained),
+                listed(&table.header)
             )),
         };
         let given_rate = rate_of_model(model, options)?;
@@ -97,7 +102,7 @@ impl Roles {
         } else {
             let (expected, found) = (names.inputs.len(), options.input.len());
             if expected != found {
-                let inputs = names.inputs.join(", ");
+                let inputs = listed(&names.inputs);
                 return Err(Usage(format!(
                     "--input names {found} columns, but the model's inputs are {expected}: {inputs}"
                 ))
@@ -143,15 +148,16 @@ impl Roles {
     }
 
     /// Refuses a further table that lacks a column of the first.
-    pub fn check_against(&self, table: &Table, first: &Table) -> Result<()> {
+    pub fn check_against(&self, table: &Head, first: &Head) -> Result<()> {
         let all = self.record.iter().chain(&self.time).chain(&self.inputs).chain(&self.rate);
         for name in all.chain([&self.output]) {
             ensure!(
                 table.column(name).is_some(),
-                "{}: there is no column \"{name}\", as in {} (columns: {})",
+                "{}: there is no column \"{}\", as in {} (columns: {})",
                 table.file,
+                clipped(name),
                 first.file,
-                table.header.join(", ")
+                listed(&table.header)
             );
         }
         Ok(())
@@ -162,12 +168,13 @@ fn is_record(name: &str) -> bool {
     ["record", "segment"].contains(&name.to_lowercase().as_str())
 }
 
-fn require(table: &Table, name: &str, option: &str) -> Result<()> {
+fn require(table: &Head, name: &str, option: &str) -> Result<()> {
     ensure!(
         table.column(name).is_some(),
-        "{}: there is no column \"{name}\" for {option} (columns: {})",
+        "{}: there is no column \"{}\" for {option} (columns: {})",
         table.file,
-        table.header.join(", ")
+        clipped(name),
+        listed(&table.header)
     );
     Ok(())
 }

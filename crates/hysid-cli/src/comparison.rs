@@ -18,9 +18,8 @@ use crate::arguments::Compare;
 use crate::data::Data as Read;
 use crate::interrupt;
 use crate::messages::note;
-use crate::report::choice;
 use crate::timing::ns_per_sample;
-use crate::understanding;
+use crate::{terminal, understanding};
 pub use page::page;
 
 /// A simulation is timed over at least this time.
@@ -185,7 +184,7 @@ pub fn table(rows: &[Row], tested: bool) -> String {
                 let [test, train, parameters, fit, simulate] = cells(fitted);
                 text += &line([row.model.name(), &test, &train, &parameters, &fit, &simulate]);
             }
-            Err(why) => text += &format!("{:<33} {why}\n", row.model.name()),
+            Err(why) => text += &format!("{:<33} {}\n", row.model.name(), terminal::line(why)),
         }
     }
     let data =
@@ -198,7 +197,7 @@ pub fn table(rows: &[Row], tested: bool) -> String {
 /// A row of `--json`.
 #[derive(serde::Serialize)]
 #[serde(untagged)]
-enum Printed<'a> {
+pub enum Printed<'a> {
     Fitted {
         model: &'static str,
         /// What was chosen, or what a network is made of; `null` for a law.
@@ -220,15 +219,14 @@ enum Printed<'a> {
 fn structure(model: &Model) -> Option<String> {
     let provenance = model.provenance();
     match (&provenance.selection, model.network()) {
-        (Some(selection), _) => Some(choice(model, selection)[0].clone()),
+        (Some(selection), _) => Some(selection.summary()[0].clone()),
         (None, network) => Some(understanding::parts(network?.architecture())),
     }
 }
 
-/// The comparison as a list of JSON objects.
-pub fn json(rows: &[Row]) -> Result<String> {
-    let printed: Vec<Printed> = rows
-        .iter()
+/// The comparison as `--json` prints it, one object for each model.
+pub fn printed(rows: &[Row]) -> Vec<Printed<'_>> {
+    rows.iter()
         .map(|row| match &row.outcome {
             Ok(fitted) => Printed::Fitted {
                 model: row.model.name(),
@@ -242,6 +240,5 @@ pub fn json(rows: &[Row]) -> Result<String> {
             },
             Err(error) => Printed::Failed { model: row.model.name(), error },
         })
-        .collect();
-    Ok(serde_json::to_string_pretty(&printed)? + "\n")
+        .collect()
 }

@@ -1,9 +1,11 @@
 //! A data set as CSV: what `hysid fit` reads as the same records, without any option.
 
 use anyhow::Result;
+use csv::QuoteStyle;
 use hysid::record::{Dataset, Record};
 
 use crate::cell::shortest;
+use crate::table::DELIMITERS;
 
 /// The data with a header line. Column `record` tells several records apart, a blank output is an empty
 /// cell, and every number reads back as the same number.
@@ -15,8 +17,8 @@ pub fn csv_text(data: &Dataset) -> Result<String> {
     let inputs = names.inputs.iter().map(String::as_str);
     let header = several.then_some("record").into_iter().chain(time).chain(inputs).chain(rate);
 
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header.chain([names.output.as_str()]))?;
+    let header = header_line(b',', header.chain([names.output.as_str()]))?;
+    let mut writer = csv::Writer::from_writer(header);
     for record in data.records() {
         for row in 0..record.len() {
             let name = several.then(|| record.name().to_string());
@@ -24,6 +26,21 @@ pub fn csv_text(data: &Dataset) -> Result<String> {
         }
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// A header line that reads back as these names. All are quoted where the line would be taken for a comment, or another
+/// character for the delimiter.
+pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clone) -> Result<Vec<u8>> {
+    let is_comment = names.clone().next().is_some_and(|name| name.trim_start().starts_with('#'));
+    let divides = |letter: char| DELIMITERS.contains(&letter) && letter != char::from(delimiter);
+    let style = match is_comment || names.clone().any(|name| name.contains(divides)) {
+        true => QuoteStyle::Always,
+        false => QuoteStyle::Necessary,
+    };
+    let mut builder = csv::WriterBuilder::new();
+    let mut writer = builder.delimiter(delimiter).quote_style(style).from_writer(Vec::new());
+    writer.write_record(names)?;
+    Ok(writer.into_inner()?)
 }
 
 /// The numbers of a row in the order of the columns.
@@ -47,19 +64,18 @@ mod tests {
     use crate::arguments::{Arguments, Command};
     use crate::columns::Roles;
     use crate::data::Data;
-    use crate::files;
     use crate::table::Table;
 
     /// The data as `hysid fit FILE OPTION...` reads them.
     fn read_back(data: &Dataset, options: &[&str]) -> Dataset {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("only.csv");
-        files::write(&path, csv_text(data).unwrap().as_bytes()).unwrap();
+        std::fs::write(&path, csv_text(data).unwrap()).unwrap();
         let typed = [&["hysid", "fit", "only.csv"], options].concat();
         let Command::Fit(fit) = Arguments::parse_from(typed).command else { panic!("fit was typed") };
         let table = Table::read(Path::new(&path)).unwrap();
         let roles = Roles::detect(&table, &fit.columns).unwrap();
-        Data::new(vec![table], roles, true).unwrap().set
+        Data::new(vec![table], roles).unwrap().set
     }
 
     fn bits(record: &Record) -> Vec<Vec<u64>> {
@@ -87,6 +103,20 @@ mod tests {
                 check(&data, &read_back(&data, &[]));
             }
         }
+    }
+
+    #[test]
+    fn every_header_line_reads_back() {
+        for names in [["# t", "x", "y"], [" #t", "x\n", "\"y\""], ["a;b", "c\td", "e,f"], ["t", "x", "y"]] {
+            for delimiter in DELIMITERS {
+                let header = header_line(delimiter as u8, names.into_iter()).unwrap();
+                let rows = format!("\"1;2\"{delimiter}3{delimiter}4\n").repeat(4).into_bytes();
+                let table = Table::from_bytes(Path::new("f"), &[header, rows].concat()).unwrap();
+                assert_eq!(table.header, names.map(str::trim), "{delimiter:?}");
+            }
+        }
+        let plain = header_line(b',', ["t", "x"].into_iter()).unwrap();
+        assert_eq!(plain, b"t,x\n");
     }
 
     #[test]

@@ -1,17 +1,20 @@
 //! From tables to the library's data set, and from the library's errors back to file, line and
 //! column.
 
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow};
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::record::{Dataset, Record};
 
 use crate::cell::CellReader;
 use crate::columns::Roles;
 use crate::messages::Usage;
-use crate::table::Table;
+use crate::record_names::RecordNames;
+use crate::table::{Head, Table};
+use crate::terminal::clipped;
 
 /// Measured data and the tables they come from.
 pub struct Data {
@@ -27,8 +30,6 @@ pub struct Data {
 pub struct Source {
     /// The tables, in the order of the command line.
     pub tables: Vec<Table>,
-    /// True for each table whose numbers have decimal commas.
-    pub decimal_commas: Vec<bool>,
     places: Vec<Place>,
 }
 
@@ -40,21 +41,20 @@ struct Place {
 }
 
 impl Data {
-    /// Takes records from tables. Without `scored` the output is not looked at, and blank.
-    pub fn new(tables: Vec<Table>, roles: Roles, scored: bool) -> Result<Self> {
+    /// Takes records from tables.
+    pub fn new(tables: Vec<Table>, roles: Roles) -> Result<Self> {
         for table in &tables[1..] {
             roles.check_against(table, &tables[0])?;
         }
         let stems = stems(&tables);
-        let mut source = Source { decimal_commas: Vec::new(), places: Vec::new(), tables };
+        let mut source = Source { places: Vec::new(), tables };
         let mut records = Vec::new();
         for (index, stem) in stems.iter().enumerate() {
             let several = stems.len() > 1;
             let places = places(&source.tables[index], index, &roles, stem, several)?;
             let first = source.places.len();
             source.places.extend(places);
-            let columns = Columns::read(&source.tables[index], &roles, scored)?;
-            source.decimal_commas.push(columns.decimal_commas);
+            let columns = Columns::read(&source.tables[index], &roles)?;
             for place in &source.places[first..] {
                 records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
             }
@@ -80,31 +80,43 @@ impl Source {
             return error.into();
         };
         let table = &self.tables[place.table];
-        let column = error.channel.and_then(|channel| column(channel, roles));
-        if let (Some(row), Some(column)) = (error.row, column) {
-            let line = table.lines[place.rows.start + row];
-            return anyhow!("{}, line {line}, column \"{column}\": {}", table.file, error.problem);
+        let line = error.row.map(|row| table.lines[place.rows.start + row]);
+        match self.tables.len() {
+            n if n > 1 && line.is_none() && concerns_all(&error) => {
+                let files = format!("{} and {} more", self.tables[0].file, n - 1);
+                explained(&files, None, error.into(), roles)
+            }
+            _ => explained(&table.file, line, error.into(), roles),
         }
-        let files = match self.tables.len() {
-            1 => table.file.clone(),
-            n if concerns_all(&error) => format!("{} and {} more", self.tables[0].file, n - 1),
-            _ => table.file.clone(),
-        };
-        match (&error.problem, column) {
-            (DataProblem::TooFewRows { found: 1, needed }, _) => {
-                anyhow!("{files}: only 1 row has an output: at least {needed} are needed")
-            }
-            (DataProblem::TooFewRows { found, needed }, _) => {
-                anyhow!("{files}: only {found} rows have an output: at least {needed} are needed")
-            }
-            (
-                DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
-                Some(column),
-            ) => {
-                anyhow!("{files}: column \"{column}\" {}", error.problem)
-            }
-            _ => anyhow!("{files}: {}", error.problem),
+    }
+}
+
+/// An error of the library in the user's words: file, line, column.
+pub fn explained(file: &str, line: Option<u64>, error: hysid::Error, roles: &Roles) -> anyhow::Error {
+    let error = match error {
+        hysid::Error::Data(error) => error,
+        hysid::Error::Option(text) => return Usage(text).into(),
+        other => return other.into(),
+    };
+    let column = error.channel.and_then(|channel| column(channel, roles));
+    match (&error.problem, line, column) {
+        (problem, Some(line), Some(column)) => {
+            anyhow!("{file}, line {line}, column \"{}\": {problem}", clipped(column))
         }
+        (DataProblem::TooFewRows { found: 1, needed }, ..) => {
+            anyhow!("{file}: only 1 row has an output: at least {needed} are needed")
+        }
+        (DataProblem::TooFewRows { found, needed }, ..) => {
+            anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
+        }
+        (
+            DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
+            _,
+            Some(column),
+        ) => {
+            anyhow!("{file}: column \"{}\" {}", clipped(column), error.problem)
+        }
+        (problem, ..) => anyhow!("{file}: {problem}"),
     }
 }
 
@@ -135,11 +147,12 @@ fn stems(tables: &[Table]) -> Vec<String> {
         path.file_stem().map_or_else(|| table.file.clone(), |stem| stem.to_string_lossy().into_owned())
     };
     let all: Vec<String> = tables.iter().map(stem).collect();
-    let unique = |stem: &String| all.iter().filter(|other| *other == stem).count() == 1;
-    all.iter()
-        .zip(tables)
-        .map(|(stem, table)| if unique(stem) { stem.clone() } else { table.file.clone() })
-        .collect()
+    let mut count: HashMap<&str, usize> = HashMap::new();
+    all.iter().for_each(|stem| *count.entry(stem).or_default() += 1);
+    let name = |(stem, table): (&String, &Table)| {
+        if count[stem.as_str()] == 1 { stem.clone() } else { table.file.clone() }
+    };
+    all.iter().zip(tables).map(name).collect()
 }
 
 /// The records of a table: runs of rows with the same name in the record column.
@@ -149,30 +162,24 @@ fn places(table: &Table, index: usize, roles: &Roles, stem: &str, several: bool)
     };
     let cell = place_of(table, column)?;
     let mut places: Vec<Place> = Vec::new();
-    let mut begun: std::collections::HashSet<&str> = std::collections::HashSet::new();
-    let mut last = None;
+    let mut names = RecordNames::default();
     for row in 0..table.len() {
-        let name = table.cell(row, cell).trim();
-        let at = || format!("{}, line {}, column \"{column}\"", table.file, table.lines[row]);
-        if name.is_empty() {
-            bail!("{}: the cell is empty (every row needs the name of its record)", at());
-        }
-        if last == Some(name) {
+        let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
+        let name = table.cell(row, cell);
+        if !names.begins(name, at)? {
             places.last_mut().expect("a record has begun").rows.end = row + 1;
             continue;
         }
-        if !begun.insert(name) {
-            bail!("{}: record \"{name}\" goes on after another began (keep its rows together)", at());
-        }
-        last = Some(name);
+        let name = name.trim();
         let record = if several { format!("{stem}/{name}") } else { name.to_string() };
         places.push(Place { record, table: index, rows: row..row + 1 });
     }
     Ok(places)
 }
 
-fn place_of(table: &Table, name: &str) -> Result<usize> {
-    table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{name}\"", table.file))
+/// Place of a column.
+pub fn place_of(table: &Head, name: &str) -> Result<usize> {
+    table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{}\"", table.file, clipped(name)))
 }
 
 /// The numbers of a table, column by column.
@@ -181,21 +188,17 @@ struct Columns {
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
     output: Vec<f64>,
-    decimal_commas: bool,
 }
 
 impl Columns {
-    fn read(table: &Table, roles: &Roles, scored: bool) -> Result<Self> {
+    fn read(table: &Table, roles: &Roles) -> Result<Self> {
         let mut cells = CellReader::new(table.delimiter);
         let mut read = |name: &String, is_output: bool| column_of(table, name, is_output, &mut cells);
         let time = roles.time.as_ref().map(|name| read(name, false)).transpose()?;
         let inputs = roles.inputs.iter().map(|name| read(name, false)).collect::<Result<_>>()?;
         let rate = roles.rate.as_ref().map(|name| read(name, false)).transpose()?;
-        let output = match scored {
-            true => read(&roles.output, true)?,
-            false => vec![f64::NAN; table.len()],
-        };
-        Ok(Self { time, inputs, rate, output, decimal_commas: cells.has_decimal_commas() })
+        let output = read(&roles.output, true)?;
+        Ok(Self { time, inputs, rate, output })
     }
 
     fn record(&self, place: &Place) -> hysid::Result<Record> {
@@ -215,29 +218,36 @@ impl Columns {
 /// The numbers of a column; a blank output is NaN.
 fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
-    let mut numbers = Vec::with_capacity(table.len());
-    for (row, &line) in table.lines.iter().enumerate() {
-        let cell = table.cell(row, place);
-        if cell.trim().is_empty() {
-            if !is_output {
-                bail!(
-                    "{}, line {line}, column \"{name}\": the cell is empty (only the output may be blank)",
-                    table.file
-                );
-            }
-            numbers.push(f64::NAN);
-            continue;
-        }
-        numbers.push(cells.number(cell, line).map_err(|problem| {
-            let hint = match (is_output, problem.ends_with("number")) {
-                (true, true) => " (leave the cell empty to drive the model without scoring)",
-                (false, true) if numbers.is_empty() => " (not an input? name the inputs with --input)",
-                _ => "",
-            };
-            anyhow!("{}, line {line}, column \"{name}\": {problem}{hint}", table.file)
-        })?);
+    let number = |(row, line): (usize, &u64)| {
+        number_in(cells, table.cell(row, place), *line, is_output, row == 0).map_err(|problem| {
+            anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
+        })
+    };
+    table.lines.iter().enumerate().map(number).collect()
+}
+
+/// The number in a cell, NaN for a blank output; or what is wrong with it and what helps.
+pub fn number_in(
+    cells: &mut CellReader,
+    cell: &str,
+    line: u64,
+    is_output: bool,
+    is_first: bool,
+) -> Result<f64, String> {
+    if cell.trim().is_empty() {
+        return match is_output {
+            true => Ok(f64::NAN),
+            false => Err("the cell is empty (only the output may be blank)".into()),
+        };
     }
-    Ok(numbers)
+    cells.number(cell, line).map_err(|problem| {
+        let hint = match (is_output, problem.ends_with("number")) {
+            (true, true) => " (leave the cell empty to drive the model without scoring)",
+            (false, true) if is_first => " (not an input? name the inputs with --input)",
+            _ => "",
+        };
+        problem + hint
+    })
 }
 
 /// Reads tables.

@@ -7,13 +7,16 @@ use hysid::warning::Significant;
 
 use hysid::unit;
 
+use crate::terminal::clipped;
+
 /// What stands in a row of the table.
 type Measure = fn(&Errors) -> String;
 
 /// One column for each named set of errors, one row for each measure.
 pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
-    let output = sets.first().map_or("", |(_, errors)| errors.output.as_str());
-    let unit = unit::of_column(output).map_or_else(String::new, |unit| format!(", {unit}"));
+    let column = sets.first().map_or("", |(_, errors)| errors.output.as_str());
+    let unit = unit::of_column(column).map_or_else(String::new, |unit| format!(", {}", clipped(&unit)));
+    let output = clipped(column);
     let rows: [(String, Measure); 6] = [
         (format!("RMSE of {output}{unit}"), |errors| number(errors.rmse)),
         ("NRMSE, % of std".into(), |errors| percent(errors.nrmse_std_percent)),

@@ -3,18 +3,20 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use hysid::identification::Request;
 use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::{Model, Prediction, Provenance};
 use hysid::record::{Dataset, Record};
 use hysid::summary::Summary;
 use hysid::training::{Checkpoint, Progress, resume};
+use hysid_files::Destination;
 use rayon::ThreadPool;
 
+use crate::checkpoint::Keeper;
 use crate::data::Data;
 use crate::lines::{WIDTH, wrapped};
-use crate::messages::{Usage, note, warning};
+use crate::messages::{Usage, note, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
 use crate::{errors_table, files, interrupt, plot, understanding};
@@ -37,7 +39,7 @@ pub struct Work<'a> {
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,
     /// Where to store the state of the fit.
-    pub checkpoint: Option<&'a Path>,
+    pub checkpoint: Option<Keeper>,
     /// Threads; one for each processor if not said.
     pub threads: Option<u16>,
     /// Seconds after which to stop.
@@ -75,8 +77,7 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
     interrupt::listen(to_ctrl_c)?;
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
-    let mut warnings: Vec<String> =
-        summary.warnings(&data.set).iter().map(|warning| warning.to_string()).collect();
+    let mut warnings = summarised(&summary.warnings(&data.set));
     if request.rate().is_some() && !request.model().uses_rate() {
         warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
     }
@@ -107,17 +108,16 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
 }
 
 impl Identified {
-    /// Writes the model and, if asked, the report beside it; gives the files written.
-    pub fn save(&self, path: &Path, sets: Option<Vec<(&str, &Dataset)>>) -> Result<Vec<(&str, PathBuf)>> {
-        files::write(path, self.model.to_json().as_bytes())?;
-        let mut written = vec![("model", path.to_path_buf())];
-        if let Some(sets) = sets {
-            let page = report_path(path);
-            let text = self.report(path, &sets)?;
-            files::write(&page, text.as_bytes()).context("the model is written, its report is not")?;
-            written.push(("report", page));
-        }
-        Ok(written)
+    /// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error says
+    /// where.
+    pub fn save(&self, model: &Destination) -> Result<()> {
+        files::write_or_rescue(model, "model", self.model.to_json().as_bytes())
+    }
+
+    /// Writes the report on the model, which is written already.
+    pub fn write_report(&self, page: &Destination, model: &Path, sets: &[(&str, &Dataset)]) -> Result<()> {
+        let text = self.report(model, sets)?;
+        files::write(page, text.as_bytes()).context("the model is written, its report is not")
     }
 
     fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<String> {
@@ -157,7 +157,7 @@ impl Identified {
     }
 
     /// Errors, size, time and files, for stdout.
-    pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, PathBuf)]) -> String {
+    pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
         let provenance = self.model.provenance();
         let mut sets = vec![("train", &provenance.train)];
         sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
@@ -169,11 +169,11 @@ impl Identified {
                 selection.folds.len()
             );
             text.push('\n');
-            for (label, line) in ["chosen", "why"].into_iter().zip(report::choice(&self.model, selection)) {
+            for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
                 text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
-            text += "(validation: data held out from the chosen start, before it was trained on all)\n";
+            text += "(validation: data held out, predicted by models that were trained without them)\n";
         }
         text += &format!(
             "\n{} with {} parameters; {}, {}; {:.1} s\n",
@@ -222,22 +222,7 @@ pub fn report_path(model: &Path) -> PathBuf {
     name.into()
 }
 
-/// Refuses, before the work begins, files that cannot be written or that would overwrite the data.
-pub fn check_outputs(outputs: &[&Path], inputs: &[&Path]) -> Result<()> {
-    for (place, output) in outputs.iter().enumerate() {
-        let over = inputs.iter().chain(&outputs[..place]).find(|other| files::same(output, other));
-        if let Some(other) = over {
-            return Err(anyhow!(Usage(format!(
-                "{} would be overwritten: name another file with --out",
-                other.display()
-            ))));
-        }
-        files::check_writable(output)?;
-    }
-    Ok(())
-}
-
-/// Says that Ctrl-C was obeyed.
+/// Says that Ctrl-C or a signal was obeyed.
 pub fn note_interrupted(path: &Path) {
     note(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
 }

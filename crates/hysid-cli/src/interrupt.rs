@@ -1,28 +1,70 @@
-//! Ctrl-C: the first asks to stop and save, the second stops at once.
+//! Ctrl-C and the signals that ask a process to end: the first asks to stop and save, the second stops at once.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
 use anyhow::{Context, Result};
 
 use crate::messages::note;
 
-/// Exit status after Ctrl-C.
-pub const EXIT_STATUS: u8 = 130;
+/// What is added to a signal's number to give the exit status, as shells do.
+const SIGNALLED: u8 = 128;
 
-static PRESSED: AtomicUsize = AtomicUsize::new(0);
+/// Number of Ctrl-C's signal.
+const CTRL_C: u8 = 2;
 
-/// From now on Ctrl-C asks instead of killing, and gets this answer.
+/// The first signal; 0 before it.
+static HEARD: AtomicU8 = AtomicU8::new(0);
+
+/// From now on Ctrl-C, SIGTERM and SIGHUP ask instead of killing, and get this answer.
 pub fn listen(answer: &'static str) -> Result<()> {
-    ctrlc::set_handler(move || {
-        if PRESSED.fetch_add(1, Ordering::SeqCst) > 0 {
-            std::process::exit(EXIT_STATUS.into());
-        }
-        note(format_args!("{answer} (Ctrl-C again stops at once)"));
-    })
-    .context("cannot listen for Ctrl-C")
+    handle(answer).context("cannot listen for Ctrl-C")
 }
 
-/// True once Ctrl-C was pressed.
+/// True once a signal asked to stop.
 pub fn requested() -> bool {
-    PRESSED.load(Ordering::SeqCst) > 0
+    HEARD.load(Ordering::SeqCst) != 0
+}
+
+/// Exit status after the signal that asked to stop: 130 after Ctrl-C, 143 after SIGTERM, 129 after SIGHUP.
+pub fn exit_status() -> u8 {
+    SIGNALLED + HEARD.load(Ordering::SeqCst)
+}
+
+fn hear(signal: u8, answer: &str) {
+    if HEARD.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst).is_err() {
+        std::process::exit((SIGNALLED + signal).into());
+    }
+    note(format_args!("{answer} (Ctrl-C again stops at once)"));
+}
+
+#[cfg(unix)]
+fn handle(answer: &'static str) -> std::io::Result<()> {
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicBool;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+
+    // A file beyond the limit of `ulimit -f` is then an error like a full disk, and no sudden end.
+    signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;
+    let hangup = (!is_hangup_ignored()).then_some(SIGHUP);
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM].into_iter().chain(hangup))?;
+    std::thread::Builder::new().name("signals".into()).spawn(move || {
+        for signal in signals.forever() {
+            hear(u8::try_from(signal).unwrap_or(CTRL_C), answer);
+        }
+    })?;
+    Ok(())
+}
+
+/// True under `nohup`, as far as the system tells: then a closed terminal is to be ignored.
+#[cfg(unix)]
+fn is_hangup_ignored() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 1 == 1)
+}
+
+#[cfg(not(unix))]
+fn handle(answer: &'static str) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || hear(CTRL_C, answer))
 }

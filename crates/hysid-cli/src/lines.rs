@@ -1,20 +1,26 @@
 //! Plain text for a terminal: paragraphs wrapped to its width, and tables with aligned columns.
 
+use crate::terminal::{clipped, visible};
+
 /// Letters in a line.
 pub const WIDTH: usize = 80;
 
-/// The words in lines of at most `width` letters; a longer word has a line of its own.
+/// A longer word is the name of a column or a record: it is cut.
+const LONGEST_WORD: usize = 300;
+
+/// The words in lines of at most `width` letters; a longer word has a line of its own. Control characters are shown.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
+        let word = if word.len() > LONGEST_WORD { clipped(word) } else { visible(word) };
         let line = lines.last_mut().expect("there is a line");
         if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
-            lines.push(word.into());
+            lines.push(word.into_owned());
         } else {
             if !line.is_empty() {
                 line.push(' ');
             }
-            line.push_str(word);
+            line.push_str(&word);
         }
     }
     lines
@@ -26,7 +32,10 @@ pub fn indented(text: &str, indent: usize) -> String {
 }
 
 /// Rows of a table, the columns as wide as their longest cell: the first to the left, the others to the right.
+/// Control characters are shown.
 pub fn aligned(rows: &[Vec<String>]) -> Vec<String> {
+    let visible_cells = |row: &Vec<String>| row.iter().map(|cell| visible(cell).into_owned()).collect();
+    let rows: Vec<Vec<String>> = rows.iter().map(visible_cells).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let letters = |row: &Vec<String>, column: usize| row.get(column).map_or(0, |cell| cell.chars().count());
     let widths: Vec<usize> =

@@ -1,7 +1,7 @@
 //! The program `hysid`: identify, simulate and judge hysteresis from the command line.
 //!
 //! Results go to stdout, everything else to stderr. Exit status: 0, 1 (data, model, input or output),
-//! 2 (usage), 130 (Ctrl-C, after the best model so far is saved).
+//! 2 (usage), and after the best model so far is saved 130 (Ctrl-C), 143 (SIGTERM) or 129 (SIGHUP).
 
 mod arguments;
 mod band_coverage;
@@ -22,16 +22,18 @@ mod messages;
 mod page;
 mod plot;
 mod progress;
+mod record_names;
 mod report;
 mod reproduction;
 mod table;
+mod table_run;
+mod terminal;
 mod timing;
 mod understanding;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use clap::error::ErrorKind;
+use clap::error::{ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
 use messages::{StdoutClosed, Usage, note};
@@ -40,14 +42,14 @@ use messages::{StdoutClosed, Usage, note};
 enum Outcome {
     /// It did all it was asked to.
     Done,
-    /// Ctrl-C ended it early; what was found is saved.
+    /// Ctrl-C or a signal ended it early; what was found is saved.
     Interrupted,
 }
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::typed() {
         Ok(arguments) => arguments,
-        Err(error) => return refuse(&error),
+        Err(error) => return refuse(error),
     };
     let outcome = match arguments.command {
         Command::Demo(arguments) => commands::demo::run(&arguments),
@@ -63,7 +65,7 @@ fn main() -> ExitCode {
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::Interrupted) => ExitCode::from(interrupt::EXIT_STATUS),
+        Ok(Outcome::Interrupted) => ExitCode::from(interrupt::exit_status()),
         // Whoever read the results has seen enough.
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
@@ -75,7 +77,7 @@ fn main() -> ExitCode {
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,
 /// in one line.
-fn refuse(error: &clap::Error) -> ExitCode {
+fn refuse(error: clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp
         | ErrorKind::DisplayVersion
@@ -85,7 +87,7 @@ fn refuse(error: &clap::Error) -> ExitCode {
             ExitCode::from(error.exit_code() as u8)
         }
         _ => {
-            let text = error.render().to_string();
+            let text = cleaned(error).render().to_string();
             let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
             let said = said.join(" ");
@@ -94,4 +96,20 @@ fn refuse(error: &clap::Error) -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The error with the user's arguments in one line, and cut where they are long.
+fn cleaned(mut error: clap::Error) -> clap::Error {
+    let shown = |value: &ContextValue| match value {
+        ContextValue::String(text) => Some(ContextValue::String(terminal::clipped(text).into_owned())),
+        ContextValue::Strings(texts) => Some(ContextValue::Strings(
+            texts.iter().map(|text| terminal::clipped(text).into_owned()).collect(),
+        )),
+        _ => None,
+    };
+    let context: Vec<_> = error.context().filter_map(|(kind, value)| Some((kind, shown(value)?))).collect();
+    for (kind, value) in context {
+        error.insert(kind, value);
+    }
+    error
 }

@@ -1,12 +1,16 @@
 //! What the program says: results on stdout, all else on stderr. A stream that was closed is never a
 //! panic.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
+use std::mem::{self, Discriminant};
 
 use anyhow::Result;
+use hysid::warning::Warning;
+use serde::Serialize;
 
-use crate::files;
+use crate::{files, terminal};
 
 /// Stdout's reader went away, as `head` does.
 #[derive(Debug)]
@@ -32,19 +36,56 @@ impl fmt::Display for Usage {
 
 impl std::error::Error for Usage {}
 
-/// Writes results to stdout, as they are.
+/// Writes lines of text to stdout, for a reader.
 pub fn results(text: &str) -> Result<()> {
+    let lines: Vec<Cow<str>> = text.split('\n').map(terminal::visible).collect();
+    raw_results(&lines.join("\n"))
+}
+
+/// Writes results to stdout as one JSON value.
+pub fn json_results(value: &impl Serialize) -> Result<()> {
+    raw_results(&terminal::json(value)?)
+}
+
+/// Writes results to stdout as they are: tables and whatever else a program reads.
+pub fn raw_results(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(stdout_failed)
+}
+
+/// Why stdout took no more.
+pub fn stdout_failed(error: io::Error) -> anyhow::Error {
+    match error.kind() {
         io::ErrorKind::BrokenPipe => StdoutClosed.into(),
         _ => anyhow::anyhow!("cannot write to stdout: {}", files::reason(&error)),
-    })
+    }
 }
 
 /// Says one line on stderr.
 pub fn note(text: fmt::Arguments) {
     // Nobody is left to be told if this fails.
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", terminal::line(&text.to_string()));
+}
+
+/// Warnings of a kind that are said one by one: a file may have a hundred thousand records.
+const MOST_OF_A_KIND: usize = 5;
+
+/// Warnings in words, kind by kind: the first few, and how many more there are.
+pub fn summarised(warnings: &[Warning]) -> Vec<String> {
+    let mut kinds: Vec<(Discriminant<Warning>, Vec<&Warning>)> = Vec::new();
+    for warning in warnings {
+        let kind = mem::discriminant(warning);
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, warnings)) => warnings.push(warning),
+            None => kinds.push((kind, vec![warning])),
+        }
+    }
+    let words = kinds.iter().flat_map(|(_, warnings)| {
+        let more = warnings.len().saturating_sub(MOST_OF_A_KIND);
+        let more = (more > 0).then(|| format!("and {more} more of this kind"));
+        warnings.iter().take(MOST_OF_A_KIND).map(ToString::to_string).chain(more)
+    });
+    words.collect()
 }
 
 /// Warns on stderr.

@@ -1,6 +1,7 @@
 //! Pages of HTML that need nothing but themselves, and their pieces. Cells and headings come in as text and are escaped here.
 
 use hysid::warning::Significant;
+use hysid_files::PAGE_MARK;
 
 use crate::plot::{self, escape};
 
@@ -10,11 +11,11 @@ const STYLE: &str = include_str!("page/style.css");
 pub fn whole(title: &str, content: &str) -> String {
     let title = escape(title);
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+        "{PAGE_MARK}{}\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
          <h1>{title}</h1>\n{content}</main>\n</body>\n</html>\n",
+        env!("CARGO_PKG_VERSION"),
         plot::STYLE,
     )
 }

@@ -4,13 +4,16 @@
 //! light or a dark page.
 
 pub mod axis;
+mod drawing;
 pub mod thin;
 
+use hysid_files::GENERATOR;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 pub use axis::Axis;
+pub use drawing::is_drawing;
 use thin::{Point, is_drawable};
 
 /// Units of the drawing in a pixel, since the library draws on a grid of whole units.
@@ -140,6 +143,8 @@ impl Chart {
             self.draw(&root).expect("a drawing into a string succeeds");
             root.present().expect("a drawing into a string succeeds");
         }
+        // The library escapes what XML needs, and lets through characters that XML has no place for.
+        let text = text.replace(is_not_xml, "\u{FFFD}");
         let content = text.find('>').map_or("", |end| &text[end + 1..]);
         format!(
             "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" \
@@ -295,12 +300,16 @@ pub fn escape(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\'' => escaped.push_str("&#39;"),
-            // XML has no place for these.
-            control if control.is_control() && !"\n\t".contains(control) => escaped.push('\u{FFFD}'),
+            control if is_not_xml(control) => escaped.push('\u{FFFD}'),
             other => escaped.push(other),
         }
     }
     escaped
+}
+
+/// Control characters have no place in XML.
+fn is_not_xml(letter: char) -> bool {
+    letter.is_control() && !"\n\t".contains(letter)
 }
 
 /// A chart's drawing as a file of its own, with its size and its style in it.
@@ -313,7 +322,7 @@ pub fn standalone(svg: &str) -> String {
         (Some(width), Some(height)) => format!(" width=\"{}\" height=\"{}\"", width / FINE, height / FINE),
         _ => String::new(),
     };
-    format!("{head}{size}><style>{STYLE}{STANDALONE}</style>{content}")
+    format!("{head} data-generator=\"{GENERATOR}\"{size}><style>{STYLE}{STANDALONE}</style>{content}")
 }
 
 #[cfg(test)]

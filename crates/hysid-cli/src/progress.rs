@@ -2,7 +2,6 @@
 
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use hysid::training::{Method, Phase, Progress};
@@ -38,8 +37,8 @@ pub struct Follower {
 }
 
 impl Follower {
-    /// Begins now, and ends at the limit, if any; keeps a checkpoint if there is a file for it.
-    pub fn new(starts: usize, time_limit: Option<f64>, checkpoint: Option<&Path>) -> Self {
+    /// Begins now, and ends at the limit, if any.
+    pub fn new(starts: usize, time_limit: Option<f64>, keeper: Option<Keeper>) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(STEPS as u64);
             let style = ProgressStyle::with_template("[{bar:24}] {percent:>3} % {msg}");
@@ -54,7 +53,7 @@ impl Follower {
             starts,
             fold: (0, 1),
             fold_started: now,
-            keeper: checkpoint.map(Keeper::new),
+            keeper,
             failed: false,
             best: f64::INFINITY,
             bar,
@@ -71,7 +70,12 @@ impl Follower {
 
     /// Hears of an iteration; breaks after Ctrl-C or at the time limit.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
-        self.best = self.best.min(progress.train_nrmse_percent);
+        self.best = match progress.method {
+            // The error of its best start, which need not be the lowest that was ever told.
+            Method::LeastSquares if progress.train_nrmse_percent.is_nan() => self.best,
+            Method::LeastSquares => progress.train_nrmse_percent,
+            _ => self.best.min(progress.train_nrmse_percent),
+        };
         let (place, of) = self.fold;
         let done = (place as f64 + progress.done) / of as f64;
         if let Some(bar) = &self.bar {
@@ -133,10 +137,15 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
         return format!("at {}", progress.model.name());
     }
     let part = match (progress.phase, progress.method) {
-        (Phase::Starts, _) => format!("{starts} starts"),
-        (Phase::AllData, Method::LevenbergMarquardt) => "all data".to_string(),
+        (Phase::Starts, _) => return "cross-validation".into(),
+        (Phase::AllData, Method::LevenbergMarquardt) => format!("{starts} starts"),
         (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
-        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY => return "least squares".into(),
+        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY && progress.epoch == 0 => {
+            return "least squares".into();
+        }
+        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY => {
+            return format!("round {}", progress.epoch);
+        }
         (Phase::AllData, Method::LeastSquares) => format!("round {}", progress.epoch),
         (Phase::AllData, Method::Subgradient) => format!("sub-gradient {}", progress.epoch),
     };

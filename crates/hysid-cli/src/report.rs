@@ -70,8 +70,6 @@ pub fn page(report: &Report) -> String {
     crate::page::whole(&report.title, &(errors::verdict(report) + &sections))
 }
 
-pub use ensemble::choice;
-
 /// Measured and simulated loops of a set in one chart, an `svg` element.
 /// [`plot::standalone`] makes a file of it.
 pub fn loops_svg(set: &ReportSet) -> String {

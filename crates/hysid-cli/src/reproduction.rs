@@ -6,6 +6,7 @@ mod date;
 mod example;
 mod fitting;
 mod nds;
+mod outputs;
 mod run;
 mod storage;
 mod table2;
@@ -15,6 +16,8 @@ use anyhow::Result;
 
 use chapter::Chapter;
 use example::catalogue::{EXAMPLES, Example};
+use hysid_files::Kind;
+pub use outputs::Outputs;
 pub use run::run;
 
 /// What decides about all figures but those in seconds.
@@ -58,6 +61,14 @@ impl Experiment {
             Experiment::Example(example) => example.name,
             Experiment::Table2 => "table2",
             Experiment::Training => "training",
+        }
+    }
+
+    /// Names of the files that only this experiment has, and what they are.
+    fn further_files(self) -> Vec<(&'static str, Kind)> {
+        match self {
+            Experiment::Training => training::further_files(),
+            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 => Vec::new(),
         }
     }
 

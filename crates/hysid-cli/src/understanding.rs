@@ -10,10 +10,14 @@ use hysid::warning::Significant;
 use crate::data::Data;
 use crate::lines::{WIDTH, wrapped};
 use crate::messages::note;
+use crate::terminal::{clipped, listed, listed_paths};
 use hysid::unit;
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
+
+/// Inputs that are said one by one.
+const MOST_INPUTS: usize = 20;
 
 /// What was understood of data and request, label and text, line by line.
 pub fn understanding(
@@ -35,21 +39,32 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
     let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
-    say(if files.len() == 1 { "file" } else { "files" }, listed(&files));
+    say(if files.len() == 1 { "file" } else { "files" }, listed_paths(&files));
     say("samples", samples(summary));
     if let Some(time) = &data.roles.time {
         say(
             "time",
-            format!("{time}: {}", time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()))),
+            format!(
+                "{}: {}",
+                clipped(time),
+                time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()))
+            ),
         );
     }
-    for (name, &range) in data.roles.inputs.iter().zip(&summary.inputs) {
-        say("input", ranged(name, range));
+    let inputs: Vec<(&String, &(f64, f64))> = data.roles.inputs.iter().zip(&summary.inputs).collect();
+    for (name, range) in inputs.iter().take(MOST_INPUTS) {
+        say("input", ranged(name, **range));
+    }
+    if let Some(more) = inputs.len().checked_sub(MOST_INPUTS).filter(|&more| more > 0) {
+        say("", format!("and {more} more"));
     }
     say("output", ranged(&data.roles.output, summary.output));
     let first = &data.roles.inputs[0];
     let turning = summary.turning_points();
-    say("turning", format!("{turning} turning point{} of {first}", if turning == 1 { "" } else { "s" }));
+    say(
+        "turning",
+        format!("{turning} turning point{} of {}", if turning == 1 { "" } else { "s" }, clipped(first)),
+    );
     lines
 }
 
@@ -63,15 +78,6 @@ pub fn print(lines: &[(String, String)]) {
         }
     }
     note(format_args!(""));
-}
-
-/// Some names, and how many more there are.
-pub fn listed(names: &[&str]) -> String {
-    const SHOWN: usize = 6;
-    match names.len().saturating_sub(SHOWN) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names[..SHOWN].join(", ")),
-    }
 }
 
 /// What an automatic model chooses among, in words.
@@ -128,6 +134,7 @@ fn time_steps(summary: &Summary, unit: &str) -> String {
 
 fn ranged(name: &str, (low, high): (f64, f64)) -> String {
     let unit = unit::suffix(unit::of_column(name).as_deref());
+    let (name, unit) = (clipped(name), clipped(&unit));
     if low > high {
         return format!("{name}: blank");
     }
@@ -135,9 +142,10 @@ fn ranged(name: &str, (low, high): (f64, f64)) -> String {
 }
 
 fn rate(input: &str, column: Option<&str>, method: Option<RateMethod>) -> String {
+    let (input, column) = (clipped(input), clipped(column.unwrap_or_default()));
     match method {
         None => "none".into(),
-        Some(RateMethod::Given) => format!("of {input} from column {}", column.unwrap_or_default()),
+        Some(RateMethod::Given) => format!("of {input} from column {column}"),
         Some(RateMethod::Central) => format!("of {input} by central differences"),
         Some(RateMethod::Backward) => format!("of {input} by backward differences"),
         Some(RateMethod::SavitzkyGolay) => format!("of {input} by the Savitzky-Golay method"),

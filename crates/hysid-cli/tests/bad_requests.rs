@@ -210,6 +210,52 @@ fn command_lines() {
 }
 
 #[test]
+fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
+    let bench = Workbench::new();
+    let whole = "choose 0 or more";
+    let companding = "choose 0 for never, or 1e-6 to 1e3";
+    let thresholds = "thresholds are numbers above 0, such as 0.1,0.2,0.5";
+    for (arguments, value, option, advice) in [
+        ("fit data.csv --thresholds -1,2", "-1", "--thresholds <LIST>", thresholds),
+        ("fit data.csv --thresholds 0.1,-2", "-2", "--thresholds <LIST>", thresholds),
+        ("fit data.csv --companding -0.1", "-0.1", "--companding <SHARE>", companding),
+        ("fit data.csv --rate-companding -1e-3", "-1e-3", "--rate-companding <SHARE>", companding),
+        ("fit data.csv --seed -1", "-1", "--seed <N>", whole),
+        ("generate concrete --seed -1", "-1", "--seed <N>", whole),
+        ("fit data.csv --warm-up -3", "-3", "--warm-up <ROWS>", whole),
+        ("fit data.csv --epochs -3", "-3", "--epochs <N>", whole),
+        ("fit data.csv --seed 1.5", "1.5", "--seed <N>", "a whole number, 0 or more, is needed"),
+        ("fit data.csv --stops -3", "-3", "--stops <N>", "a whole number from 1 to 1000 is needed"),
+        ("fit data.csv --threads -1", "-1", "--threads <N>", "-1 is not in 1..=1024"),
+        (
+            "fit data.csv --time-limit -1",
+            "-1",
+            "--time-limit <SECONDS>",
+            "a number of seconds above 0 is needed",
+        ),
+        (
+            "simulate m.json data.csv --band -0.5",
+            "-0.5",
+            "--band <PROBABILITY>",
+            "a probability from 0.5 to 0.99 is needed",
+        ),
+        (
+            "generate concrete --noise -1",
+            "-1",
+            "--noise <PERCENT>",
+            "a number of percent, 0 or more, is needed",
+        ),
+    ] {
+        let expected = format!("invalid value '{value}' for '{option}': {advice} (see `hysid --help`)");
+        check_runs(&bench, &[(arguments, 2, &expected)]);
+    }
+    // A column may have any name.
+    bench.put("data.csv", csv("-1,x,y", ",", "\n", &rows()));
+    let ran = bench.run("fit data.csv --time -1 -o m.json --no-report --model pnn --starts 1 --epochs 1");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+}
+
+#[test]
 fn unwritable_outputs() {
     let bench = Workbench::with_model();
     std::fs::create_dir(bench.path("folder")).unwrap();
@@ -217,7 +263,11 @@ fn unwritable_outputs() {
     check_runs(
         &bench,
         &[
-            ("fit good.csv", 2, "good.json is there already and is no model: name the model file with --out"),
+            (
+                "fit good.csv",
+                2,
+                "good.json: a file is there already and is no model of Hysid: name another file, or replace it with --force",
+            ),
             (
                 "fit good.csv -o nowhere/model.json",
                 1,

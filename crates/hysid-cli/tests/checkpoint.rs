@@ -76,10 +76,9 @@ fn killed_at_any_moment_a_fit_is_taken_up_again_to_the_same_model() {
         assert_eq!(bench.text("again.json"), bench.text("whole.json"), "{options}");
         std::fs::remove_file(bench.path("fit.checkpoint")).unwrap();
     }
-    let partial = std::fs::read_dir(bench.path("."))
-        .unwrap()
-        .filter(|entry| entry.as_ref().unwrap().file_name().to_string_lossy().starts_with('.'));
-    assert!(partial.count() <= 1, "killed processes leave more than one file behind");
+    let hidden = std::fs::read_dir(bench.path(".")).unwrap().map(|entry| entry.unwrap().file_name());
+    let hidden: Vec<_> = hidden.filter(|name| name.to_string_lossy().starts_with('.')).collect();
+    assert!(hidden.is_empty(), "what killed processes leave behind is gone in the end: {hidden:?}");
 }
 
 #[cfg(unix)]
@@ -104,6 +103,46 @@ fn a_fit_that_is_interrupted_says_how_to_go_on() {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     assert!(ran.stdout.contains("\"termination\": \"stopped\""), "{}", ran.stdout);
     assert!(bench.path("d.bin").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_second_fit_on_a_checkpoint_is_refused_at_once_until_the_first_is_dead() {
+    let bench = bench();
+    let long = "--model xpnn+ --training hybrid --epochs 100000 --stall 0 --population 20";
+    let mut first = spawned(&bench, &format!("{long} -o m.json --checkpoint c.bin"));
+    assert!(appears(&bench, "c.bin", &mut first));
+    for second in ["--model xpnn+ -o n.json --checkpoint c.bin", "-o n.json --resume c.bin"] {
+        let refused = bench.run(&fit(second));
+        assert_eq!(
+            (refused.status, refused.stderr.as_str()),
+            (
+                Some(1),
+                "error: c.bin: another fit keeps its checkpoint in this file: wait for its end, or name another file \
+                 with --checkpoint\n"
+            )
+        );
+    }
+    // Killed without a word, the first leaves a lock file without a lock.
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let ran = ran(&bench, "-o n.json --resume c.bin --time-limit 0.5");
+    assert!(ran.stdout.contains("stopped"), "{}", ran.stdout);
+    let hidden: Vec<String> = bench.files(".").into_iter().filter(|name| name.starts_with('.')).collect();
+    assert!(hidden.is_empty(), "{hidden:?}");
+}
+
+#[test]
+fn a_fit_begun_anew_keeps_the_checkpoint_that_it_replaces() {
+    let bench = bench();
+    let fit = "--model xpnn+ --starts 2 --epochs 2 -o m.json --checkpoint c.bin";
+    ran(&bench, fit);
+    let first = std::fs::read(bench.path("c.bin")).unwrap();
+    ran(&bench, &format!("{fit} --seed 5"));
+    assert!(std::fs::read(bench.path("c.bin.bak")).unwrap() == first);
+    std::fs::remove_file(bench.path("c.bin.bak")).unwrap();
+    ran(&bench, "-o n.json --resume c.bin");
+    assert!(!bench.path("c.bin.bak").exists(), "one that goes on replaces its own");
 }
 
 #[test]

@@ -129,6 +129,17 @@ fn simulate_keeps_every_column_as_it_is() {
 }
 
 #[test]
+fn simulate_writes_a_header_that_reads_back() {
+    let bench = Workbench::with_model();
+    bench.put("drive.csv", "\"# note\",t,x\na,0,0.1\nb,1,0.5\nc,2,-0.2\n");
+    assert_eq!(bench.run("simulate model.json drive.csv -o once.csv").status, Some(0));
+    // Read back, and the output of the model scored against itself.
+    let ran = bench.run("evaluate model.json once.csv --output y_model --json");
+    assert_eq!(json(&ran)["max_abs_error"], 0.0);
+    assert!(bench.text("once.csv").starts_with("\"# note\",\"t\",\"x\",\"y_model\"\na,0,0.1,"));
+}
+
+#[test]
 fn simulate_writes_decimal_commas_where_the_data_have_them() {
     let bench = Workbench::with_model();
     bench.put("drive.csv", "t;x\n0;0,1\n1;0,5\n");
@@ -200,10 +211,8 @@ fn evaluate_warns_beyond_the_trained_range() {
 fn an_old_model_survives_a_failed_write() {
     let bench = Workbench::with_model();
     let old = bench.text("model.json");
-    // The signal for a too large file is ignored, so that the program sees an error instead.
-    let ran = bench.shell(
-        "trap '' XFSZ; ulimit -f 1; hysid fit good.csv -o model.json --model pnn --seed 9 --no-report",
-    );
+    // The limit holds for every place that the model could go to.
+    let ran = bench.shell("ulimit -f 1; hysid fit good.csv -o model.json --model pnn --seed 9 --no-report");
     assert_eq!(
         ran.last_line(),
         "error: model.json: cannot be written: the file grew beyond the size allowed here"
@@ -219,25 +228,42 @@ const LONG: &str = "--no-report --model xpnn+ --stops 20 --hidden 20 --starts 20
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_saves_the_best_model_so_far() {
+fn ctrl_c_and_signals_save_the_best_model_so_far() {
     let bench = Workbench::new();
     bench.put("good.csv", table());
-    let mut command = bench.command(&format!("fit good.csv -o m.json {LONG}"));
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut stderr = BufReader::new(child.stderr.take().unwrap()).lines();
-    // The last thing that is said before the training.
-    let said = stderr.find(|line| line.as_ref().unwrap().starts_with("model "));
-    assert!(said.is_some());
-    std::thread::sleep(Duration::from_millis(300));
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(killed.success());
-    let began = Instant::now();
-    let last = stderr.map(Result::unwrap).last().unwrap();
-    let ran = Ran::from(child.wait_with_output().unwrap());
-    assert_eq!((ran.status, last.as_str()), (Some(130), "interrupted: the best model so far is in m.json"));
-    assert!(began.elapsed() < Duration::from_secs(10), "{:?}", began.elapsed());
-    assert!(ran.stdout.contains("stopped"), "{}", ran.stdout);
-    assert_eq!(bench.run("evaluate m.json good.csv").status, Some(0));
+    for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let mut command = bench.command(&format!("fit good.csv -o m.json {LONG}"));
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut stderr = BufReader::new(child.stderr.take().unwrap()).lines();
+        // The last thing that is said before the training.
+        let said = stderr.find(|line| line.as_ref().unwrap().starts_with("model "));
+        assert!(said.is_some());
+        std::thread::sleep(Duration::from_millis(300));
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+        let began = Instant::now();
+        let last = stderr.map(Result::unwrap).last().unwrap();
+        let ran = Ran::from(child.wait_with_output().unwrap());
+        assert_eq!(
+            (ran.status, last.as_str()),
+            (Some(status), "interrupted: the best model so far is in m.json"),
+            "{signal}"
+        );
+        assert!(began.elapsed() < Duration::from_secs(10), "{:?}", began.elapsed());
+        assert!(ran.stdout.contains("stopped"), "{}", ran.stdout);
+        assert_eq!(bench.run("evaluate m.json good.csv").status, Some(0));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_terminal_is_ignored_under_nohup() {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    let fit = format!("fit good.csv -o m.json {LONG} --time-limit 2 --json");
+    let ran = bench.shell(&format!("trap '' HUP; hysid {fit} & sleep 1; kill -HUP $!; wait $!"));
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    assert!(!ran.stderr.contains("stopping"), "{}", ran.stderr);
 }
 
 #[test]

@@ -74,7 +74,7 @@ fn each_set_of_data_goes_where_it_is_asked_to() {
         ("generate concrete -o -", &train),
         ("generate concrete --test -", &test),
         ("generate concrete -o - --test again.csv", &train),
-        ("generate concrete -o again.csv --test -", &test),
+        ("generate concrete -o once-more.csv --test -", &test),
     ] {
         assert_eq!(&succeeds(&bench, arguments).stdout, expected, "hysid {arguments}");
     }

@@ -2,10 +2,23 @@
 
 use std::fmt::Display;
 
+use hysid_files::Failure;
 use pyo3::PyErr;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyFileExistsError, PyOSError, PyValueError};
 
 /// What the caller handed in cannot be used: a `ValueError` with the library's text.
 pub fn refused<E: Display>(error: E) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A file could not be written: a `FileExistsError` for one that is not Hysid's own, otherwise the `OSError` of the
+/// reason, such as `FileNotFoundError`.
+pub fn not_written(failure: Failure) -> PyErr {
+    match &failure {
+        Failure::NotOurs { .. } => {
+            PyFileExistsError::new_err(format!("{failure}: name another file, or replace it with force=True"))
+        }
+        Failure::Refused { error, .. } => std::io::Error::new(error.kind(), failure.to_string()).into(),
+        Failure::InUse(_) => PyOSError::new_err(failure.to_string()),
+    }
 }

@@ -1,16 +1,18 @@
 //! Fitted models.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use hysid::automatic::Selection;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::{self, Prediction};
 use hysid::record::Excitation;
+use hysid_files::{Destination, Kind};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::data::{Column, Dataset, NewColumn};
-use crate::failure::refused;
+use crate::failure::{not_written, refused};
 
 /// A fitted model.
 #[pyclass(frozen, module = "hysid._hysid")]
@@ -35,6 +37,16 @@ impl Model {
     /// The text of the model file.
     fn to_json(&self) -> String {
         self.model.to_json()
+    }
+
+    /// Writes the model file.
+    fn save(&self, py: Python<'_>, path: PathBuf, force: bool) -> PyResult<()> {
+        let destination = Destination::new(path, Kind::Model, force);
+        let written = py.detach(|| {
+            destination.check()?;
+            destination.write(self.model.to_json().as_bytes())
+        });
+        written.map(drop).map_err(not_written)
     }
 
     /// Number of parameters that were found from the data.

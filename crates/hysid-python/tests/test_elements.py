@@ -136,7 +136,7 @@ def test_specimens_are_those_of_the_program(program, tmp_path):
     for specimen in hysid.specimens():
         train, test = specimen.data(noise=1.0, seed=4)
         done = program(
-            "generate", specimen.name, "-o", "a.csv", "--test", "b.csv", "--noise=1", "--seed=4", folder=tmp_path
+            "generate", specimen.name, "-o", "a.csv", "--test", "b.csv", "--noise=1", "--seed=4", "--force", folder=tmp_path
         )
         assert done.returncode == 0, done.stderr
         for records, file in ((train, "a.csv"), (test, "b.csv")):

@@ -3,6 +3,7 @@
 import os
 import pickle
 import stat
+import threading
 
 import numpy as np
 import pandas
@@ -14,13 +15,50 @@ from hysid._data import columns
 
 def test_a_file_gives_the_same_model_back(quick_model, tmp_path):
     path = tmp_path / "model.json"
-    path.write_text("an old one")
     quick_model.save(path)
     assert hysid.Model.load(path) == quick_model
-    assert os.listdir(tmp_path) == ["model.json"]
     other = tmp_path / "other"
     other.touch()
     assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(other.stat().st_mode)
+    path.chmod(0o600)
+    quick_model.save(os.fspath(path))
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600, "permissions are not widened"
+    assert sorted(os.listdir(tmp_path)) == ["model.json", "other"]
+
+
+def test_only_a_model_is_replaced_and_it_is_kept(quick_model, quick_ensemble, tmp_path):
+    path = tmp_path / "model.json"
+    path.write_text("measured")
+    with pytest.raises(FileExistsError, match="no model of Hysid: .* force=True"):
+        quick_model.save(path)
+    assert path.read_text() == "measured"
+    quick_model.save(path, force=True)
+    assert os.listdir(tmp_path) == ["model.json"]
+    quick_model.save(path)
+    assert os.listdir(tmp_path) == ["model.json"], "the same again"
+    quick_ensemble.save(path)
+    assert hysid.Model.load(path) == quick_ensemble
+    assert hysid.Model.load(tmp_path / "model.json.bak") == quick_model
+    with pytest.raises(FileNotFoundError):
+        quick_model.save(tmp_path / "missing" / "model.json")
+    with pytest.raises(IsADirectoryError):
+        quick_model.save(tmp_path)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and pipes of Unix")
+def test_links_and_pipes_stay_what_they_are(quick_model, tmp_path):
+    link, path = tmp_path / "link.json", tmp_path / "model.json"
+    link.symlink_to("model.json")
+    quick_model.save(link)
+    assert link.is_symlink() and hysid.Model.load(path) == quick_model
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    read = []
+    reader = threading.Thread(target=lambda: read.append(pipe.read_text(encoding="utf-8")))
+    reader.start()
+    quick_model.save(pipe)
+    reader.join()
+    assert read == [quick_model.to_json()] and pipe.is_fifo()
 
 
 def test_bad_files_are_value_errors(quick_model, tmp_path):

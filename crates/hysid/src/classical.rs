@@ -206,6 +206,18 @@ macro_rules! any_of {
             }
         }
 
+        impl Classical {
+            /// Runs on from a state of this law.
+            pub(crate) fn run_on(&self, state: &mut ClassicalState, samples: &[Sample], outputs: &mut [f64]) {
+                match (self, state) {
+                    $((Self::$law(law), ClassicalState::$law(state)) => {
+                        series::run_on(law, state, samples, outputs);
+                    })*
+                    (law, state) => panic!("{state:?} is no state of {law:?}"),
+                }
+            }
+        }
+
         $(impl From<$law> for Classical {
             fn from(law: $law) -> Self {
                 Self::$law(law)

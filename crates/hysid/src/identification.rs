@@ -14,9 +14,10 @@ use crate::classical::search::SearchProgress;
 use crate::error::{Error, Result};
 use crate::model::{Body, Model, Provenance};
 use crate::network::Family;
-use crate::preprocessing::Seen;
+use crate::preprocessing::{Origin, Seen};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::training::options::ENSEMBLE_PENALTIES;
 use crate::training::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::training::{
     self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
@@ -134,6 +135,51 @@ impl Request {
         }
     }
 
+    /// The model and its variant in a few words, such as `bouc-wen (degradation, rate)`.
+    pub fn label(&self) -> String {
+        let variant = self.variant();
+        let name = self.model().name();
+        if variant.is_empty() { name.into() } else { format!("{name} ({})", variant.join(", ")) }
+    }
+
+    /// What is not the model's default, in a few words.
+    fn variant(&self) -> Vec<String> {
+        let (shaping, mut variant) = match self {
+            Self::Network(options) => (
+                options.shaping,
+                named([
+                    ("deterioration", options.deteriorates()),
+                    ("rate", options.rate.is_some()),
+                    ("relaxation", options.sizes.relaxation > 0),
+                ]),
+            ),
+            Self::Classical(options) => {
+                let has_tanh_layer =
+                    options.model == Rival::RandomStops && options.hidden.is_some_and(|hidden| hidden > 0);
+                (
+                    options.shaping,
+                    named([
+                        ("deterioration", options.deterioration == Some(true)),
+                        ("degradation", options.degradation),
+                        ("differential form", options.differential_form),
+                        ("logarithmic thresholds", options.logarithmic_thresholds),
+                        ("rate", options.rate.is_some() && !options.model.needs_rate()),
+                        ("tanh layer", has_tanh_layer),
+                    ]),
+                )
+            }
+            Self::Auto(_) => return Vec::new(),
+        };
+        if let Self::Network(options) = self {
+            let ridge = options.ridge.filter(|ridge| *ridge != ENSEMBLE_PENALTIES.ridge);
+            variant.extend(ridge.map(|ridge| format!("ridge {ridge:e}")));
+        }
+        variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
+        variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));
+        variant.extend(shaping.history.then(|| "history".to_string()));
+        variant
+    }
+
     /// How the rate is found.
     pub fn rate(&self) -> Option<RateMethod> {
         match self {
@@ -151,6 +197,11 @@ impl Request {
             Self::Auto(options) => options.starts,
         }
     }
+}
+
+/// The names of what is so.
+fn named<const N: usize>(all: [(&str, bool); N]) -> Vec<String> {
+    all.into_iter().filter(|(_, is_so)| *is_so).map(|(name, _)| name.to_string()).collect()
 }
 
 /// Identifies a model. The observer is as in [`training::fit`]; of a classical model it hears after every
@@ -208,7 +259,7 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
         deterioration: options.deterioration,
         seed: options.seed,
     };
-    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let patience = Patience::of(observer);
     let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
     let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
@@ -219,16 +270,18 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
 
 fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
-    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let seen = Seen::of(data, &options.shaping, options.rate, options.model.origin())?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let patience = Patience::of(observer);
     let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
     let mut of_round = |progress: SearchProgress| {
-        history.push(HistoryPoint {
-            epoch: progress.round,
-            evaluations: progress.evaluations,
-            train_nrmse_percent: progress.train_nrmse_percent,
-        });
+        if !progress.train_nrmse_percent.is_nan() {
+            history.push(HistoryPoint {
+                epoch: progress.round,
+                evaluations: progress.evaluations,
+                train_nrmse_percent: progress.train_nrmse_percent,
+            });
+        }
         patience.hear(&Progress::of_search(options.model, &progress))
     };
     let found = classical::fit(&seen.data, &of_seen, &mut of_round, &stop)?;
@@ -239,6 +292,7 @@ fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) 
         method: Method::LeastSquares,
         history,
         termination,
+        fold: None,
         validation_nrmse_percent: None,
     };
     let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
@@ -264,8 +318,12 @@ fn finished(
         termination,
         train,
         validation: None,
+        penalties: None,
         runs,
         selection: None,
     };
-    Ok(Fit { model: Model::new(body, seen.preprocessing, options.rate, data, provenance)?, evaluations })
+    Ok(Fit {
+        model: Model::new(body, seen.preprocessing.clone(), options.rate, data, provenance)?,
+        evaluations,
+    })
 }

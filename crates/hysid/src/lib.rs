@@ -42,6 +42,7 @@ pub mod network;
 pub mod operator;
 pub mod plant;
 pub mod preprocessing;
+mod random;
 pub mod rate;
 pub mod record;
 pub mod scaling;

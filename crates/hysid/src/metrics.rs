@@ -28,11 +28,30 @@ pub struct Errors {
     pub max_abs_error: f64,
 }
 
+/// A measured row and the error there.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScoredRow {
+    pub measured: f64,
+    /// Squared error; the mean of several, where the row was simulated more than once.
+    pub square_error: f64,
+    /// Largest magnitude of the error.
+    pub largest: f64,
+}
+
+impl ScoredRow {
+    /// A row that was simulated once.
+    pub fn once(measured: f64, error: f64) -> Self {
+        Self { measured, square_error: error * error, largest: error.abs() }
+    }
+}
+
 /// Gathers errors record by record, in one pass and constant memory.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSums {
     samples: usize,
     records: usize,
+    /// The present record has a scored row.
+    is_scored: bool,
     square_error: f64,
     largest: f64,
     mean: f64,
@@ -44,26 +63,36 @@ pub struct ErrorSums {
 impl ErrorSums {
     /// Adds a record; rows whose measured output is NaN are passed over.
     pub fn add(&mut self, measured: &[f64], simulated: &[f64]) {
-        let before = self.samples;
-        for (&y, &model) in measured.iter().zip(simulated) {
-            if y.is_nan() {
-                continue;
-            }
-            if self.samples == 0 {
-                (self.low, self.high) = (y, y);
-            }
-            self.samples += 1;
-            let error = model - y;
-            self.square_error += error * error;
-            self.largest = self.largest.max(error.abs());
-            self.low = self.low.min(y);
-            self.high = self.high.max(y);
-            // Welford's running variance: no cancellation for a large mean.
-            let deviation = y - self.mean;
-            self.mean += deviation / self.samples as f64;
-            self.square_deviation += deviation * (y - self.mean);
+        self.add_rows(measured, simulated);
+        self.end_record();
+    }
+
+    /// Adds rows of a record that comes block by block.
+    pub fn add_rows(&mut self, measured: &[f64], simulated: &[f64]) {
+        let rows = measured.iter().zip(simulated).filter(|(y, _)| !y.is_nan());
+        rows.for_each(|(&y, &model)| self.add_row(ScoredRow::once(y, model - y)));
+    }
+
+    /// Ends a record that came block by block.
+    pub fn end_record(&mut self) {
+        self.records += usize::from(std::mem::take(&mut self.is_scored));
+    }
+
+    /// Adds a scored row.
+    pub(crate) fn add_row(&mut self, ScoredRow { measured: y, square_error, largest }: ScoredRow) {
+        if self.samples == 0 {
+            (self.low, self.high) = (y, y);
         }
-        self.records += usize::from(self.samples > before);
+        self.is_scored = true;
+        self.samples += 1;
+        self.square_error += square_error;
+        self.largest = self.largest.max(largest);
+        self.low = self.low.min(y);
+        self.high = self.high.max(y);
+        // Welford's running variance: no cancellation for a large mean.
+        let deviation = y - self.mean;
+        self.mean += deviation / self.samples as f64;
+        self.square_deviation += deviation * (y - self.mean);
     }
 
     /// The errors so far; `None` if no row was scored.

@@ -4,6 +4,9 @@
 mod band;
 mod ensemble;
 mod file;
+mod ranges;
+mod runner;
+mod simulation;
 mod stepper;
 
 use std::borrow::Cow;
@@ -12,10 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::automatic::Selection;
 use crate::classical::identification::Rival;
-use crate::classical::series::samples;
 use crate::classical::{Classical, Law};
 use crate::error::{Channel, DataProblem, Error, Result};
-use crate::free_run::FreeRun;
 use crate::identification::{ModelName, Request};
 use crate::metrics::{ErrorSums, Errors};
 use crate::network::Network;
@@ -24,15 +25,18 @@ use crate::rate::RateMethod;
 use crate::record::{ColumnNames, Dataset, Excitation, Record};
 use crate::scaling::Scaling;
 use crate::training::history::Run;
+use crate::training::options::Regularisation;
 use crate::training::termination::Termination;
 use crate::warning::Warning;
 
 pub use band::{BAND_PROBABILITIES, Band, Prediction};
 pub(crate) use band::{HeldOutRow, disagreement};
-use ensemble::Answer;
+pub(crate) use ensemble::{Council, Excursion, Votes};
 pub use ensemble::{Ensemble, Group, Speaker, Voice, Weights};
-pub(crate) use ensemble::{Excursion, Votes};
 pub use file::FORMAT_VERSION;
+use ranges::Ranges;
+use runner::{Runner, Spread};
+pub use simulation::Simulation;
 pub use stepper::Stepper;
 
 /// A fitted model.
@@ -64,32 +68,9 @@ pub enum Body {
 }
 
 impl Body {
-    /// Free run over a record from the virgin state, in the user's unit.
-    fn response(&self, rate: Option<RateMethod>, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        match self {
-            Self::Network { network, scaling } => FreeRun::new(network, scaling, rate).response(excitation),
-            Self::Law(law) => {
-                if excitation.inputs().len() != 1 {
-                    let problem = DataProblem::Inputs { expected: 1, found: excitation.inputs().len() };
-                    return Err(excitation.defect(None, None, problem));
-                }
-                Ok(law.run(&samples(excitation, rate)?))
-            }
-            Self::Ensemble(ensemble) => ensemble.simulate(excitation),
-        }
-    }
-
-    /// Errors of free runs over all records that have an output.
+    /// Errors of free runs over all records that have an output, with the inputs seen as they are.
     pub(crate) fn errors(&self, rate: Option<RateMethod>, data: &Dataset) -> Result<Errors> {
-        if let Self::Network { network, scaling } = self {
-            return FreeRun::new(network, scaling, rate).errors(data);
-        }
-        let mut sums = ErrorSums::default();
-        for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(record.output(), &self.response(rate, &record.excitation())?);
-        }
-        sums.errors(&data.names().output)
-            .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
+        errors(Runner::of_body(self, None, rate), data)
     }
 
     /// Parameters that were found from the data.
@@ -109,6 +90,16 @@ impl Body {
             Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.needs_time()),
         }
     }
+}
+
+/// Errors of free runs over all records that have an output.
+fn errors(mut runner: Runner<'_>, data: &Dataset) -> Result<Errors> {
+    let mut sums = ErrorSums::default();
+    for record in data.records().iter().filter(|record| record.scored() > 0) {
+        sums.add(record.output(), &runner.record(&record.excitation())?);
+    }
+    sums.errors(&data.names().output)
+        .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
 }
 
 /// Smallest and largest values seen in training, in the user's units.
@@ -139,9 +130,12 @@ pub struct Provenance {
     pub termination: Termination,
     /// Errors of the model on all data it was trained on, free run.
     pub train: Errors,
-    /// Errors of the chosen start on the data held out, before it was trained on everything; `None`
-    /// if the data were too few to hold any out.
+    /// Errors on data held out, of models that were identified in the same way without them; `None` if none
+    /// were held out.
     pub validation: Option<Errors>,
+    /// Penalties that a network was trained with; `None` for other models and in files of before version 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penalties: Option<Regularisation>,
     /// Every training run.
     pub runs: Vec<Run>,
     /// How the candidates did that it was chosen from; `None` where there was no choice.
@@ -231,8 +225,8 @@ impl Model {
     }
 
     /// How the model sees its input.
-    pub fn preprocessing(&self) -> Preprocessing {
-        self.preprocessing
+    pub fn preprocessing(&self) -> &Preprocessing {
+        &self.preprocessing
     }
 
     /// Number of inputs of a record.
@@ -301,13 +295,20 @@ impl Model {
     /// As [`Model::simulate`].
     pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         self.check_time(excitation)?;
-        match self.preprocessing.columns(excitation, self.rate)? {
-            None => self.body.response(self.rate, excitation),
-            Some(seen) => {
-                let rate = self.rate.map(|_| RateMethod::Given);
-                self.body.response(rate, &seen.excitation(excitation)?)
-            }
-        }
+        Runner::of_model(self).record(excitation)
+    }
+
+    /// A free run over records that come block by block.
+    pub fn simulation(&self) -> Simulation<'_> {
+        Simulation::new(self, None)
+    }
+
+    /// The same with a band of this probability.
+    ///
+    /// # Errors
+    /// As [`Model::predict`]: a probability outside its bounds, and a model without a band.
+    pub fn simulation_with_band(&self, probability: f64) -> Result<Simulation<'_>> {
+        Ok(Simulation::new(self, Some((self.checked_band(probability)?, probability))))
     }
 
     /// Free run over a record with a band that holds the measured output with this probability, 0.5 to 0.99,
@@ -316,32 +317,21 @@ impl Model {
     /// # Errors
     /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
     pub fn predict(&self, excitation: &Excitation<'_>, probability: f64) -> Result<Prediction> {
+        let band = self.checked_band(probability)?;
+        self.check_time(excitation)?;
+        let mut output = vec![0.0; excitation.len()];
+        let mut spreads = vec![Spread::default(); excitation.len()];
+        Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
+        Ok(Prediction::of(Some((band, probability)), output, &spreads))
+    }
+
+    fn checked_band(&self, probability: f64) -> Result<&Band> {
         Band::check(probability)?;
-        let Some(band) = &self.band else {
-            return Err(Error::Option(format!(
+        self.band.as_ref().ok_or_else(|| {
+            Error::Option(format!(
                 "this model of {} has no band: `--model auto` calibrates one where the data are enough to hold some out",
                 self.name().name()
-            )));
-        };
-        self.check_time(excitation)?;
-        let answers = match &self.body {
-            Body::Ensemble(ensemble) => ensemble.answers(excitation)?,
-            Body::Network { .. } | Body::Law(_) => {
-                let mut excursion = Excursion::beyond(self.trained.inputs[0]);
-                let output = self.response(excitation)?.into_iter();
-                let answer = |(output, x): (f64, &f64)| Answer {
-                    output,
-                    disagreement: 0.0,
-                    outside: excursion.take(*x),
-                };
-                output.zip(excitation.inputs()[0]).map(answer).collect()
-            }
-        };
-        let half = |answer: &Answer| band.half_width(probability, answer.disagreement, answer.outside);
-        Ok(Prediction {
-            low: answers.iter().map(|answer| answer.output - half(answer)).collect(),
-            high: answers.iter().map(|answer| answer.output + half(answer)).collect(),
-            output: answers.into_iter().map(|answer| answer.output).collect(),
+            ))
         })
     }
 
@@ -372,8 +362,32 @@ impl Model {
     /// As [`Model::simulate`], and data without any output.
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
-        let (seen, rate) = self.preprocessing.data(data, self.rate)?;
-        self.body.errors(rate, &seen)
+        errors(Runner::of_model(self), data)
+    }
+
+    /// Rows at the beginning of each record that drove the memory in training and were not trained on.
+    pub fn warm_up(&self) -> usize {
+        match &self.provenance.options {
+            Request::Network(options) => options.shaping.warm_up,
+            Request::Classical(options) => options.shaping.warm_up,
+            Request::Auto(_) => {
+                let members = self.ensemble().map_or(&[][..], Ensemble::members);
+                members.iter().map(Model::warm_up).max().unwrap_or_default()
+            }
+        }
+    }
+
+    /// As [`Model::evaluate`], of the rows behind the warm-up alone; `None` for a model without a warm-up, and
+    /// where no row with an output is left.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    pub fn evaluate_after_warm_up(&self, data: &Dataset) -> Result<Option<Errors>> {
+        let behind = match self.warm_up() {
+            0 => return Ok(None),
+            rows => data.clone().warmed_up(rows),
+        };
+        if behind.scored() == 0 { Ok(None) } else { self.evaluate(&behind).map(Some) }
     }
 
     fn check_time(&self, excitation: &Excitation<'_>) -> Result<()> {
@@ -398,31 +412,12 @@ impl Model {
     /// # Errors
     /// A rate that cannot be computed.
     pub fn range_warnings(&self, data: &Dataset) -> Result<Vec<Warning>> {
-        let mut warnings = Vec::new();
-        let mut check = |name: String, trained: (f64, f64), values: &mut dyn Iterator<Item = f64>| {
-            // A rounding beyond the range is not outside it.
-            let slack = 1e-9 * (trained.1 - trained.0);
-            let (mut rows, mut outside, mut seen) = (0usize, 0usize, (f64::INFINITY, f64::NEG_INFINITY));
-            for value in values {
-                rows += 1;
-                outside += usize::from(value < trained.0 - slack || value > trained.1 + slack);
-                seen = (seen.0.min(value), seen.1.max(value));
-            }
-            if outside > 0 {
-                let share_percent = 100.0 * outside as f64 / rows as f64;
-                warnings.push(Warning::OutsideTrainedRange { name, share_percent, trained, seen });
-            }
-        };
-        for (input, name) in self.names.inputs.iter().enumerate() {
-            let mut values = data.records().iter().flat_map(|record| record.inputs()[input].iter().copied());
-            check(name.clone(), self.trained.inputs[input], &mut values);
+        let mut ranges = Ranges::of(self);
+        for record in data.records() {
+            let rate = self.rate.map(|method| method.rate(record)).transpose()?;
+            let inputs: Vec<&[f64]> = record.inputs().iter().map(Vec::as_slice).collect();
+            ranges.take(&inputs, rate.as_deref());
         }
-        if let (Some(method), Some(trained)) = (self.rate, self.trained.rate) {
-            let rates: Result<Vec<Vec<f64>>> =
-                data.records().iter().map(|record| method.rate(record)).collect();
-            let name = format!("the rate of {}", self.names.inputs[0]);
-            check(name, trained, &mut rates?.into_iter().flatten());
-        }
-        Ok(warnings)
+        Ok(ranges.warnings())
     }
 }

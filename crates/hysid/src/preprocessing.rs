@@ -1,6 +1,7 @@
 //! What a model sees of its input: as measured, companded, or with a summary of the past beside it.
 //!
 //! ```text
+//! x - c in the place of x                                                   theory.md (11.8)
 //! u = asinh(x / s),    v = asinh(x' / s')                                   theory.md (11.1)
 //! m = max |x| so far / X,    p = ln(1 + 10 path so far / P) / ln 11         theory.md (11.2)
 //! ```
@@ -14,7 +15,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::rate::RateMethod;
 use crate::record::{Dataset, Excitation, Record};
 use crate::training::FEWEST_ROWS;
@@ -44,9 +45,13 @@ fn is_zero(rows: &usize) -> bool {
 }
 
 /// How a model sees its input, in the user's units.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preprocessing {
+    /// `c` of theory.md (11.8): the value of each input that the model sees as 0, in the unit of the input.
+    /// The memory is virgin at the `c` of the first input. Empty where all are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub origins: Vec<f64>,
     /// `s` of theory.md (11.1), in the unit of the input.
     pub companding: Option<f64>,
     /// `s'`, in the unit of the rate.
@@ -82,9 +87,19 @@ impl Shaping {
     ///
     /// # Errors
     /// A rate that cannot be computed.
-    pub(crate) fn of(&self, data: &Dataset, rate: Option<RateMethod>) -> Result<Preprocessing> {
+    pub(crate) fn of(
+        &self,
+        data: &Dataset,
+        rate: Option<RateMethod>,
+        origin: Origin,
+    ) -> Result<Preprocessing> {
+        let origins = match origin {
+            Origin::Zero => Vec::new(),
+            Origin::OfData => origins(data),
+        };
+        let origin = origins.first().copied().unwrap_or_default();
         let (low, high) = data.input_range(0);
-        let largest = low.abs().max(high.abs());
+        let largest = (low - origin).abs().max((high - origin).abs());
         let rate_companding = match (self.rate_companding, rate) {
             (Some(share), Some(method)) => Some(share * common_rate(data, method)?),
             _ => None,
@@ -94,8 +109,45 @@ impl Shaping {
             companding: self.companding.map(|share| share * largest),
             rate_companding,
             history: self.history.then(|| (largest, longest())),
+            origins,
         })
     }
+}
+
+/// From where the inputs of a model are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// From 0, for laws in which 0 is more than a number.
+    Zero,
+    /// From 0 where the data go about it, else from where they begin or from their middle.
+    OfData,
+}
+
+/// Share of the range of an input that zero must lie away from its ends to be what the input goes about.
+/// Also how far apart, as a share of the range, records may begin that begin at one point. Designed.
+const MARGIN: f64 = 0.05;
+
+/// `c` of theory.md (11.8), one for each input; none where all are 0.
+fn origins(data: &Dataset) -> Vec<f64> {
+    let origins: Vec<f64> = (0..data.names().inputs.len()).map(|input| origin(data, input)).collect();
+    if origins.iter().all(|origin| *origin == 0.0) { Vec::new() } else { origins }
+}
+
+/// The physical zero where the input goes about it. Elsewhere (0 to 150 V, 198 to 202 mm) it means nothing or
+/// is an end: what counts is where the specimen was at rest, and that is where its records begin. Of records
+/// that begin here and there, nobody knows; further inputs have no beginning that matters.
+pub(crate) fn origin(data: &Dataset, input: usize) -> f64 {
+    let (low, high) = data.input_range(input);
+    let margin = MARGIN * (high - low);
+    if low + margin < 0.0 && high - margin > 0.0 {
+        return 0.0;
+    }
+    let beginnings = || data.records().iter().map(|record| record.inputs()[input][0]);
+    let first = beginnings().next().unwrap_or_default();
+    if input == 0 && beginnings().all(|beginning| (beginning - first).abs() <= margin) {
+        return first;
+    }
+    0.5 * low + 0.5 * high
 }
 
 fn path(x: &[f64]) -> f64 {
@@ -123,14 +175,19 @@ pub(crate) struct Seen<'d> {
 impl<'d> Seen<'d> {
     /// # Errors
     /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
-    pub fn of(data: &'d Dataset, shaping: &Shaping, rate: Option<RateMethod>) -> Result<Self> {
+    pub fn of(
+        data: &'d Dataset,
+        shaping: &Shaping,
+        rate: Option<RateMethod>,
+        origin: Origin,
+    ) -> Result<Self> {
         shaping.check()?;
         let data = match shaping.warm_up {
             0 => Cow::Borrowed(data),
             rows => Cow::Owned(data.clone().warmed_up(rows)),
         };
         data.check_identifiable(FEWEST_ROWS)?;
-        let preprocessing = shaping.of(&data, rate)?;
+        let preprocessing = shaping.of(&data, rate, origin)?;
         let (seen, seen_rate) = preprocessing.data(&data, rate)?;
         let seen = match seen {
             Cow::Owned(seen) => Some(seen),
@@ -169,9 +226,20 @@ impl Preprocessing {
         if self.history.is_some() { HISTORY_INPUTS } else { 0 }
     }
 
+    /// What an input of the record is measured from.
+    pub fn origin(&self, input: usize) -> f64 {
+        self.origins.get(input).copied().unwrap_or_default()
+    }
+
     /// The first input as the model sees it.
     pub fn input(&self, x: f64) -> f64 {
+        let x = x - self.origin(0);
         self.companding.map_or(x, |scale| (x / scale).asinh())
+    }
+
+    /// Any input as the model sees it; the first counts as 0.
+    pub(crate) fn input_as_seen(&self, input: usize, value: f64) -> f64 {
+        if input == 0 { self.input(value) } else { value - self.origin(input) }
     }
 
     /// The rate as the model sees it.
@@ -182,10 +250,9 @@ impl Preprocessing {
     /// All inputs of a sample as the model sees them, into `seen`.
     pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
         seen.clear();
-        seen.push(self.input(inputs[0]));
-        seen.extend_from_slice(&inputs[1..]);
+        seen.extend(inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, value)));
         if let Some(scales) = self.history {
-            seen.extend(past.take(inputs[0], scales));
+            seen.extend(past.take(inputs[0] - self.origin(0), scales));
         }
     }
 
@@ -202,11 +269,13 @@ impl Preprocessing {
             return Ok(None);
         }
         let x = excitation.inputs()[0];
-        let mut inputs = vec![x.iter().map(|&x| self.input(x)).collect()];
-        inputs.extend(excitation.inputs()[1..].iter().map(|input| input.to_vec()));
+        let measured = excitation.inputs().iter().enumerate();
+        let mut inputs: Vec<Vec<f64>> = measured
+            .map(|(input, values)| values.iter().map(|&value| self.input_as_seen(input, value)).collect())
+            .collect();
         if let Some(scales) = self.history {
             let mut past = Past::default();
-            let (largest, path) = x.iter().map(|&x| past.take(x, scales).into()).unzip();
+            let (largest, path) = x.iter().map(|&x| past.take(x - self.origin(0), scales).into()).unzip();
             inputs.extend([largest, path]);
         }
         let seen_rate = |method: RateMethod| -> Result<Vec<f64>> {
@@ -243,7 +312,9 @@ impl Preprocessing {
     pub(crate) fn check(&self) -> Result<()> {
         let scales =
             [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
-        if scales.into_iter().flatten().all(|scale| scale > 0.0 && scale.is_finite()) {
+        let is_scale = |scale: f64| scale > 0.0 && scale.is_finite();
+        let is_value = |origin: &f64| origin.abs() <= LARGEST_VALUE;
+        if scales.into_iter().flatten().all(is_scale) && self.origins.iter().all(is_value) {
             return Ok(());
         }
         Err(Error::Option("its preprocessing has a scale that is none".into()))
@@ -257,19 +328,6 @@ pub(crate) struct SeenColumns {
 }
 
 impl SeenColumns {
-    /// An excitation of these columns, with the time stamps of the one measured.
-    pub fn excitation<'s>(&'s self, measured: &Excitation<'s>) -> Result<Excitation<'s>> {
-        let inputs = self.inputs.iter().map(Vec::as_slice).collect();
-        let mut seen = Excitation::new(measured.name(), inputs)?;
-        if let Some(time) = measured.time() {
-            seen = seen.with_time(time)?;
-        }
-        match &self.rate {
-            Some(rate) => seen.with_given_rate(rate),
-            None => Ok(seen),
-        }
-    }
-
     /// A record of these columns, with all else of the one measured.
     fn record(self, measured: &Record) -> Result<Record> {
         let mut seen = Record::new(measured.name(), self.inputs, measured.output().to_vec())?;
@@ -301,7 +359,7 @@ mod tests {
         let shaping =
             Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
         let rate = Some(RateMethod::Backward);
-        let preprocessing = shaping.of(&data, rate).unwrap();
+        let preprocessing = shaping.of(&data, rate, Origin::OfData).unwrap();
         let (seen, method) = preprocessing.data(&data, rate).unwrap();
         assert_eq!(method, Some(RateMethod::Given));
         let record = &seen.records()[0];
@@ -323,7 +381,7 @@ mod tests {
     #[test]
     fn nothing_asked_for_is_nothing_done() {
         let data = data();
-        let preprocessing = Shaping::default().of(&data, None).unwrap();
+        let preprocessing = Shaping::default().of(&data, None, Origin::OfData).unwrap();
         assert!(preprocessing.is_none());
         assert!(matches!(preprocessing.data(&data, None).unwrap().0, Cow::Borrowed(_)));
     }

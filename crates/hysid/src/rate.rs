@@ -24,6 +24,16 @@ pub enum RateMethod {
 const HALF_WINDOW: usize = 5;
 
 impl RateMethod {
+    /// Rows before and behind a row that its rate follows from.
+    pub(crate) fn rows_around(self) -> (usize, usize) {
+        match self {
+            RateMethod::Given => (0, 0),
+            RateMethod::Central => (1, 1),
+            RateMethod::Backward => (1, 0),
+            RateMethod::SavitzkyGolay => (HALF_WINDOW, HALF_WINDOW),
+        }
+    }
+
     /// Rate of the record's first input, in its unit over the unit of time, one value a row.
     ///
     /// # Errors

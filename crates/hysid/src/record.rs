@@ -4,10 +4,11 @@
 //! A blank output is NaN: such a row drives the memory and is neither trained on nor scored.
 
 mod excitation;
+mod thinning;
 
 use crate::error::{Channel, DataProblem, Error, Result};
-use crate::training::genetic::mix;
 pub use excitation::Excitation;
+pub(crate) use thinning::Thinning;
 
 /// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
 #[derive(Debug, Clone, PartialEq)]
@@ -258,23 +259,11 @@ impl Dataset {
         range(self.records.iter().flat_map(|record| &record.output))
     }
 
-    /// The same data with at most so many scored rows: of more, every so many-th at random keeps its output.
+    /// The same data with at most so many scored rows; the others drive the memory.
     pub(crate) fn thinned(&self, most: usize) -> Dataset {
-        let scored = self.scored();
+        let thinning = Thinning::new(self.scored(), most);
         let mut thinned = self.clone();
-        if scored <= most {
-            return thinned;
-        }
-        let share = most as f64 / scored as f64;
-        let mut seen = 0;
-        for y in thinned.records.iter_mut().flat_map(|record| &mut record.output) {
-            if !y.is_nan() {
-                seen += 1;
-                if unit_interval(seen) >= share {
-                    *y = f64::NAN;
-                }
-            }
-        }
+        thinning.blank(thinned.records.iter_mut().flat_map(|record| &mut record.output));
         thinned
     }
 
@@ -357,11 +346,6 @@ impl Dataset {
         }
         Ok(())
     }
-}
-
-/// A number from 0 to 1 that only depends on another, without pattern.
-fn unit_interval(number: u64) -> f64 {
-    mix(number) as f64 / u64::MAX as f64
 }
 
 /// Smallest and largest of the values that are not NaN.

@@ -26,7 +26,7 @@ use crate::classical::search::SearchProgress;
 use crate::error::Result;
 use crate::identification::ModelName;
 use crate::model::Model;
-use crate::preprocessing::Seen;
+use crate::preprocessing::{Origin, Seen};
 use crate::record::Dataset;
 pub use checkpoint::Checkpoint;
 use checkpoint::Snapshot;
@@ -122,7 +122,7 @@ pub struct Fit {
 /// # Errors
 /// Data that nothing can be identified from, or options outside their meaning.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
-    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
@@ -133,6 +133,6 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 /// A checkpoint of other data.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
     let (options, state) = checkpoint.for_data(data)?;
-    let seen = Seen::of(data, &options.shaping, options.rate)?;
+    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state).run(observer)
 }

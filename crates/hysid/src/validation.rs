@@ -5,14 +5,17 @@
 //! for; blocks from its beginning and middle are held out too, which tell a model that merely follows this
 //! one path from one that knows the material.
 
+mod pooled;
+
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::identification::{Request, identify};
-use crate::metrics::{ErrorSums, Errors};
+use crate::metrics::Errors;
 use crate::model::Model;
 use crate::record::{Dataset, Record};
 use crate::training::{FEWEST_ROWS, Observer, Progress};
+pub(crate) use pooled::PooledErrors;
 
 /// A part to fit to and a part to judge on.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +27,21 @@ pub struct Fold {
     /// What is judged on; of a single record, the whole of it with blanks where it is not judged, so that
     /// the memory is carried over.
     pub held_out: Dataset,
+}
+
+impl Fold {
+    /// What a model predicts of each row that is judged, in a free run.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub(crate) fn predicted_by(&self, model: &Model) -> Result<Vec<f64>> {
+        let mut predicted = Vec::with_capacity(self.held_out.scored());
+        for record in self.held_out.records() {
+            let rows = model.simulate(record)?.into_iter().zip(record.output());
+            predicted.extend(rows.filter(|(_, y)| !y.is_nan()).map(|(simulated, _)| simulated));
+        }
+        Ok(predicted)
+    }
 }
 
 /// Shares of a single record that are fitted to, from its beginning, and those that follow and are judged.
@@ -106,7 +124,8 @@ pub struct FoldErrors {
 pub struct CrossValidation {
     /// Fold by fold; those that were not reached before the observer said stop are missing.
     pub folds: Vec<FoldErrors>,
-    /// Errors over all rows held out together; of a single record, rows are in several folds.
+    /// Errors over all rows held out together; a row that was in several folds counts once, with the mean of
+    /// its squared errors.
     pub unseen: Errors,
     /// Geometric mean over the folds of the error on what was held out, in percent of the standard
     /// deviation there: one fold that goes far beyond the others does not decide it.
@@ -119,7 +138,7 @@ pub struct CrossValidator {
     folds: Vec<Fold>,
     output: String,
     judged: Vec<FoldErrors>,
-    sums: ErrorSums,
+    pooled: PooledErrors,
 }
 
 impl CrossValidator {
@@ -136,7 +155,7 @@ impl CrossValidator {
             )));
         }
         let output = data.names().output.clone();
-        Ok(Self { folds, output, judged: Vec::new(), sums: ErrorSums::default() })
+        Ok(Self { folds, output, judged: Vec::new(), pooled: PooledErrors::default() })
     }
 
     /// The folds.
@@ -151,9 +170,7 @@ impl CrossValidator {
     pub fn judge(&mut self, fold: usize, model: &Model) -> Result<FoldErrors> {
         let fold = &self.folds[fold];
         let unseen = model.evaluate(&fold.held_out)?;
-        for record in fold.held_out.records() {
-            self.sums.add(record.output(), &model.simulate(record)?);
-        }
+        self.pooled.add(&fold.held_out, &fold.predicted_by(model)?);
         let train = model.provenance().train.clone();
         let errors = FoldErrors { held_out: fold.name.clone(), train, unseen };
         self.judged.push(errors.clone());
@@ -162,7 +179,7 @@ impl CrossValidator {
 
     /// What came of the folds that were judged; `None` if none was.
     pub fn result(self) -> Option<CrossValidation> {
-        let unseen = self.sums.errors(&self.output)?;
+        let unseen = self.pooled.errors(&self.output)?;
         let logarithms: Option<Vec<f64>> =
             self.judged.iter().map(|fold| Some(fold.unseen.nrmse_std_percent?.ln())).collect();
         let mean = |logarithms: Vec<f64>| (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp();

@@ -6,7 +6,6 @@ use hysid::record::{ColumnNames, Dataset, Record};
 use hysid::scaling::Scaling;
 use hysid::training::FitOptions;
 use hysid::training::objective::Objective;
-use hysid::training::options::Regularisation;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
@@ -214,8 +213,8 @@ fn case(family: Family, ridge: f64, decay: f64) -> Case {
     let rate = time.then_some(hysid::rate::RateMethod::Central);
     let sizes = Sizes { stops: 3, hidden: 2, relaxation: 2 };
     let architecture = Architecture::new(family, sizes, 1, time, time).unwrap();
-    let regularisation = Regularisation { ridge, decay };
-    let options = FitOptions { model: family, rate, regularisation, ..FitOptions::default() };
+    let options =
+        FitOptions { model: family, rate, ridge: Some(ridge), decay: Some(decay), ..FitOptions::default() };
     let scaling = Scaling::of(&data, rate).unwrap();
     let parameters = random_parameters(&Layout::new(architecture), 4.0, &mut Generator::seed_from_u64(17));
     Case { data, scaling, architecture, options, parameters }

@@ -3,12 +3,15 @@
 use std::ops::ControlFlow;
 
 use hysid::error::{DataProblem, Error};
+use hysid::identification::Request;
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
-use hysid::operator::{Operator, Stop};
+use hysid::operator::{DeterioratingStop, Operator, Stop};
+use hysid::plant::with_noise;
 use hysid::rate::RateMethod;
 use hysid::record::{ColumnNames, Dataset, Record};
 use hysid::training::options::Regularisation;
-use hysid::training::{Fit, FitOptions, Phase, Progress, Termination, fit};
+use hysid::training::{Fit, FitOptions, Phase, Progress, Run, Termination, fit};
+use hysid::validation::cross_validate;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
@@ -174,17 +177,14 @@ fn the_observer_sees_the_share_of_the_work_grow() {
     assert!(seen.windows(2).all(|pair| pair[0].done <= pair[1].done));
     assert!(seen.iter().all(|progress| (0.0..=1.0).contains(&progress.done)));
     assert!(seen.last().unwrap().done > 0.7 && seen[0].done < 0.1);
-    let starts = seen.iter().filter(|progress| progress.phase == Phase::Starts);
+    let starts = seen.iter().filter(|progress| progress.phase == Phase::AllData);
     assert_eq!(starts.map(|progress| progress.start).max(), Some(options.starts - 1));
-    // What was told is what the history keeps; of the descents of the refit it keeps one.
+    // What was told is what the history keeps; of the starts on everything it keeps one.
     for run in &fitted.unwrap().model.provenance().runs {
         let mut told = seen
             .iter()
             .filter(|progress| (progress.phase, progress.start) == (run.phase, run.start))
             .map(|progress| (progress.epoch, progress.train_nrmse_percent));
-        if run.phase == Phase::Starts {
-            assert_eq!(told.clone().count(), run.history.len() - 1);
-        }
         for point in &run.history[1..] {
             assert!(told.any(|told| told == (point.epoch, point.train_nrmse_percent)), "{point:?}");
         }
@@ -234,17 +234,15 @@ fn a_fit_that_is_stopped_in_a_later_start_says_so() {
 fn training_never_worsens_and_begins_no_worse_than_the_mean() {
     let data = bank_data(300);
     // Without penalties the error is the objective.
-    let regularisation = Regularisation { ridge: 0.0, decay: 0.0 };
     for family in Family::ALL {
-        let options = FitOptions { regularisation, ..small(family, 3, 2) };
+        let options = FitOptions { ridge: Some(0.0), decay: Some(0.0), ..small(family, 3, 2) };
         let fitted = quietly(&data, &options);
         for run in &fitted.model.provenance().runs {
             let errors: Vec<f64> = run.history.iter().map(|point| point.train_nrmse_percent).collect();
             assert!(errors.len() > 2, "{family:?}: no iteration");
             assert!(errors.windows(2).all(|pair| pair[1] <= pair[0]), "{family:?}: {errors:?}");
-            // Percent of the whole data's deviation, of which a start sees three quarters.
-            let most = if run.phase == Phase::AllData { 100.0 } else { 100.0 / 0.75f64.sqrt() };
-            assert!(errors[0] <= most, "{family:?}: {errors:?}");
+            // Percent of the deviation of what the run was trained on.
+            assert!(errors[0] <= 100.0 + 1e-9, "{family:?}: {errors:?}");
         }
         let refit = fitted.model.provenance().runs.last().unwrap();
         let last = refit.history.last().unwrap().train_nrmse_percent;
@@ -272,20 +270,101 @@ fn many_rows_are_thinned_with_little_loss() {
 #[test]
 fn data_are_held_out_unless_they_are_too_few() {
     let options = FitOptions { starts: 7, epochs: 3, ..small(Family::Pnn, 2, 0) };
-    let held = quietly(&bank_data(100), &options);
+    let data = bank_data(100);
+    let held = quietly(&data, &options);
     let provenance = held.model.provenance();
-    assert_eq!(provenance.validation.as_ref().unwrap().samples, 25);
-    let (starts, refit) = provenance.runs.split_at(7);
-    assert_eq!((refit.len(), refit[0].phase, refit[0].start), (1, Phase::AllData, provenance.chosen_start));
-    // One of the three best starts on what was held out is the one that became the model.
-    let judged: Vec<f64> = starts.iter().map(|run| run.validation_nrmse_percent.unwrap()).collect();
-    let chosen = judged[provenance.chosen_start];
-    assert!(judged.iter().filter(|&&other| other < chosen).count() < 3, "{judged:?}");
-    assert_eq!(provenance.validation.as_ref().unwrap().nrmse_std_percent, Some(chosen));
+    // A single record is cut into five folds; from row 0 to the end, every row is held out of one of them.
+    assert_eq!(provenance.validation.as_ref().unwrap().samples, 100);
+    let (on_folds, on_all): (Vec<&Run>, Vec<&Run>) =
+        provenance.runs.iter().partition(|run| run.phase == Phase::Starts);
+    assert_eq!(on_folds.len(), 5 * 3);
+    assert_eq!((on_all.len(), on_all[0].start), (1, provenance.chosen_start));
+    assert!(on_folds.iter().all(|run| run.validation_nrmse_percent.is_some() && run.fold.is_some()));
+
+    // The share that is asked for takes the place of the folds.
+    let share = quietly(&data, &FitOptions { validation: Some(0.25), ..options.clone() });
+    assert_eq!(share.model.provenance().validation.as_ref().unwrap().samples, 25);
 
     let few = quietly(&bank_data(12), &options);
     assert_eq!(few.model.provenance().validation, None);
     assert!(few.model.provenance().runs.iter().all(|run| run.validation_nrmse_percent.is_none()));
+}
+
+/// The validation is that of [`cross_validate`]: models that have not seen what they predict, not even for the
+/// factors of their scaling. Here the largest inputs and outputs are in one record only.
+#[test]
+fn validation_is_that_of_a_cross_validation() {
+    let record = |name: &str, size: f64, offset: f64| {
+        let x = path(60, size, 5);
+        let y = bank(&x).iter().map(|y| y + offset).collect();
+        Record::new(name, vec![x], y).unwrap()
+    };
+    let data = dataset(vec![record("a", 1.0, 0.0), record("b", 1.4, 0.0), record("c", 7.0, 300.0)]);
+    let options = FitOptions { starts: 3, epochs: 6, ridge: Some(1e-6), ..small(Family::Pnn, 3, 0) };
+    let validation = quietly(&data, &options).model.provenance().validation.clone().unwrap();
+    let expected = cross_validate(&data, &Request::Network(options), 5, &mut |_| ControlFlow::Continue(()));
+    let expected = expected.unwrap().unseen;
+    assert_eq!(validation.samples, 180);
+    assert!((validation.rmse - expected.rmse).abs() < 1e-9 * expected.rmse, "{validation:?} {expected:?}");
+}
+
+/// Networks of the paper with a linear readout find their own parameters in data without noise.
+#[test]
+fn pnn_and_gpnn_find_their_own_parameters() {
+    let x: Vec<f64> = (0..900)
+        .map(|k| {
+            let t = 0.02 * f64::from(k);
+            (0.3 + 0.07 * t) * (2.0 * t).sin() + 0.2 * (5.3 * t).sin()
+        })
+        .collect();
+    // Threshold, capacity, weight.
+    let elements = [(0.1, 30.0, 2.0), (0.3, 60.0, 1.5), (0.8, 150.0, -0.7)];
+    for family in [Family::Pnn, Family::Gpnn] {
+        let deteriorates = family == Family::Gpnn;
+        let mut y = vec![0.25; x.len()];
+        for (threshold, capacity, weight) in elements {
+            let z: Vec<f64> = match deteriorates {
+                true => DeterioratingStop::new(threshold, capacity).unwrap().run(&x),
+                false => Stop::new(threshold).unwrap().run(&x),
+            };
+            y.iter_mut().zip(z).for_each(|(y, z)| *y += weight * z);
+        }
+        let data = dataset(vec![Record::new("r", vec![x.clone()], y).unwrap()]);
+        let options = FitOptions { starts: 8, epochs: 150, ..small(family, 3, 0) };
+        let fitted = quietly(&data, &options);
+        let provenance = fitted.model.provenance();
+        assert!(provenance.penalties.unwrap().ridge < 1e-9, "{family:?}: {:?}", provenance.penalties);
+        let network = fitted.model.network().unwrap();
+        let layout = Layout::new(*network.architecture());
+        let scale = fitted.model.scaling().unwrap().inputs[0];
+        let parameters = network.parameters();
+        let mut found: Vec<(f64, f64)> = (0..3)
+            .map(|stop| {
+                let threshold = scale / parameters[layout.stop_weights.clone()][stop].abs();
+                let capacity = parameters[layout.ln_beta.clone()].get(stop).map_or(0.0, |ln| ln.exp());
+                (threshold, capacity * threshold)
+            })
+            .collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for ((threshold, capacity), expected) in found.into_iter().zip(elements) {
+            assert!((threshold / expected.0 - 1.0).abs() < 1e-4, "{family:?}: {threshold} for {expected:?}");
+            let capacity = capacity / (if deteriorates { threshold } else { 1.0 });
+            let is_found = !deteriorates || (capacity / expected.1 - 1.0).abs() < 1e-3;
+            assert!(is_found, "{family:?}: {capacity} for {expected:?}");
+        }
+        assert!(nrmse(&fitted, &data) < 1e-4, "{family:?}: {} %", nrmse(&fitted, &data));
+    }
+}
+
+/// Noise asks for penalties, and those that were asked for stay.
+#[test]
+fn penalties_stay_where_there_is_noise_or_they_were_asked_for() {
+    let data = with_noise(&bank_data(200), 3.0, 7).unwrap();
+    let options = FitOptions { starts: 2, epochs: 10, ..small(Family::PreisachNn, 4, 4) };
+    assert_eq!(quietly(&data, &options).model.provenance().penalties, Some(Regularisation::default()));
+    let asked = FitOptions { ridge: Some(1e-3), ..options };
+    let penalties = Regularisation { ridge: 1e-3, ..Regularisation::default() };
+    assert_eq!(quietly(&bank_data(200), &asked).model.provenance().penalties, Some(penalties));
 }
 
 #[test]
@@ -298,21 +377,17 @@ fn options_outside_their_meaning_are_refused() {
     };
     assert_eq!(refused(&good), None);
     let sizes = good.sizes;
-    let penalties = good.regularisation;
     let bad = [
         ("stop", FitOptions { sizes: Sizes { stops: 0, ..sizes }, ..good.clone() }),
         ("hidden", FitOptions { sizes: Sizes { hidden: 0, ..sizes }, ..good.clone() }),
         ("stops", FitOptions { sizes: Sizes { stops: 1001, ..sizes }, ..good.clone() }),
         ("starts", FitOptions { starts: 0, ..good.clone() }),
         ("starts", FitOptions { starts: 10_001, ..good.clone() }),
-        ("validation", FitOptions { validation: 0.0, ..good.clone() }),
-        ("validation", FitOptions { validation: 1.0, ..good.clone() }),
-        ("validation", FitOptions { validation: f64::NAN, ..good.clone() }),
-        ("ridge", FitOptions { regularisation: Regularisation { ridge: -1.0, ..penalties }, ..good.clone() }),
-        (
-            "decay",
-            FitOptions { regularisation: Regularisation { decay: f64::NAN, ..penalties }, ..good.clone() },
-        ),
+        ("validation", FitOptions { validation: Some(0.0), ..good.clone() }),
+        ("validation", FitOptions { validation: Some(1.0), ..good.clone() }),
+        ("validation", FitOptions { validation: Some(f64::NAN), ..good.clone() }),
+        ("ridge", FitOptions { ridge: Some(-1.0), ..good.clone() }),
+        ("decay", FitOptions { decay: Some(f64::NAN), ..good.clone() }),
         ("time", FitOptions { rate: Some(RateMethod::Central), ..good.clone() }),
         ("given rate", FitOptions { rate: Some(RateMethod::Given), ..good.clone() }),
     ];

@@ -19,15 +19,19 @@ pub struct Request {
     pub count: usize,
     /// What chance begins from.
     pub seed: u64,
+    /// Cases that train on one loop.
+    pub one_loop: bool,
 }
 
 impl Request {
     /// Reads the arguments behind the command.
     pub fn parse(arguments: &[&str]) -> Result<Self> {
-        let (mut folder, mut count, mut seed) = (None, KINDS, 1);
+        let (mut folder, mut count, mut seed, mut one_loop) = (None, KINDS, 1, false);
         let mut rest = arguments.iter().copied();
         while let Some(argument) = rest.next() {
-            if argument.starts_with('-') {
+            if argument == "--one-loop" {
+                one_loop = true;
+            } else if argument.starts_with('-') {
                 let (option, value) = match argument.split_once('=') {
                     Some((option, value)) => (option, value),
                     None => (argument, rest.next().unwrap_or_default()),
@@ -42,7 +46,7 @@ impl Request {
             }
         }
         match folder {
-            Some(folder) => Ok(Self { folder, count, seed }),
+            Some(folder) => Ok(Self { folder, count, seed, one_loop }),
             None => usage("name the folder for the cases".into()),
         }
     }
@@ -65,10 +69,10 @@ mod tests {
 
     #[test]
     fn options_stand_anywhere() {
-        let request = Request::parse(&["--count=5", "out", "--seed", "7"]).unwrap();
-        assert_eq!(request, Request { folder: "out".into(), count: 5, seed: 7 });
+        let request = Request::parse(&["--count=5", "out", "--one-loop", "--seed", "7"]).unwrap();
+        assert_eq!(request, Request { folder: "out".into(), count: 5, seed: 7, one_loop: true });
         let request = Request::parse(&["out"]).unwrap();
-        assert_eq!(request, Request { folder: "out".into(), count: 36, seed: 1 });
+        assert_eq!(request, Request { folder: "out".into(), count: 36, seed: 1, one_loop: false });
     }
 
     #[test]

@@ -16,7 +16,7 @@ use hysid::training::{Fit, FitOptions, Method, Trainer, fit};
 
 use crate::Outcome;
 use crate::arguments::Bench;
-use crate::messages::{note, results};
+use crate::messages::{json_results, note, results};
 
 /// Samples of the simulation.
 const SAMPLES: usize = 1_000_000;
@@ -42,18 +42,17 @@ struct Speed {
 pub fn run(arguments: &Bench) -> Result<Outcome> {
     let instructions = hysid::simd::instruction_set();
     if !arguments.json {
-        note(format_args!("measuring, a few seconds (instruction set: {instructions})\n"));
+        note(format_args!("measuring, a few seconds (instruction set: {instructions})"));
+        note(format_args!(""));
     }
     let speeds = speeds(instructions)?;
-    results(&match arguments.json {
-        true => serde_json::to_string_pretty(&speeds)? + "\n",
-        false => {
-            let line = |(name, speed): (&&str, &Speed)| {
-                format!("{name:<32} {:>10.4} {}\n    {}\n", speed.value, speed.unit, speed.setting)
-            };
-            speeds.iter().map(line).collect::<String>()
-        }
-    })?;
+    let line = |(name, speed): (&&str, &Speed)| {
+        format!("{name:<32} {:>10.4} {}\n    {}\n", speed.value, speed.unit, speed.setting)
+    };
+    match arguments.json {
+        true => json_results(&speeds)?,
+        false => results(&speeds.iter().map(line).collect::<String>())?,
+    }
     Ok(Outcome::Done)
 }
 

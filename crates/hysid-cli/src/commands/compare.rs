@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use hysid::identification::{ModelName, Request};
+use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Compare;
@@ -11,26 +12,26 @@ use crate::columns::Roles;
 use crate::commands::fit::rate_method;
 use crate::comparison::{self, Data as Compared};
 use crate::data::{Data, read_tables};
-use crate::identification::check_outputs;
-use crate::messages::{note, results};
-use crate::{files, interrupt};
+use crate::files::{self, check_outputs};
+use crate::interrupt;
+use crate::messages::{json_results, note, results};
 
 /// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {
-    let page = (!arguments.no_report).then(|| page_path(arguments));
+    let page = (!arguments.no_report)
+        .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
     let tables = read_tables(&arguments.train)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let test = match &arguments.test {
         Some(test) => {
             let unseen = read_tables(std::slice::from_ref(test))?;
             roles.check_against(&unseen[0], &tables[0])?;
-            Some(Data::new(unseen, roles.clone(), true)?)
+            Some(Data::new(unseen, roles.clone())?)
         }
         None => None,
     };
     let inputs: Vec<&Path> = arguments.train.iter().chain(&arguments.test).map(PathBuf::as_path).collect();
-    let outputs: Vec<&Path> = page.iter().map(PathBuf::as_path).collect();
-    check_outputs(&outputs, &inputs)?;
+    check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
     let models: Vec<ModelName> =
         if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
     let requests: Result<Vec<Request>> = models
@@ -42,23 +43,19 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         })
         .collect();
     let requests = requests?;
-    let train = Data::new(tables, roles, true)?;
+    let train = Data::new(tables, roles)?;
 
     interrupt::listen("stopping; what is finished is compared")?;
     let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
+    match arguments.json {
+        true => json_results(&comparison::printed(&rows))?,
+        false => results(&comparison::table(&rows, test.is_some()))?,
+    }
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
-        files::write(
-            page,
-            comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?.as_bytes(),
-        )?;
-    }
-    results(&match arguments.json {
-        true => comparison::json(&rows)?,
-        false => comparison::table(&rows, test.is_some()),
-    })?;
-    if let Some(page) = &page {
-        note(format_args!("page    {}", files::shown(page)));
+        let text = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
+        files::write(page, text.as_bytes())?;
+        note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
 }

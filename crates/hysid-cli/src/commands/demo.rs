@@ -1,49 +1,61 @@
 //! `hysid demo`: a synthetic ferromagnet, from its record to the report, without any file to begin
 //! with.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use clap::Parser;
 use hysid::plant::Specimen;
+use hysid::record::Dataset;
+use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
 use crate::columns::Roles;
 use crate::csv_text::csv_text;
 use crate::data::Data;
-use crate::identification::{Work, check_outputs, identify, note_interrupted, report_path};
+use crate::files::{self, check_outputs};
+use crate::identification::{Work, identify, note_interrupted};
+use crate::interrupt;
 use crate::messages::{note, results};
 use crate::table::Table;
-use crate::{files, interrupt};
 
 /// Runs the command.
 pub fn run(arguments: &Demo) -> Result<Outcome> {
     let folder = &arguments.out;
-    fs::create_dir_all(folder)
-        .map_err(|error| anyhow!("{}: cannot be made: {}", folder.display(), files::reason(&error)))?;
-    let [train, test, out, loops] =
-        ["demo-train.csv", "demo-test.csv", "demo.json", "demo-loops.svg"].map(|name| folder.join(name));
-    check_outputs(&[&train, &test, &out, &loops, &report_path(&out)], &[])?;
-    note(format_args!("A ferromagnetic sheet, M330-50A: field H drives flux density B. Synthetic data.\n"));
+    files::make_folder(folder)?;
     let ferromagnet = Specimen::named("ferromagnet").expect("the specimen is in the catalogue");
-    files::write(&train, csv_text(&ferromagnet.train())?.as_bytes())?;
-    files::write(&test, csv_text(&ferromagnet.test())?.as_bytes())?;
+    let place =
+        |name: &str, kind: Kind| Destination::new(folder.join(name), kind, arguments.overwriting.force);
+    let table = |name: &str, data: &Dataset| {
+        let content = csv_text(data)?.into_bytes();
+        anyhow::Ok((place(name, Kind::Content(content.clone())), content))
+    };
+    let (train, train_text) = table("demo-train.csv", &ferromagnet.train())?;
+    let (test, test_text) = table("demo-test.csv", &ferromagnet.test())?;
+    let (model, loops) = (place("demo.json", Kind::Model), place("demo-loops.svg", Kind::Drawing));
+    let report = place("demo.html", Kind::Page);
+    check_outputs(&[&train, &test, &model, &loops, &report], &[])?;
+    note(format_args!("A ferromagnetic sheet, M330-50A: field H drives flux density B. Synthetic data."));
+    note(format_args!(""));
+    files::write(&train, &train_text)?;
+    files::write(&test, &test_text)?;
 
-    let data = read(&train)?;
-    let unseen = read(&test)?;
-    let typed = fit_as_typed(&train);
+    let [train, test, out] = [&train, &test, &model].map(Destination::path);
+    let data = read(train)?;
+    let unseen = read(test)?;
+    let typed = fit_as_typed(train);
     let request = typed.training.chosen(&typed.rival).request(None, false);
     let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
-    let mut written = vec![("data", train.clone()), ("data", test.clone())];
-    written.extend(identified.save(&out, Some(vec![("training", &data.set), ("unseen", &unseen.set)]))?);
+    identified.save(&model)?;
+    identified.write_report(&report, out, &[("training", &data.set), ("unseen", &unseen.set)])?;
     files::write(&loops, identified.loops("unseen", &unseen.set)?.as_bytes())?;
-    written.push(("loops", loops));
-    results(&(identified.results(Some(&errors), &written) + &next(&train, &test, &out)))?;
+    let written =
+        [("data", train), ("data", test), ("model", out), ("report", report.path()), ("loops", loops.path())];
+    results(&(identified.results(Some(&errors), &written) + &next(train, test, out)))?;
     if interrupt::requested() {
-        note_interrupted(&out);
+        note_interrupted(out);
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
@@ -61,7 +73,7 @@ fn fit_as_typed(train: &Path) -> Box<crate::arguments::Fit> {
 fn read(path: &Path) -> Result<Data> {
     let table = Table::read(path)?;
     let roles = Roles::detect(&table, &fit_as_typed(path).columns)?;
-    Data::new(vec![table], roles, true)
+    Data::new(vec![table], roles)
 }
 
 fn next(train: &Path, test: &Path, out: &Path) -> String {

@@ -6,6 +6,7 @@ use anyhow::Result;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::identification::options::RateChoice;
 use hysid::summary::Summary;
+use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{ColumnOptions, Diagnose, RateOption};
@@ -13,10 +14,11 @@ use crate::columns::Roles;
 use crate::commands::model_from_bytes;
 use crate::data::Data;
 use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
-use crate::identification::check_outputs;
+use crate::files::{self, check_outputs};
 use crate::messages::{Usage, note, results, warning};
 use crate::table::{Table, is_json};
-use crate::{files, understanding};
+use crate::terminal::{clipped, listed};
+use crate::understanding;
 
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
@@ -26,10 +28,11 @@ struct Told {
 
 /// Runs the command.
 pub fn run(arguments: &Diagnose) -> Result<Outcome> {
-    let page = (!arguments.no_report).then(|| page_path(arguments));
+    let page = (!arguments.no_report)
+        .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     let mut contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
-    check_outputs(&page.iter().map(PathBuf::as_path).collect::<Vec<_>>(), &inputs)?;
+    check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
     let model = contents.iter().position(|content| is_json(content));
     let told = match (model, contents.len()) {
         (Some(_), 1) => of_model(arguments, contents.remove(0))?,
@@ -39,12 +42,10 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
         }
         (None, _) => of_data(arguments, &contents)?,
     };
+    results(&told.text)?;
     if let (Some(page), Some(text)) = (&page, &told.page) {
         files::write(page, text.as_bytes())?;
-    }
-    results(&told.text)?;
-    if let Some(page) = &page {
-        note(format_args!("page    {}", files::shown(page)));
+        note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(Outcome::Done)
 }
@@ -53,16 +54,17 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
     let tables = arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes));
     let tables: Vec<Table> = tables.collect::<Result<_>>()?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let data = Data::new(tables, roles, true)?;
+    let data = Data::new(tables, roles)?;
     let understood = understanding::of_data(&data, &Summary::of(&data.set));
     understanding::print(&understood);
     if let [first, further @ ..] = data.roles.inputs.as_slice()
         && !further.is_empty()
     {
         warning(format_args!(
-            "diagnosed is how {} follows {first}; {} {} not looked at (choose with --input)",
-            data.roles.output,
-            further.join(", "),
+            "diagnosed is how {} follows {}; {} {} not looked at (choose with --input)",
+            clipped(&data.roles.output),
+            clipped(first),
+            listed(further),
             if further.len() == 1 { "is" } else { "are" },
         ));
     }

@@ -1,36 +1,56 @@
-//! `hysid evaluate`: errors of a free run against measured data.
+//! `hysid evaluate`: errors of a free run against measured data, row by row.
 
-use anyhow::Result;
-use hysid::metrics::Errors;
+use std::ops::ControlFlow;
+
+use anyhow::{Context, Result};
+use hysid::error::{Channel, DataError, DataProblem};
+use hysid::metrics::{ErrorSums, Errors};
 
 use crate::Outcome;
 use crate::arguments::Evaluate;
 use crate::band_coverage::BandCoverage;
 use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
-use crate::data::Data;
+use crate::data::explained;
 use crate::errors_table::errors_table;
-use crate::messages::{results, warning};
-use crate::table::Table;
+use crate::messages::{json_results, results, warning};
+use crate::table::Rows;
+use crate::table_run::{self, Simulated, Wanted};
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = read_model(&arguments.model)?;
-    let table = Table::read(&arguments.data)?;
-    let roles = Roles::of_model(&model, &table, &arguments.columns, true)?;
-    let data = Data::new(vec![table], roles, true)?;
+    let mut rows = Rows::open(&arguments.data)?;
+    let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
-    let errors = model.evaluate(&data.set).map_err(|error| data.explain(error))?;
-    model.range_warnings(&data.set).map_err(|error| data.explain(error))?.iter().for_each(warning);
-    let band = arguments.band.map(|probability| BandCoverage::of(&model, &data.set, probability));
-    let band = band.transpose().map_err(|error| data.explain(error))?;
-    results(&match arguments.json {
-        true => serde_json::to_string_pretty(&Printed { errors: &errors, band })? + "\n",
+
+    let (mut sums, mut covered) = (ErrorSums::default(), (0, 0));
+    let mut take = |simulated: &Simulated<'_>| {
+        let (prediction, measured) = (simulated.prediction, simulated.measured);
+        sums.add_rows(measured, &prediction.output);
+        let (inside, scored) = prediction.covered(measured);
+        covered = (covered.0 + inside, covered.1 + scored);
+        if simulated.ends_record {
+            sums.end_record();
+        }
+        Ok(ControlFlow::Continue(()))
+    };
+    let wanted = Wanted { measured: true, cells: false, band: arguments.band };
+    let warnings = table_run::run(&model, &mut rows, &roles, wanted, &mut take)?;
+    let Some(errors) = sums.errors(&roles.output) else {
+        let (channel, problem) = (Some(Channel::Output), DataProblem::NothingToScore);
+        let defect = DataError { record: String::new(), row: None, channel, problem };
+        return Err(explained(&rows.head.file, None, defect.into(), &roles));
+    };
+    warnings.context("the run was ended early")?.iter().for_each(warning);
+    let band = arguments.band.map(|probability| BandCoverage::of(covered, probability));
+    match arguments.json {
+        true => json_results(&Printed { errors: &errors, band })?,
         false => {
             let table = errors_table(&[("free run", &errors)]);
-            table + &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()))
+            results(&(table + &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()))))?;
         }
-    })?;
+    }
     Ok(Outcome::Done)
 }
 

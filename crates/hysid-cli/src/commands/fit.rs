@@ -11,28 +11,31 @@ use hysid::model::Model;
 use hysid::network::Architecture;
 use hysid::rate::RateMethod;
 use hysid::training::{Checkpoint, FitOptions, Termination};
+use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{Fit, RateOption};
+use crate::checkpoint::{self, Keeper};
 use crate::columns::Roles;
-use crate::commands::read_model;
 use crate::data::{Data, read_tables};
-use crate::identification::{self, Identified, Work, check_outputs, identify, report_path};
-use crate::messages::{Usage, note, results, warning};
-use crate::{checkpoint, files, interrupt};
+use crate::files::{self, check_outputs};
+use crate::identification::{self, Identified, Work, identify, report_path};
+use crate::interrupt;
+use crate::messages::{Usage, json_results, note, results, warning};
 
 /// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {
-    let out = out(arguments)?;
-    let report = (!arguments.no_report).then(|| report_path(&out));
-    let checkpoint = arguments.checkpoint.as_ref().or(arguments.resume.as_ref());
-    let outputs: Vec<&Path> =
-        std::iter::once(&out).chain(&report).chain(checkpoint).map(PathBuf::as_path).collect();
+    let force = arguments.overwriting.force;
+    let model = Destination::new(out(arguments)?, Kind::Model, force);
+    let report =
+        (!arguments.no_report).then(|| Destination::new(report_path(model.path()), Kind::Page, force));
     let tables = read_tables(&arguments.train)?;
+    let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
+    let checkpoint = checkpoint_destination(arguments);
+    let outputs: Vec<&Destination> = std::iter::once(&model).chain(&report).chain(&checkpoint).collect();
     let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
     let chosen = arguments.training.chosen(&arguments.rival);
     let request = match &begun {
         Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
@@ -41,32 +44,44 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     if arguments.checkpoint.is_some() {
         check_checkpoints(&request)?;
     }
-    let data = Data::new(tables, roles, true)?;
+    let keeper = checkpoint.map(Keeper::new).transpose()?;
+    let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
+    let data = Data::new(tables, roles)?;
     warn_of_useless(&chosen);
     let work = Work {
         request: &request,
         begun,
-        checkpoint: checkpoint.map(PathBuf::as_path),
+        checkpoint: keeper,
         threads: arguments.threads,
         time_limit: arguments.time_limit,
     };
     let identified = identify(&data, work)?;
 
-    let sets = report.is_some().then(|| vec![("training", &data.set)]);
-    let written = identified.save(&out, sets)?;
-    if arguments.json {
-        results(&json(&identified, &out)?)?;
-    } else {
-        results(&(identified.results(None, &written) + &next(&out)))?;
+    let out = model.path();
+    identified.save(&model)?;
+    let sets = [("training", &data.set)];
+    let reported = report.as_ref().map_or(Ok(()), |page| identified.write_report(page, out, &sets));
+    let mut written = vec![("model", out)];
+    written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
+    match arguments.json {
+        true => json_results(&Printed::of(&identified, out))?,
+        false => results(&(identified.results(None, &written) + &next(out)))?,
     }
+    reported?;
     if interrupt::requested() {
-        identification::note_interrupted(&out);
-        if let Some(checkpoint) = checkpoint {
-            note_resumable(checkpoint);
-        }
+        identification::note_interrupted(out);
+        resumable.iter().for_each(|checkpoint| note_resumable(checkpoint));
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
+}
+
+/// Where the state of the fit is stored. What a fit begins anew there replaces is kept; one that is resumed goes on.
+fn checkpoint_destination(arguments: &Fit) -> Option<Destination> {
+    let path = arguments.checkpoint.as_ref().or(arguments.resume.as_ref())?;
+    let goes_on = arguments.resume.as_ref().is_some_and(|resumed| files::same(resumed, path));
+    let destination = Destination::new(path, Kind::Checkpoint, arguments.overwriting.force);
+    Some(destination.keeping_the_old(!goes_on))
 }
 
 fn note_resumable(checkpoint: &Path) {
@@ -81,12 +96,7 @@ fn out(arguments: &Fit) -> Result<PathBuf> {
     let Some(out) = &arguments.out else {
         let mut name = arguments.train[0].file_stem().unwrap_or("model".as_ref()).to_os_string();
         name.push(".json");
-        let out = PathBuf::from(name);
-        if out.exists() && read_model(&out).is_err() {
-            let advice = "is there already and is no model: name the model file with --out";
-            return Err(Usage(format!("{} {advice}", out.display())).into());
-        }
-        return Ok(out);
+        return Ok(PathBuf::from(name));
     };
     if out.extension().is_some_and(|extension| extension == "html") {
         let advice = "name the model file with .json: its report gets the name with .html";
@@ -198,19 +208,22 @@ impl PrintedMember {
     }
 }
 
-fn json(identified: &Identified, out: &Path) -> Result<String> {
-    let (model, provenance) = (&identified.model, identified.model.provenance());
-    let printed = Printed {
-        model: out.display().to_string(),
-        architecture: PrintedArchitecture::of(model),
-        parameters: model.parameters(),
-        members: model.ensemble().map(|ensemble| ensemble.members().iter().map(PrintedMember::of).collect()),
-        selection: provenance.selection.as_ref(),
-        train: &provenance.train,
-        validation: provenance.validation.as_ref(),
-        seconds: identified.seconds,
-        evaluations: identified.evaluations,
-        termination: provenance.termination,
-    };
-    Ok(serde_json::to_string_pretty(&printed)? + "\n")
+impl<'a> Printed<'a> {
+    fn of(identified: &'a Identified, out: &Path) -> Self {
+        let (model, provenance) = (&identified.model, identified.model.provenance());
+        Self {
+            model: out.display().to_string(),
+            architecture: PrintedArchitecture::of(model),
+            parameters: model.parameters(),
+            members: model
+                .ensemble()
+                .map(|ensemble| ensemble.members().iter().map(PrintedMember::of).collect()),
+            selection: provenance.selection.as_ref(),
+            train: &provenance.train,
+            validation: provenance.validation.as_ref(),
+            seconds: identified.seconds,
+            evaluations: identified.evaluations,
+            termination: provenance.termination,
+        }
+    }
 }

@@ -5,14 +5,14 @@ use std::path::Path;
 use anyhow::Result;
 use hysid::plant::{Specimen, with_noise};
 use hysid::record::{ColumnNames, Dataset};
+use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Generate;
 use crate::csv_text::csv_text;
-use crate::files;
-use crate::identification::check_outputs;
+use crate::files::{self, check_outputs};
 use crate::lines::indented;
-use crate::messages::{Usage, note, results};
+use crate::messages::{Usage, json_results, note, raw_results, results};
 use crate::page::count;
 
 /// Runs the command.
@@ -37,37 +37,56 @@ fn generate(specimen: &Specimen, arguments: &Generate) -> Result<()> {
         let advice = "name a file with --out or --test";
         return Err(Usage(format!("training and test data cannot both go to stdout: {advice}")).into());
     }
-    let [train_file, test_file] = [train, test].map(|path| path.filter(|&path| path != stdout));
-    check_outputs(&train_file.into_iter().chain(test_file).collect::<Vec<_>>(), &[])?;
-
     // Test data have a noise of their own: nobody types the complement of a seed.
     let (noise, seed) = (arguments.noise, arguments.seed);
-    if let Some(path) = train {
-        write(path, "training", &with_noise(&specimen.train(), noise, seed)?)?;
-    }
-    if let Some(path) = test {
-        write(path, "test", &with_noise(&specimen.test(), noise, !seed)?)?;
-    }
-    if train_file.or(test_file).is_some() {
-        note(format_args!("{}", next(train_file, test_file)));
+    let set = |path: Option<&'_ Path>, what, data: Dataset, seed| -> Result<Option<Set>> {
+        path.map(|path| Set::new(path, what, with_noise(&data, noise, seed)?, arguments)).transpose()
+    };
+    let train = set(train, "training", specimen.train(), seed)?;
+    let test = set(test, "test", specimen.test(), !seed)?;
+    let file = |set: &'_ Option<Set>| set.as_ref().and_then(|set| set.destination.clone());
+    let [train_file, test_file] = [&train, &test].map(file);
+    check_outputs(&train_file.iter().chain(&test_file).collect::<Vec<_>>(), &[])?;
+
+    train.iter().chain(&test).try_for_each(Set::write)?;
+    if train_file.is_some() || test_file.is_some() {
+        let [train, test] = [&train_file, &test_file].map(|file| file.as_ref().map(Destination::path));
+        next(train, test).lines().for_each(|line| note(format_args!("{line}")));
     }
     Ok(())
 }
 
-/// Writes the data to a file and says so, or to stdout for `-`.
-fn write(path: &Path, what: &str, data: &Dataset) -> Result<()> {
-    let text = csv_text(data)?;
-    if path == Path::new("-") {
-        return results(&text);
+/// Data on their way to a file, or to stdout.
+struct Set {
+    what: &'static str,
+    data: Dataset,
+    text: String,
+    destination: Option<Destination>,
+}
+
+impl Set {
+    /// A path `-` is stdout.
+    fn new(path: &Path, what: &'static str, data: Dataset, arguments: &Generate) -> Result<Self> {
+        let text = csv_text(&data)?;
+        let kind = || Kind::Content(text.as_bytes().to_vec());
+        let is_file = path != Path::new("-");
+        let destination = is_file.then(|| Destination::new(path, kind(), arguments.overwriting.force));
+        Ok(Self { what, data, text, destination })
     }
-    files::write(path, text.as_bytes())?;
-    let blank = match data.rows() - data.scored() {
-        0 => String::new(),
-        rows => format!(", {rows} of them with a blank output"),
-    };
-    let (records, rows) = (count(data.records().len(), "record"), count(data.rows(), "row"));
-    note(format_args!("wrote {}: {what} data, {records}, {rows}{blank}", files::shown(path)));
-    Ok(())
+
+    /// Writes the data; says so of a file.
+    fn write(&self) -> Result<()> {
+        let Some(destination) = &self.destination else { return raw_results(&self.text) };
+        files::write(destination, self.text.as_bytes())?;
+        let blank = match self.data.rows() - self.data.scored() {
+            0 => String::new(),
+            rows => format!(", {rows} of them with a blank output"),
+        };
+        let (records, rows) = (count(self.data.records().len(), "record"), count(self.data.rows(), "row"));
+        let (file, what) = (files::shown(destination.path()), self.what);
+        note(format_args!("wrote {file}: {what} data, {records}, {rows}{blank}"));
+        Ok(())
+    }
 }
 
 /// What to type next.
@@ -81,10 +100,10 @@ fn next(train: Option<&Path>, test: Option<&Path>) -> String {
 
 fn list(json: bool) -> Result<()> {
     let specimens = Specimen::all().iter().copied();
-    results(&match json {
-        true => serde_json::to_string_pretty(&specimens.map(Described::of).collect::<Vec<_>>())? + "\n",
-        false => specimens.map(description).collect::<Vec<_>>().join("\n"),
-    })
+    match json {
+        true => json_results(&specimens.map(Described::of).collect::<Vec<_>>()),
+        false => results(&specimens.map(description).collect::<Vec<_>>().join("\n")),
+    }
 }
 
 /// What `--list` prints of a specimen.

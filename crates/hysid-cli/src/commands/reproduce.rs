@@ -1,21 +1,17 @@
 //! `hysid reproduce`: the paper's experiments, our figures beside its own.
 
-use std::fs;
-
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 
 use crate::Outcome;
 use crate::arguments::Reproduce;
-use crate::files;
-use crate::interrupt;
-use crate::reproduction::{self, Settings};
+use crate::reproduction::{self, Outputs, Settings};
+use crate::{files, interrupt};
 
 /// Runs the command.
 pub fn run(arguments: &Reproduce) -> Result<Outcome> {
-    let folder = &arguments.out;
-    fs::create_dir_all(folder)
-        .map_err(|error| anyhow!("{}: cannot be made: {}", folder.display(), files::reason(&error)))?;
+    files::make_folder(&arguments.out)?;
     interrupt::listen("stopping; what is finished is kept")?;
     let settings = Settings { seed: arguments.seed, quick: arguments.quick };
-    reproduction::run(&arguments.experiments, settings, folder)
+    let outputs = Outputs { folder: &arguments.out, force: arguments.overwriting.force };
+    reproduction::run(&arguments.experiments, settings, outputs)
 }

@@ -1,24 +1,31 @@
-//! `hysid simulate`: a free run over the inputs of a table.
+//! `hysid simulate`: a free run over the inputs of a table, row by row.
 
+use std::io::Write;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use anyhow::{Result, ensure};
+use hysid_files::{Destination, Kind, NewFile};
 
-use crate::Outcome;
 use crate::arguments::Simulate;
-use crate::cell::shortest;
+use crate::cell::{CellReader, DecimalSign, push_shortest};
 use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
-use crate::data::{Data, Source};
-use crate::files;
-use crate::identification::check_outputs;
-use crate::messages::{results, warning};
-use crate::table::Table;
+use crate::csv_text::header_line;
+use crate::files::{self, check_outputs};
+use crate::messages::{stdout_failed, warning};
+use crate::table::Rows;
+use crate::table_run::{self, Simulated, Wanted};
+use crate::terminal::clipped;
+use crate::{Outcome, interrupt};
+
+/// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
+const BUFFERED: usize = 1 << 20;
 
 /// Runs the command.
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let model = read_model(&arguments.model)?;
-    let table = Table::read(&arguments.data)?;
+    let mut rows = Rows::open(&arguments.data)?;
     let mut names = vec![format!("{}_model", model.names().output)];
     if arguments.band.is_some() {
         check_band(&model, &arguments.model)?;
@@ -26,49 +33,145 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     }
     for name in &names {
         ensure!(
-            table.column(name).is_none(),
-            "{}: there is already a column \"{name}\" (rename or remove it)",
-            table.file
+            rows.head.column(name).is_none(),
+            "{}: there is already a column \"{}\" (rename or remove it)",
+            rows.head.file,
+            clipped(name)
         );
     }
+    let all = rows.head.header.iter().chain(&names).map(String::as_str);
+    let header = header_line(rows.head.delimiter, all)?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
-    if let Some(out) = out {
+    let kind = Kind::Beginning(header.clone());
+    let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
+    if let Some(out) = &out {
         check_outputs(&[out], &[&arguments.data, &arguments.model])?;
+        interrupt::listen("stopping before the end of the table")?;
     }
-    let roles = Roles::of_model(&model, &table, &arguments.columns, false)?;
-    let data = Data::new(vec![table], roles, false)?;
-    let mut columns: Vec<Vec<f64>> = vec![Vec::with_capacity(data.set.rows()); names.len()];
-    for record in data.set.records() {
-        let of_record = match arguments.band {
-            None => model.simulate(record).map(|output| vec![output]),
-            Some(probability) => model
-                .predict(&record.excitation(), probability)
-                .map(|predicted| vec![predicted.output, predicted.low, predicted.high]),
-        };
-        let of_record = of_record.map_err(|error| data.explain(error))?;
-        columns.iter_mut().zip(of_record).for_each(|(column, values)| column.extend(values));
-    }
-    model.range_warnings(&data.set).map_err(|error| data.explain(error))?.iter().for_each(warning);
-    let text = with_columns(&data.source, &names, &columns)?;
-    match out {
-        Some(out) => files::write(out, &text)?,
-        None => results(std::str::from_utf8(&text)?)?,
-    }
+    let roles = Roles::of_model(&model, &rows.head, &arguments.columns, false)?;
+
+    let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
+    let numbers = Numbers { data: &arguments.data, roles: &roles, delimiter: rows.head.delimiter };
+    let mut output = Output { sink, numbers, sign: None, delimiter: rows.head.delimiter, text: header };
+    let wanted = Wanted { cells: true, measured: false, band: arguments.band };
+    let mut take = |simulated: &Simulated<'_>| {
+        output.add(simulated)?;
+        Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    };
+    let Some(warnings) = table_run::run(&model, &mut rows, &roles, wanted, &mut take)? else {
+        return Ok(Outcome::Interrupted);
+    };
+    warnings.iter().for_each(warning);
+    output.finish()?;
     Ok(Outcome::Done)
 }
 
-/// The table with these columns more, in the table's own delimiter and decimal sign.
-fn with_columns(source: &Source, names: &[String], columns: &[Vec<f64>]) -> Result<Vec<u8>> {
-    let (table, commas) = (&source.tables[0], source.decimal_commas[0]);
-    let mut writer = csv::WriterBuilder::new().delimiter(table.delimiter).from_writer(Vec::new());
-    writer.write_record(table.header.iter().chain(names))?;
-    let text = |value: f64| {
-        let text = shortest(value);
-        if commas { text.replace('.', ",") } else { text }
-    };
-    for row in 0..table.len() {
-        let added: Vec<String> = columns.iter().map(|column| text(column[row])).collect();
-        writer.write_record(table.cells(row).chain(added.iter().map(String::as_str)))?;
+/// The table with the columns of the simulation, on its way to a file or to stdout.
+struct Output<'o> {
+    sink: Option<NewFile<'o>>,
+    numbers: Numbers<'o>,
+    /// Decimal sign of the columns that are added, once it is known.
+    sign: Option<DecimalSign>,
+    delimiter: u8,
+    text: Vec<u8>,
+}
+
+impl Output<'_> {
+    /// Adds rows, in the table's own delimiter and decimal sign.
+    fn add(&mut self, simulated: &Simulated<'_>) -> Result<()> {
+        let prediction = simulated.prediction;
+        if prediction.output.is_empty() {
+            return Ok(());
+        }
+        let sign = match self.sign {
+            Some(sign) => sign,
+            None => *self.sign.insert(self.numbers.sign(simulated.numbers)?),
+        };
+        self.numbers.check(sign, simulated.numbers)?;
+        let mut writer = csv::WriterBuilder::new().delimiter(self.delimiter).from_writer(&mut self.text);
+        let mut number = String::new();
+        for row in 0..prediction.output.len() {
+            for cell in simulated.cells(row) {
+                writer.write_field(cell)?;
+            }
+            for column in [&prediction.output, &prediction.low, &prediction.high] {
+                if let Some(&value) = column.get(row) {
+                    number.clear();
+                    push_shortest(&mut number, value, sign);
+                    writer.write_field(&number)?;
+                }
+            }
+            writer.write_record(None::<&[u8]>)?;
+        }
+        writer.flush()?;
+        drop(writer);
+        if self.text.len() >= BUFFERED { self.write() } else { Ok(()) }
     }
-    Ok(writer.into_inner()?)
+
+    fn write(&mut self) -> Result<()> {
+        match &mut self.sink {
+            Some(file) => {
+                file.write_all(&self.text).map_err(|error| file.failed(error)).map_err(files::explained)?
+            }
+            None => std::io::stdout().lock().write_all(&self.text).map_err(stdout_failed)?,
+        }
+        self.text.clear();
+        Ok(())
+    }
+
+    /// Writes what is left, and puts the file in its place.
+    fn finish(mut self) -> Result<()> {
+        self.write()?;
+        match self.sink {
+            Some(file) => file.commit().map(drop).map_err(files::explained),
+            None => std::io::stdout().lock().flush().map_err(stdout_failed),
+        }
+    }
+}
+
+/// How numbers are written in a table.
+struct Numbers<'n> {
+    data: &'n Path,
+    roles: &'n Roles,
+    delimiter: u8,
+}
+
+impl Numbers<'_> {
+    /// The decimal sign of a table whose first rows were read by this reader.
+    fn sign(&self, first_rows: &CellReader) -> Result<DecimalSign> {
+        if let Some(sign) = first_rows.sign() {
+            return Ok(sign);
+        }
+        // Whole numbers so far. Where commas separate the columns there are no decimal commas.
+        let is_settled = self.delimiter == b',' || !self.data.is_file();
+        Ok(if is_settled { DecimalSign::Point } else { self.first_sign()? })
+    }
+
+    /// The decimal sign that comes first in the columns that the model needs.
+    fn first_sign(&self) -> Result<DecimalSign> {
+        let mut rows = Rows::open(self.data)?;
+        let used = self.roles.time.iter().chain(&self.roles.inputs).chain(&self.roles.rate);
+        let places: Vec<usize> = used.filter_map(|name| rows.head.column(name)).collect();
+        let mut numbers = CellReader::new(self.delimiter);
+        while let Some(row) = rows.next_row()? {
+            for &place in &places {
+                // What is wrong with a cell is said where the table is read for its numbers.
+                let _ = numbers.number(row.cell(place), row.line);
+            }
+            if let Some(sign) = numbers.sign() {
+                return Ok(sign);
+            }
+        }
+        Ok(DecimalSign::Point)
+    }
+
+    /// Refuses a decimal comma behind rows that are written with decimal points: a pipe cannot be read twice.
+    fn check(&self, sign: DecimalSign, so_far: &CellReader) -> Result<()> {
+        ensure!(
+            so_far.sign().is_none_or(|found| found == sign),
+            "{}: the first decimal comma comes after thousands of whole numbers (give a file in the place of a pipe)",
+            self.data.display()
+        );
+        Ok(())
+    }
 }

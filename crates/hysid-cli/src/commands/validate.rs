@@ -16,7 +16,7 @@ use crate::data::{Data, read_tables};
 use crate::identification::{say_beforehand, thread_pool};
 use crate::interrupt;
 use crate::lines::{WIDTH, aligned, wrapped};
-use crate::messages::{note, results};
+use crate::messages::{json_results, note, results};
 use crate::progress::Follower;
 
 /// What came of the folds, and how it came about.
@@ -39,7 +39,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let chosen = arguments.training.chosen(&arguments.rival);
     let request = request(&chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
-    let data = Data::new(tables, roles, true)?;
+    let data = Data::new(tables, roles)?;
     warn_of_useless(&chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;
@@ -72,10 +72,10 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     };
     let model = request.model().name();
     let validated = Validated { model, folds_in_all: all, folds_stopped: stopped, seconds, errors };
-    results(&match arguments.json {
-        true => serde_json::to_string_pretty(&validated)? + "\n",
-        false => validated.text(),
-    })?;
+    match arguments.json {
+        true => json_results(&validated)?,
+        false => results(&validated.text())?,
+    }
     if interrupt::requested() {
         note(format_args!("interrupted: {} of {all} folds are done", validated.errors.folds.len()));
         return Ok(Outcome::Interrupted);

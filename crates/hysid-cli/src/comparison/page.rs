@@ -8,6 +8,9 @@ use crate::page::{figure, note, section, table, verdict, whole};
 use crate::plot::{Axis, Chart, Colour, Curve, Label};
 use crate::report::{ReportSet, small_loops};
 
+/// Most records drawn into one chart.
+const MOST_RECORDS: usize = 200;
+
 /// Models whose loops are drawn over each other.
 const OVERLAID: usize = 3;
 
@@ -125,7 +128,9 @@ fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<String> {
         let rows = x.iter().zip(y).zip(shown);
         rows.map(|((x, y), shown)| if shown.is_nan() { (f64::NAN, f64::NAN) } else { (*x, *y) }).collect()
     };
-    for record in data.records() {
+    let every = data.records().len().div_ceil(MOST_RECORDS).max(1);
+    let records = || data.records().iter().step_by(every);
+    for record in records() {
         let x = &record.inputs()[0];
         curves.push(Curve {
             points: path(x, record.output(), record.output()),
@@ -135,7 +140,7 @@ fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<String> {
     }
     for (index, (name, fitted)) in fitted.iter().take(OVERLAID).enumerate() {
         legend.push((Colour::Series(index), name.to_string()));
-        for record in data.records() {
+        for record in records() {
             let simulated = fitted.model.simulate(record)?;
             let points = path(&record.inputs()[0], &simulated, record.output());
             curves.push(Curve { points, colour: Colour::Series(index), width: 1.1 });

@@ -11,6 +11,7 @@ use super::quantities::Quantities;
 use super::{counsel, findings, loops, paragraph};
 use crate::data::Data;
 use crate::page::{self, count, definitions, note, section};
+use crate::terminal::{self, clipped};
 
 /// A diagnosis of measured data, and what is told with it.
 pub struct DataDiagnosis<'a> {
@@ -52,8 +53,10 @@ impl<'a> DataDiagnosis<'a> {
             let unit = hysid::unit::suffix(hysid::unit::of_column(column).as_deref());
             let percent = 100.0 * deviation / (high - low);
             format!(
-                "{column} {:.2}{unit} ({} % of its range)",
+                "{} {:.2}{} ({} % of its range)",
+                clipped(column),
                 Significant(deviation),
+                clipped(&unit),
                 findings::shown(percent)
             )
         };
@@ -74,7 +77,7 @@ impl<'a> DataDiagnosis<'a> {
             records: self.data.set.records().len(),
             diagnosis: &self.diagnosis,
         };
-        Ok(serde_json::to_string_pretty(&printed)? + "\n")
+        terminal::json(&printed)
     }
 
     /// The page: verdicts at a glance, the data, each property with its picture, and the loops in numbers.

@@ -9,6 +9,7 @@ use crate::page::{count, figure, note, number, section, table};
 use crate::plot::thin::{Point, thin};
 use crate::plot::{Axis, Chart, Colour, Curve};
 use crate::report::unit_label;
+use crate::terminal::clipped;
 
 /// Cycles shown at each end of a long table.
 const AT_EACH_END: usize = 8;
@@ -52,7 +53,7 @@ fn largest(cycles: &[Cycle]) -> Option<usize> {
 
 /// First, last and largest loop, column by column.
 pub fn text(cycles: &[Cycle], quantities: &Quantities) -> String {
-    let heading = format!("loops of {} over {}", quantities.output, quantities.input);
+    let heading = format!("loops of {} over {}", clipped(&quantities.output), clipped(&quantities.input));
     let Some(largest) = largest(cycles) else {
         return format!("{heading}: none closes\n");
     };

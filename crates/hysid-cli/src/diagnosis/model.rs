@@ -16,7 +16,7 @@ use super::{findings, paragraph};
 use crate::lines::{aligned, indented};
 use crate::page::{self, definitions, note, number, section};
 use crate::report::unit_label;
-use crate::understanding::listed;
+use crate::terminal::{self, listed};
 
 /// Neurons in the table of a page; of more, those that matter most.
 const MOST_NEURONS: usize = 40;
@@ -120,7 +120,7 @@ impl<'a> DiagnosedModel<'a> {
             parameters: self.model.parameters(),
             diagnosis: &self.diagnosis,
         };
-        Ok(serde_json::to_string_pretty(&printed)? + "\n")
+        terminal::json(&printed)
     }
 
     /// The page.

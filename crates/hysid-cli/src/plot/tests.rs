@@ -97,3 +97,40 @@ fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
     assert_eq!(lines, [2, 2]);
     assert_balanced(&chart.svg());
 }
+
+#[test]
+fn every_chart_is_a_drawing_and_what_was_changed_in_it_is_none() {
+    let wave: Vec<Point> = (1..50).map(|k| (k as f64, (k as f64).sin())).collect();
+    let gap = (f64::NAN, f64::NAN);
+    let curve = |points: &[Point], colour| Curve { points: points.to_vec(), colour, width: 1.5 };
+    let full = Chart {
+        curves: vec![
+            curve(&wave, Colour::Band),
+            curve(&wave, Colour::Series(3)),
+            curve(&[(1.0, 2.0), gap, (3.0, 0.5), gap], Colour::Error),
+        ],
+        labels: vec![Label { point: (2.0, 0.5), rise: 3.0, text: "<b>\"a\" & b'\u{1b}</b>".into() }],
+        x: Axis::logarithmic("x > 0", wave.iter().map(|point| point.0)),
+        legend: vec![(Colour::Band, "90 % band".into()), (Colour::Series(3), "<i>".into())],
+        ..chart(wave.clone())
+    };
+    for svg in [full.svg(), chart(wave).svg(), chart(vec![(0.0, 0.0)]).svg(), chart(Vec::new()).svg()] {
+        assert!(is_drawing(&svg), "{svg}");
+        for (from, to) in [
+            ("</svg>", "<script/></svg>"),
+            ("<svg ", "<svg onload=\"a()\" "),
+            ("<svg ", "<svg onload=a() "),
+            ("<svg ", "<svg\tonload=\"a()\" "),
+            ("<svg ", "text<svg "),
+            ("</svg>", "</svg>text"),
+            ("</svg>", "<!-- --></svg>"),
+            ("</svg>", "<a href=\"javascript:a()\"></a></svg>"),
+            ("fill=\"#111111\"", "fill=\"url(#a)\""),
+            ("xmlns=\"http://www.w3.org/2000/svg\"", "xmlns=\"http://www.w3.org/1999/xhtml\""),
+        ] {
+            let changed = svg.replacen(from, to, 1);
+            assert!(changed == svg || !is_drawing(&changed), "{from} {to}");
+        }
+    }
+    assert!(!is_drawing("") && !is_drawing("<svg") && !is_drawing("<svg>") && is_drawing("<svg></svg>"));
+}

@@ -15,7 +15,7 @@ const TIMED: Duration = Duration::from_millis(3);
 /// The section on the choice; empty for a model that was not chosen from others.
 pub fn section(report: &Report) -> String {
     let Some(selection) = &report.model.provenance().selection else { return String::new() };
-    let [chosen, why] = choice(report.model, selection);
+    let [chosen, why] = selection.summary();
     let lines = [("Chosen".to_string(), chosen), ("Why".to_string(), why)];
     let (counting, others): (Vec<&CandidateResult>, Vec<&CandidateResult>) =
         selection.candidates.iter().partition(|one| counts(one));
@@ -25,15 +25,6 @@ pub fn section(report: &Report) -> String {
     };
     let heading = if report.model.ensemble().is_some() { "The ensemble" } else { "How it was chosen" };
     section_of(heading, &(definitions(&lines) + &content + &left_out(&others) + &held_out(selection)))
-}
-
-/// What was chosen, and why.
-pub fn choice(model: &Model, selection: &Selection) -> [String; 2] {
-    let [all, why] = selection.summary();
-    match model.ensemble() {
-        Some(_) => [all, why],
-        None => [format!("one {}, taught by {all}", model.name().name()), why],
-    }
 }
 
 fn counts(candidate: &CandidateResult) -> bool {

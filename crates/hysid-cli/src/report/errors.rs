@@ -25,8 +25,7 @@ pub fn verdict(report: &Report) -> String {
     let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
     parts.push(match &provenance.validation {
         Some(errors) => {
-            let before = "before it was trained on everything";
-            format!("{} on data held out from it, {before}", judged(errors))
+            format!("{} on data held out (cross-validation)", judged(errors))
         }
         None if provenance.options.starts() == 1 => "unknown on new data, since none were held out".into(),
         None => "unknown on new data, since there were too few to hold any out".into(),
@@ -93,8 +92,8 @@ fn explanation(report: &Report) -> String {
              on everything; what counts how much was chosen there, so it is a little flattered."
         }
         (Some(_), None) => {
-            "“Validation” is the chosen start on the data held out from it, before it was trained on \
-             everything; having won the choice among the starts there, it is a little flattered."
+            "“Validation” is the error on data held out, of networks that were trained in the same way without \
+             them."
         }
         (None, _) => "Nothing was held out, so there is no validation.",
     };

@@ -1,5 +1,6 @@
 //! Loops, and how the training converged.
 
+use hysid::identification::Request;
 use hysid::model::{Model, Provenance};
 use hysid::record::Record;
 use hysid::training::{Method, Phase, Run};
@@ -124,27 +125,22 @@ pub fn convergence_section(model: &Model) -> String {
     section("Convergence", &(figure(&chart, true) + &note(&convergence_words(model.provenance()))))
 }
 
-/// Error against epoch of every start and of what was trained on all data; `None` for a model that was not
-/// searched for.
+/// Error against epoch of the start that became the model, and of those on the folds; `None` for a model that
+/// was not searched for.
 pub fn convergence(model: &Model) -> Option<String> {
     let provenance = model.provenance();
     if provenance.runs.is_empty() {
         return None;
     }
-    let is_chosen = |run: &Run| run.phase == Phase::Starts && run.start == provenance.chosen_start;
-    let of_chosen = provenance.runs.iter().filter(|run| is_chosen(run));
-    let offset = of_chosen.flat_map(|run| run.history.last()).map(|point| point.epoch).max().unwrap_or(0);
     let mut curves: Vec<Curve> = Vec::new();
     for run in &provenance.runs {
-        let (colour, width, offset) = match (run.phase, run.method) {
-            (Phase::Starts, _) if is_chosen(run) => (Colour::Simulated, 2.0, 0),
-            (Phase::Starts, _) => (Colour::Faint, 1.0, 0),
-            (Phase::AllData, Method::Genetic) => (Colour::Input, 2.0, offset),
-            (Phase::AllData, _) => (Colour::Error, 2.0, offset),
+        let (colour, width) = match (run.phase, run.method) {
+            (Phase::Starts, _) => (Colour::Faint, 1.0),
+            (Phase::AllData, Method::Genetic) => (Colour::Input, 2.0),
+            (Phase::AllData, _) => (Colour::Error, 2.0),
         };
-        let point = |p: &hysid::training::HistoryPoint| {
-            ((offset + p.epoch) as f64, p.train_nrmse_percent.max(LOWEST_PERCENT))
-        };
+        let point =
+            |p: &hysid::training::HistoryPoint| (p.epoch as f64, p.train_nrmse_percent.max(LOWEST_PERCENT));
         curves.push(Curve {
             points: thin(&run.history.iter().map(point).collect::<Vec<_>>(), 1000),
             colour,
@@ -163,40 +159,35 @@ pub fn convergence(model: &Model) -> Option<String> {
             curves.iter().flat_map(|curve| &curve.points).map(|point| point.1),
         ),
         curves,
-        legend: convergence_legend(&provenance.runs, provenance.options.starts()),
+        legend: convergence_legend(&provenance.runs),
     };
     Some(chart.svg())
 }
 
-fn convergence_legend(runs: &[Run], starts: usize) -> Vec<(Colour, String)> {
+fn convergence_legend(runs: &[Run]) -> Vec<(Colour, String)> {
     let mut legend = Vec::new();
-    if starts > 1 {
-        legend.push((Colour::Faint, "other starts".to_string()));
-        legend.push((Colour::Simulated, "chosen start".to_string()));
+    if runs.iter().any(|run| run.phase == Phase::Starts) {
+        legend.push((Colour::Faint, "on parts of the data".to_string()));
     }
-    let after = if starts > 1 { "then on all data" } else { "on all data" };
     for run in runs.iter().filter(|run| run.phase == Phase::AllData) {
         legend.push(match run.method {
-            Method::Genetic => (Colour::Input, format!("{after}: genetic algorithm")),
+            Method::Genetic => (Colour::Input, "on all data: genetic algorithm".to_string()),
             Method::Subgradient => (Colour::Error, "sub-gradient method".to_string()),
-            Method::LevenbergMarquardt | Method::LeastSquares => (Colour::Error, after.to_string()),
+            Method::LevenbergMarquardt | Method::LeastSquares => (Colour::Error, "on all data".to_string()),
         });
     }
     legend
 }
 
 fn convergence_words(provenance: &Provenance) -> String {
-    let best = if provenance.validation.is_some() { "on what was held out" } else { "there" };
     let on_all_data = provenance.runs.iter().filter(|run| run.phase == Phase::AllData);
-    let refitted = on_all_data.clone().next().is_some();
-    let mut words = match provenance.options.starts() {
-        1 => String::new(),
-        starts => format!(
-            "{} on the training part; number {} did best {best}{}. ",
+    let mut words = match (&provenance.options, provenance.options.starts()) {
+        (Request::Network(_), starts) if starts > 1 => format!(
+            "Of {} on all data, number {} has the lowest error. ",
             count(starts, "random start"),
             provenance.chosen_start + 1,
-            if refitted { " and went on to all data" } else { "" },
         ),
+        _ => String::new(),
     };
     for run in on_all_data {
         let what = match run.method {

@@ -76,19 +76,20 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
         (_, Some(selection)) => {
             format!("{} in turn, to choose this model among others", count(selection.folds.len(), "part"))
         }
-        (Some(errors), None) => format!(
-            "{} % asked for: {}",
-            number(100.0 * options.validation, 3),
-            count(errors.samples, "sample")
-        ),
-        (None, None) if options.starts == 1 => "nothing: there was but one start".into(),
+        (Some(errors), None) => match options.validation {
+            Some(share) => {
+                format!("{} %: {}", number(100.0 * share, 3), count(errors.samples, "sample"))
+            }
+            None => format!("the folds of a cross-validation: {}", count(errors.samples, "sample")),
+        },
+        (None, None) if options.starts == 1 => "nothing, since there was one start only".into(),
         (None, None) => "nothing: too few data".into(),
     };
     let (starts, epochs) = match options.starts {
         1 => ("1".into(), format!("at most {}", options.epochs)),
         starts => (
-            format!("{starts}, of which number {} was chosen", provenance.chosen_start + 1),
-            format!("at most {} of each start, and again on all data", options.epochs),
+            format!("{starts}, of which number {} has the lowest error", provenance.chosen_start + 1),
+            format!("at most {} of each start", options.epochs),
         ),
     };
     let mut pairs = Vec::new();
@@ -109,6 +110,9 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
     pairs.push(pair("Epochs", epochs));
     if options.training.is_genetic() {
         pairs.push(pair("Population", options.population.to_string()));
+    }
+    if let Some(penalties) = provenance.penalties {
+        pairs.push(pair("Penalties", format!("ridge {:e}, decay {:e}", penalties.ridge, penalties.decay)));
     }
     pairs.push(pair("Seed", options.seed.to_string()));
     pairs.push(pair("Held out", held_out));

@@ -5,9 +5,13 @@ mod rendering;
 
 use serde::{Deserialize, Serialize};
 
-pub use rendering::{csv, html, markdown, table_text, text};
+pub use rendering::{CSV_HEADER, csv, html, markdown, table_text, text};
 
+use hysid_files::Kind;
+
+use super::Experiment;
 use crate::page::number;
+use crate::plot;
 
 /// The result of an experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,6 +82,45 @@ pub struct Target {
     pub measured: Cell,
     /// Was it reached?
     pub is_met: bool,
+}
+
+impl Chapter {
+    /// True for a chapter as this experiment makes them. One that was stored may have been changed in its file, and
+    /// drawings and names of files are used as they are.
+    pub fn is_sound(&self, experiment: Experiment) -> bool {
+        let drawings: Vec<&str> = self.parts.iter().flat_map(Part::drawings).collect();
+        let is_file = |(name, content): &(String, String)| {
+            let known = experiment.further_files().into_iter().find(|(known, _)| known == name);
+            known.is_some_and(|(_, kind)| match kind {
+                Kind::Drawing => drawings.iter().any(|drawing| plot::standalone(drawing) == *content),
+                Kind::Beginning(header) => content.as_bytes().starts_with(&header),
+                _ => false,
+            })
+        };
+        self.name == experiment.name()
+            && self.parts.iter().all(Part::is_sound)
+            && drawings.iter().all(|drawing| plot::is_drawing(drawing))
+            && self.files.iter().all(is_file)
+    }
+}
+
+impl Part {
+    fn drawings(&self) -> Vec<&str> {
+        match self {
+            Part::Figure(svg) => vec![svg],
+            Part::Figures(drawings) => drawings.iter().map(String::as_str).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn is_sound(&self) -> bool {
+        match self {
+            Part::Table(table) => {
+                !table.columns.is_empty() && table.rows.iter().all(|row| row.len() == table.columns.len())
+            }
+            _ => true,
+        }
+    }
 }
 
 impl Cell {

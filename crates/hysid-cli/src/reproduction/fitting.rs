@@ -8,7 +8,7 @@ use hysid::identification::{Request, identify};
 use hysid::network::{Family, Sizes};
 use hysid::rate::RateMethod;
 use hysid::record::Dataset;
-use hysid::training::{Fit, FitOptions, Regularisation, Trainer};
+use hysid::training::{Fit, FitOptions, Trainer};
 use hysid::warning::Significant;
 
 use super::Settings;
@@ -21,7 +21,11 @@ use crate::messages::note;
 pub const ARCHITECTURE: Sizes = Sizes { stops: 10, hidden: 20, relaxation: 4 };
 
 /// Penalties below the defaults, which are made for noise: these specimens have none.
-const REGULARISATION: Regularisation = Regularisation { ridge: 1e-8, decay: 1e-9 };
+const RIDGE: f64 = 1e-8;
+const DECAY: f64 = 1e-9;
+
+/// Share of the training data that is held out to validate a fit.
+const HELD_OUT: f64 = 0.25;
 
 /// Random starts, and Levenberg-Marquardt iterations of each.
 const EFFORT: (usize, usize) = (8, 200);
@@ -42,7 +46,9 @@ pub fn network(family: Family, data: &Dataset, settings: Settings) -> FitOptions
         starts,
         epochs,
         seed: settings.seed,
-        regularisation: REGULARISATION,
+        validation: Some(HELD_OUT),
+        ridge: Some(RIDGE),
+        decay: Some(DECAY),
         ..FitOptions::of(Trainer::LevenbergMarquardt)
     }
 }

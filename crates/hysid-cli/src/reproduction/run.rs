@@ -1,15 +1,15 @@
 //! Experiments side by side, those that were finished before taken up again; and the pages made of them.
 
 use std::collections::VecDeque;
-use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use hysid_files::Destination;
 
 use super::chapter::{self, Chapter};
 use super::storage::{self, Finished};
-use super::{Experiment, Settings, date};
+use super::{Experiment, Outputs, Settings, date};
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
 
@@ -17,22 +17,27 @@ use crate::{Outcome, files, interrupt};
 const TOGETHER: &str = "reproduction";
 
 /// Runs all experiments and writes a page of all of them.
-pub fn run(experiments: &[Experiment], settings: Settings, folder: &Path) -> Result<Outcome> {
+pub fn run(experiments: &[Experiment], settings: Settings, outputs: Outputs) -> Result<Outcome> {
     let everything = experiments.is_empty();
     let experiments: Vec<Experiment> =
         if everything { Experiment::all().collect() } else { experiments.to_vec() };
-    let finished = finished(&experiments, settings, folder)?;
-    for one in &finished {
-        write_one(one, settings, folder)?;
+    let together = if everything { outputs.rendered(TOGETHER).to_vec() } else { Vec::new() };
+    let mut destinations: Vec<_> = experiments.iter().flat_map(|&one| outputs.of(one)).collect();
+    destinations.extend(together);
+    files::check_outputs(&destinations.iter().collect::<Vec<_>>(), &[])?;
+    let finished = finished(&experiments, settings, outputs)?;
+    for (experiment, one) in &finished {
+        write_one(*experiment, one, settings, outputs)?;
     }
+    let finished: Vec<Finished> = finished.into_iter().map(|(_, one)| one).collect();
     if everything && !finished.is_empty() {
-        write_together(&finished, settings, folder)?;
+        write_together(&finished, settings, outputs)?;
     } else {
         let texts: Vec<String> = finished
             .iter()
             .map(|one| {
-                let page = folder.join(format!("{}.html", one.chapter.name));
-                format!("{}\npage    {}\n", chapter::text(&one.chapter), files::shown(&page))
+                let page = outputs.page(&one.chapter.name);
+                format!("{}\npage    {}\n", chapter::text(&one.chapter), files::shown(page.path()))
             })
             .collect();
         results(&texts.join("\n"))?;
@@ -41,9 +46,13 @@ pub fn run(experiments: &[Experiment], settings: Settings, folder: &Path) -> Res
 }
 
 /// All that is finished in the end, in their order.
-fn finished(experiments: &[Experiment], settings: Settings, folder: &Path) -> Result<Vec<Finished>> {
+fn finished(
+    experiments: &[Experiment],
+    settings: Settings,
+    outputs: Outputs,
+) -> Result<Vec<(Experiment, Finished)>> {
     let places: Mutex<Vec<Option<Finished>>> = Mutex::new(
-        experiments.iter().map(|&experiment| storage::find(folder, experiment, settings)).collect(),
+        experiments.iter().map(|&experiment| storage::find(outputs, experiment, settings)).collect(),
     );
     let mut left = VecDeque::new();
     for (place, &experiment) in experiments.iter().enumerate() {
@@ -51,7 +60,7 @@ fn finished(experiments: &[Experiment], settings: Settings, folder: &Path) -> Re
             Some(_) => note(format_args!(
                 "{}: finished before, taken from {} (delete it to run it again)",
                 experiment.name(),
-                files::shown(&storage::path(folder, experiment.name()))
+                files::shown(outputs.stored(experiment.name()).path())
             )),
             // The long ones come last on the page and first here, so that no thread waits for them.
             None => left.push_front((place, experiment)),
@@ -71,7 +80,7 @@ fn finished(experiments: &[Experiment], settings: Settings, folder: &Path) -> Re
             let Some(chapter) = pool.install(|| experiment.chapter(settings))? else { break };
             let seconds = began.elapsed().as_secs_f64();
             let one = Finished::new(settings, date::today(), seconds, chapter);
-            one.keep(folder)?;
+            one.keep(outputs)?;
             let mut places = places.lock().expect("no thread panics with the lock");
             places[place] = Some(one);
             let done = places.iter().flatten().count();
@@ -83,7 +92,8 @@ fn finished(experiments: &[Experiment], settings: Settings, folder: &Path) -> Re
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
         workers.into_iter().try_for_each(|worker| worker.join().expect("a worker does not panic"))
     })?;
-    Ok(places.into_inner().expect("all threads are done").into_iter().flatten().collect())
+    let places = places.into_inner().expect("all threads are done").into_iter();
+    Ok(experiments.iter().zip(places).filter_map(|(&experiment, one)| Some((experiment, one?))).collect())
 }
 
 /// When, by what and how these were made.
@@ -101,41 +111,40 @@ fn made(finished: &[Finished], settings: Settings) -> String {
 }
 
 /// Page, Markdown, CSV and further files of an experiment.
-fn write_one(one: &Finished, settings: Settings, folder: &Path) -> Result<()> {
+fn write_one(experiment: Experiment, one: &Finished, settings: Settings, outputs: Outputs) -> Result<()> {
     let chapter = &one.chapter;
     let made = made(std::slice::from_ref(one), settings);
-    write_all(
-        folder,
-        &chapter.name,
-        &chapter::capitalised(&chapter.title),
-        &made,
-        std::slice::from_ref(chapter),
-    )?;
+    let title = chapter::capitalised(&chapter.title);
+    write_all(outputs.rendered(experiment.name()), &title, &made, std::slice::from_ref(chapter))?;
     for (name, content) in &chapter.files {
-        files::write(&folder.join(name), content.as_bytes())?;
+        if let Some(destination) = outputs.further(experiment, name) {
+            files::write(&destination, content.as_bytes())?;
+        }
     }
     Ok(())
 }
 
 /// The same of all experiments.
-fn write_together(finished: &[Finished], settings: Settings, folder: &Path) -> Result<()> {
+fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -> Result<()> {
     let chapters: Vec<Chapter> = finished.iter().map(|one| one.chapter.clone()).collect();
     let mut made = made(finished, settings);
     let all = Experiment::all().count();
     if chapters.len() < all {
         made += &format!(" Interrupted: {} of {all} experiments.", chapters.len());
     }
-    write_all(folder, TOGETHER, "The paper reproduced", &made, &chapters)?;
+    write_all(outputs.rendered(TOGETHER), "The paper reproduced", &made, &chapters)?;
     let targets = chapter::targets(&chapters).map(|table| chapter::table_text(&table) + "\n\n");
-    let page = files::shown(&folder.join(format!("{TOGETHER}.html")));
+    let page = files::shown(outputs.page(TOGETHER).path());
     results(&(targets.unwrap_or_default() + &format!("page    {page}\n")))
 }
 
-fn write_all(folder: &Path, name: &str, title: &str, made: &str, chapters: &[Chapter]) -> Result<()> {
-    let write = |ending: &str, content: String| {
-        files::write(&folder.join(format!("{name}.{ending}")), content.as_bytes())
-    };
-    write("html", chapter::html(title, made, chapters))?;
-    write("md", chapter::markdown(title, made, chapters))?;
-    write("csv", chapter::csv(chapters))
+fn write_all(
+    [page, markdown, tables]: [Destination; 3],
+    title: &str,
+    made: &str,
+    chapters: &[Chapter],
+) -> Result<()> {
+    files::write(&page, chapter::html(title, made, chapters).as_bytes())?;
+    files::write(&markdown, chapter::markdown(title, made, chapters).as_bytes())?;
+    files::write(&tables, chapter::csv(chapters).as_bytes())
 }

@@ -1,13 +1,12 @@
 //! Finished experiments as files `NAME.json` of a folder, so that they need not be run again.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 
 use super::chapter::Chapter;
-use super::{Experiment, Settings};
+use super::{Experiment, Outputs, Settings};
 use crate::files;
 
 /// A finished experiment and how it was made.
@@ -31,24 +30,19 @@ impl Finished {
         Self { version: env!("CARGO_PKG_VERSION").into(), seed, quick, date, seconds, chapter }
     }
 
-    /// Stores it.
-    pub fn keep(&self, folder: &Path) -> Result<()> {
+    /// Stores it. It took long to make: if it cannot be written there, it is put elsewhere, and the error says where.
+    pub fn keep(&self, outputs: Outputs) -> Result<()> {
         let text = serde_json::to_string(self)?;
-        files::write(&path(folder, &self.chapter.name), text.as_bytes())
+        files::write_or_rescue(&outputs.stored(&self.chapter.name), "finished experiment", text.as_bytes())
     }
 }
 
 /// An experiment that was finished earlier by this version with the same settings; anything else there is
 /// none.
-pub fn find(folder: &Path, experiment: Experiment, settings: Settings) -> Option<Finished> {
-    let text = fs::read_to_string(path(folder, experiment.name())).ok()?;
+pub fn find(outputs: Outputs, experiment: Experiment, settings: Settings) -> Option<Finished> {
+    let text = fs::read_to_string(outputs.stored(experiment.name()).path()).ok()?;
     let found: Finished = serde_json::from_str(&text).ok()?;
     let Settings { seed, quick } = settings;
     let is_same = found.version == env!("CARGO_PKG_VERSION") && (found.seed, found.quick) == (seed, quick);
-    is_same.then_some(found)
-}
-
-/// Where an experiment is stored.
-pub fn path(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.json"))
+    (is_same && found.chapter.is_sound(experiment)).then_some(found)
 }

@@ -18,6 +18,7 @@ use super::Settings;
 use super::chapter::Chapter;
 use crate::interrupt;
 use crate::messages::note;
+pub use page::further_files;
 
 /// Stands in for the paper's second example, on which it compares the trainers.
 const SPECIMEN: &str = "reinforced-concrete-joint";

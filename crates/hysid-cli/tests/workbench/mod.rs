@@ -70,6 +70,15 @@ impl Workbench {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
+    /// Names of the files in a folder of the workbench, in order.
+    pub fn files(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(folder)).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
     /// The program, to be run in the folder.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hysid"));

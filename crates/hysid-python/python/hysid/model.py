@@ -183,31 +183,28 @@ class Model:
         """
         return cls(_hysid.Model.from_json(text))
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the model file; an old one at this place survives a failed write.
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Write the model file.
+
+        The file is written beside its place and renamed, so an old file survives a failed write. A model that is
+        there already and differs is kept as ``NAME.bak``. Links are followed, permissions are kept, and pipes and
+        devices are written through.
 
         Parameters
         ----------
         path : path
             The file; it can be read by the program `hysid` too.
-        """
-        # Looked for here: it is slow to import, and only this method needs it.
-        import tempfile
+        force : bool
+            Replace a file even if it is not a model file of Hysid.
 
-        folder, name = os.path.split(os.path.abspath(path))
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", newline="", dir=folder, prefix=f".{name}.", delete=False
-        ) as file:
-            try:
-                file.write(self.to_json())
-                file.flush()
-                os.fsync(file.fileno())
-            except BaseException:
-                file.close()
-                os.unlink(file.name)
-                raise
-        _readable(file.name)
-        os.replace(file.name, path)
+        Raises
+        ------
+        FileExistsError
+            There is a file already that is not a model file of Hysid, and `force` is False.
+        OSError
+            The file cannot be written.
+        """
+        self._native.save(path, force)
 
     def to_json(self) -> str:
         """Give the text of the model file.
@@ -543,10 +540,3 @@ def _members(
             yield who, path, *shares
         else:
             yield from _members(who, path, *shares)
-
-
-def _readable(path: str) -> None:
-    """Give a temporary file the permissions of any new file."""
-    mask = os.umask(0)
-    os.umask(mask)
-    os.chmod(path, 0o666 & ~mask)

@@ -2,6 +2,8 @@
 //! seeing the input that may serve it. The list depends on what the data have (time, further inputs) and
 //! on what the user has decided, never on the numbers in them.
 
+use std::borrow::Cow;
+
 use crate::automatic::AutoOptions;
 use crate::classical::identification::{ClassicalOptions, Rival};
 use crate::identification::{ModelName, Request};
@@ -9,6 +11,7 @@ use crate::network::{Family, Sizes};
 use crate::preprocessing::Shaping;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::training::options::ENSEMBLE_PENALTIES;
 use crate::training::{FitOptions, Regularisation};
 
 /// Candidates of one kind, which agree among themselves before they answer.
@@ -47,8 +50,10 @@ const COMPANDING: [f64; 2] = [0.1, 0.02];
 /// Scale of the companding of the rate.
 const RATE_COMPANDING: f64 = 0.1;
 
-/// Penalties of networks that answer together. Chosen on measured and generated cases: docs/accuracy.md.
-const PENALTIES: Regularisation = Regularisation { ridge: 3e-4, decay: 1e-7 };
+/// Penalties that the best networks are tried with too: those of a single fit, and as good as none, for data
+/// without noise.
+const OTHER_PENALTIES: [Regularisation; 2] =
+    [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
 /// Epochs of a network. As above.
 const EPOCHS: usize = 25;
@@ -58,8 +63,16 @@ const EPOCHS: usize = 25;
 const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
 const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 
-/// Starts of a search that is repeated on every fold.
-const STARTS_OF_JILES_ATHERTON: usize = 3;
+/// Starts of a search that is repeated on every fold, and rows with an output that it is fitted to at most.
+const STARTS_OF_A_SEARCH: usize = 4;
+const ROWS_OF_A_SEARCH: usize = 1500;
+
+/// Starts and epochs of a search that only tells whether a law is worth more.
+const STARTS_IN_HASTE: usize = 2;
+const EPOCHS_IN_HASTE: usize = 12;
+
+/// Stops of a candidate that is quickly fitted.
+const QUICK_STOPS: usize = 60;
 
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 3000;
@@ -86,6 +99,11 @@ impl Candidate {
         warmed
     }
 
+    /// What is asked for.
+    pub fn asked(&self) -> &Request {
+        &self.request
+    }
+
     /// What is asked for, for a start of its own.
     pub fn request(&self, start: usize) -> Request {
         let mut request = self.request.clone();
@@ -107,63 +125,111 @@ impl Candidate {
         }
     }
 
+    /// The same network with other penalties; none for what is no network.
+    pub fn with_other_penalties(&self) -> Vec<Self> {
+        let Request::Network(options) = &self.request else { return Vec::new() };
+        let with = |Regularisation { ridge, decay }| {
+            let options = FitOptions { ridge: Some(ridge), decay: Some(decay), ..options.clone() };
+            Self { kind: self.kind, request: Request::Network(options) }
+        };
+        OTHER_PENALTIES.map(with).into()
+    }
+
+    /// True for a law whose parameters are searched.
+    pub fn is_searched(&self) -> bool {
+        matches!(&self.request, Request::Classical(options) if options.model.is_searched())
+    }
+
+    /// The same searched from few starts in few epochs.
+    pub fn in_haste(&self) -> Self {
+        let mut hasty = self.clone();
+        if let Request::Classical(options) = &mut hasty.request {
+            (options.starts, options.epochs) = (Some(STARTS_IN_HASTE), Some(EPOCHS_IN_HASTE));
+        }
+        hasty
+    }
+
+    /// The rows that it is fitted to: all, or some of many. The memory runs through all.
+    pub fn rows_of<'d>(&self, data: &'d Dataset) -> Cow<'d, Dataset> {
+        if self.is_searched() && data.scored() > ROWS_OF_A_SEARCH {
+            return Cow::Owned(data.thinned(ROWS_OF_A_SEARCH));
+        }
+        Cow::Borrowed(data)
+    }
+
     /// What it is, in a few words.
     pub fn name(&self) -> String {
-        let (shaping, deterioration) = match &self.request {
-            Request::Network(options) => {
-                (options.shaping, Some(!options.no_deterioration && options.model != Family::PreisachNn))
-            }
-            Request::Classical(options) => (options.shaping, options.deterioration),
-            Request::Auto(_) => (Shaping::default(), None),
-        };
-        let mut name = self.request.model().name().to_string();
-        let mut with = Vec::new();
-        if deterioration == Some(true) {
-            with.push("deterioration".to_string());
-        }
-        if self.request.rate().is_some() {
-            with.push("rate".into());
-        }
-        if matches!(&self.request, Request::Network(options) if options.sizes.relaxation > 0) {
-            with.push("relaxation".into());
-        }
-        if let Some(share) = shaping.companding {
-            with.push(format!("input companded {share}"));
-        }
-        if let Some(share) = shaping.rate_companding {
-            with.push(format!("rate companded {share}"));
-        }
-        if shaping.history {
-            with.push("history".into());
-        }
-        if matches!(&self.request, Request::Classical(options) if options.hidden.is_some_and(|hidden| hidden > 0))
-        {
-            with.push("tanh layer".into());
-        }
-        if !with.is_empty() {
-            name += &format!(" ({})", with.join(", "));
-        }
-        name
+        self.request.label()
     }
 }
 
-/// All candidates for data like these.
-pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
-    let rate = options.rate;
-    let timed = rate.is_some();
-    let mut all: Vec<Candidate> = Vec::new();
-    let mut add = |kind, request| all.push(Candidate { kind, request });
+/// A candidate that takes a moment to fit: few random stops.
+pub(super) fn quick(options: &AutoOptions) -> Candidate {
+    let request = Request::Classical(ClassicalOptions {
+        rate: options.rate,
+        deterioration: Some(options.deterioration.unwrap_or(true)),
+        operators: Some(QUICK_STOPS),
+        hidden: Some(0),
+        seed: options.seed,
+        ..ClassicalOptions::of(Rival::RandomStops)
+    });
+    Candidate { kind: Kind::RandomStops, request }
+}
 
+/// All candidates for data like these: those that are usually good or quick before the others.
+pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    let mut networks = networks(options).into_iter().map(Request::Network);
+    let mut random = random_stops(options).into_iter().map(Request::Classical);
+    let mut linear = linear_laws(options).into_iter().map(Request::Classical);
+    let of = |kind| move |request| Candidate { kind, request };
+    let mut all = Vec::new();
+    // A network and a quick one at a time.
+    loop {
+        let network = networks.next().map(of(Kind::Networks));
+        let law = linear.next().map(of(Kind::Classical));
+        let stops = random.next().map(of(Kind::RandomStops));
+        let next: Vec<Candidate> = network.into_iter().chain(law).chain(stops).collect();
+        if next.is_empty() {
+            break;
+        }
+        all.extend(next);
+    }
+    all.extend(searched_laws(options).into_iter().map(Request::Classical).map(of(Kind::Classical)));
+    all.retain(|candidate| options.allows(candidate, data));
+    all
+}
+
+fn companded(share: f64) -> Shaping {
+    Shaping { companding: Some(share), ..Shaping::default() }
+}
+
+/// Networks, with the ways of seeing the input that may serve them.
+fn networks(options: &AutoOptions) -> Vec<FitOptions> {
+    use Family::{PreisachNn, Xpnn, XpnnPlus};
     let as_it_is = Shaping::default();
-    let [tenth, fiftieth] = COMPANDING.map(|share| Shaping { companding: Some(share), ..as_it_is });
+    let [tenth, fiftieth] = COMPANDING.map(companded);
     let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
     let both = Shaping { rate_companding: Some(RATE_COMPANDING), ..tenth };
     let history = Shaping { history: true, ..as_it_is };
-
-    use Family::{PreisachNn, Xpnn, XpnnPlus};
-    let network = |model, deterioration, shaping, rate, relaxation| {
-        Request::Network(of_network(options, model, deterioration, shaping, rate, relaxation))
+    let mut networks = Vec::new();
+    let mut add = |model, deterioration, shaping, rate, relaxation| {
+        networks.push(of_network(options, model, deterioration, shaping, rate, relaxation));
     };
+    let rate = options.rate;
+    if rate.is_some() {
+        for (model, deterioration, shaping, relaxation) in [
+            (XpnnPlus, true, as_it_is, 0),
+            (XpnnPlus, true, as_it_is, 4),
+            (XpnnPlus, false, rate_tenth, 0),
+            (XpnnPlus, false, rate_tenth, 4),
+            (Xpnn, true, as_it_is, 0),
+            (XpnnPlus, true, rate_tenth, 0),
+            (Xpnn, false, rate_tenth, 0),
+            (XpnnPlus, false, both, 0),
+        ] {
+            add(model, deterioration, shaping, rate, relaxation);
+        }
+    }
     for (model, deterioration, shaping) in [
         (XpnnPlus, true, as_it_is),
         (XpnnPlus, false, as_it_is),
@@ -172,71 +238,87 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         (XpnnPlus, false, tenth),
         (Xpnn, true, tenth),
     ] {
-        add(Kind::Networks, network(model, deterioration, shaping, None, 0));
+        add(model, deterioration, shaping, None, 0);
     }
-    if timed {
-        for (model, deterioration, shaping, relaxation) in [
-            (XpnnPlus, true, as_it_is, 0),
-            (XpnnPlus, true, as_it_is, 4),
-            (Xpnn, true, as_it_is, 0),
-            (XpnnPlus, false, rate_tenth, 0),
-            (XpnnPlus, false, rate_tenth, 4),
-            (XpnnPlus, true, rate_tenth, 0),
-            (Xpnn, false, rate_tenth, 0),
-            (XpnnPlus, false, both, 0),
-        ] {
-            add(Kind::Networks, network(model, deterioration, shaping, rate, relaxation));
-        }
-    } else {
-        add(Kind::Networks, network(XpnnPlus, false, fiftieth, None, 0));
-        add(Kind::Networks, network(XpnnPlus, true, history, None, 0));
+    if rate.is_none() {
+        add(XpnnPlus, false, fiftieth, None, 0);
+        add(XpnnPlus, true, history, None, 0);
     }
+    networks
+}
 
-    let random_stops = |shaping, rate, deterioration, (stops, hidden)| {
-        Request::Classical(ClassicalOptions {
-            rate,
-            shaping,
-            deterioration: Some(deterioration),
-            operators: Some(options.operators.unwrap_or(stops)),
-            hidden: Some(hidden),
-            seed: options.seed,
-            ..ClassicalOptions::of(Rival::RandomStops)
-        })
-    };
+/// Networks whose stops are not trained.
+fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let as_it_is = Shaping::default();
+    let tenth = companded(COMPANDING[0]);
+    let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
     let (linear, layered) = (LINEAR_RANDOM_STOPS, LAYERED_RANDOM_STOPS);
-    let mut random = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
-    if timed {
-        random.extend([(rate_tenth, rate, false, linear), (as_it_is, rate, true, layered)]);
-    } else {
-        random.extend([(as_it_is, None, true, linear), (as_it_is, None, true, layered)]);
-    }
-    for (shaping, rate, deterioration, sizes) in random {
-        add(Kind::RandomStops, random_stops(shaping, rate, deterioration, sizes));
-    }
-
-    let classical = |model, shaping| {
-        let operators = options.operators;
-        Request::Classical(ClassicalOptions { shaping, operators, ..ClassicalOptions::of(model) })
+    let rate = options.rate;
+    let mut all = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
+    all.extend(match rate.is_some() {
+        true => [(rate_tenth, rate, false, linear), (as_it_is, rate, true, layered)],
+        false => [(as_it_is, None, true, linear), (as_it_is, None, true, layered)],
+    });
+    let of = |(shaping, rate, deterioration, (stops, hidden))| ClassicalOptions {
+        rate,
+        shaping,
+        deterioration: Some(deterioration),
+        operators: Some(options.operators.unwrap_or(stops)),
+        hidden: Some(hidden),
+        seed: options.seed,
+        ..ClassicalOptions::of(Rival::RandomStops)
     };
-    for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
-        for shaping in [as_it_is, tenth, fiftieth] {
-            add(Kind::Classical, classical(model, shaping));
+    all.into_iter().map(of).collect()
+}
+
+/// A law with what the user has decided of laws.
+fn of_law(options: &AutoOptions, model: Rival) -> ClassicalOptions {
+    ClassicalOptions {
+        operators: options.operators,
+        epochs: options.epochs,
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    }
+}
+
+/// The laws that follow by linear least squares.
+fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let [tenth, fiftieth] = COMPANDING.map(companded);
+    let mut laws = Vec::new();
+    for shaping in [Shaping::default(), tenth, fiftieth] {
+        for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
+            laws.push(ClassicalOptions { shaping, ..of_law(options, model) });
         }
     }
-    if !timed {
-        let starts = Some(STARTS_OF_JILES_ATHERTON);
-        add(
-            Kind::Classical,
-            Request::Classical(ClassicalOptions {
-                starts,
-                epochs: options.epochs,
-                seed: options.seed,
-                ..ClassicalOptions::of(Rival::JilesAtherton)
-            }),
-        );
+    laws.extend([Rival::PrandtlIshlinskii, Rival::Masing].map(|model| of_law(options, model)));
+    laws
+}
+
+/// The laws that are searched, each in all its variants.
+fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let starts = Some(STARTS_OF_A_SEARCH);
+    let searched = |model| ClassicalOptions { starts, ..of_law(options, model) };
+    let bouc_wen = |rate, degradation| ClassicalOptions { rate, degradation, ..searched(Rival::BoucWen) };
+    let mut laws = vec![searched(Rival::GeneralizedPrandtlIshlinskii)];
+    laws.extend([false, true].map(|degradation| bouc_wen(None, degradation)));
+    laws.extend(
+        [false, true].map(|differential_form| ClassicalOptions {
+            differential_form,
+            ..searched(Rival::JilesAtherton)
+        }),
+    );
+    laws.push(searched(Rival::NeuroMadelung));
+    let rate = options.rate;
+    if rate.is_some() {
+        laws.extend([false, true].map(|degradation| bouc_wen(rate, degradation)));
+        laws.extend([false, true].map(|logarithmic_thresholds| ClassicalOptions {
+            rate,
+            logarithmic_thresholds,
+            ..searched(Rival::RateDependentPrandtlIshlinskii)
+        }));
+        laws.push(ClassicalOptions { rate, ..searched(Rival::NeuroMadelung) });
     }
-    all.retain(|candidate| options.allows(candidate, data));
-    all
+    laws
 }
 
 fn of_network(
@@ -261,7 +343,8 @@ fn of_network(
         starts: 1,
         epochs: options.epochs.unwrap_or(EPOCHS),
         seed: options.seed,
-        regularisation: PENALTIES,
+        ridge: Some(options.ridge.unwrap_or(ENSEMBLE_PENALTIES.ridge)),
+        decay: Some(options.decay.unwrap_or(ENSEMBLE_PENALTIES.decay)),
         thin: THIN,
         ..FitOptions::default()
     }
@@ -273,7 +356,9 @@ impl AutoOptions {
         let request = &candidate.request;
         let (shaping, deteriorates) = match request {
             Request::Network(options) => (options.shaping, !options.no_deterioration),
-            Request::Classical(options) => (options.shaping, options.deterioration == Some(true)),
+            Request::Classical(options) => {
+                (options.shaping, options.deterioration == Some(true) || options.degradation)
+            }
             Request::Auto(_) => return false,
         };
         let is_network = matches!(request, Request::Network(_));

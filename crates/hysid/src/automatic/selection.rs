@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::automatic::choice::Score;
-use crate::automatic::jury::Jury;
-use crate::automatic::trials::Judge;
+use crate::automatic::combination::Combination;
+use crate::automatic::score::Score;
+use crate::automatic::trial::{HeldOut, Trial};
+use crate::automatic::warm_up::WarmUp;
 use crate::model::Weights;
 use crate::warning::Significant;
 
@@ -14,11 +15,24 @@ use crate::warning::Significant;
 pub struct Selection {
     /// What was held out, fold by fold, in words.
     pub folds: Vec<String>,
-    /// Error of all together, in percent of the standard deviation: geometric mean over the folds, of rows
+    /// Error of the ensemble, in percent of the standard deviation: geometric mean over the folds, of rows
     /// inside the trained range and of rows beyond it (theory.md 11.5).
     pub error_percent: (f64, f64),
     /// The candidates, the best of each kind first.
     pub candidates: Vec<CandidateResult>,
+    /// How a single model came about; `None` for an ensemble.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub single: Option<SingleModel>,
+    /// Rows at the beginning of each record that were not trained on; `None` if there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm_up: Option<WarmUp>,
+    /// All reversals of the first input lie at the ends of its range: the data cannot tell candidates apart
+    /// inside the loop. The weights then also use how candidates did on generated cases, and the band is wider.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub one_loop: bool,
+    /// Candidates that were dropped early, because they stayed far behind the best.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dropped: Vec<String>,
 }
 
 /// How a candidate did.
@@ -29,92 +43,113 @@ pub struct CandidateResult {
     pub name: String,
     /// Its kind.
     pub kind: String,
-    /// Its error, as that of all together.
+    /// Its error, as that of the ensemble.
     pub error_percent: (f64, f64),
     /// What it counts in the whole, as a share of all.
     pub share: Weights,
     /// Fits of it in the model.
     pub members: usize,
-    /// Error of all together without it; `None` if it does not count.
+    /// Error of the ensemble without it; `None` if it does not count.
     pub without_percent: Option<(f64, f64)>,
 }
 
-fn percent(score: Score) -> (f64, f64) {
-    (100.0 * score.inside.exp(), 100.0 * score.outside.exp())
+/// A single model that was asked for, and how it was chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SingleModel {
+    /// The candidate that it is a fit of.
+    pub name: String,
+    /// True if it was distilled from the ensemble, false if it was fitted to the data alone.
+    pub distilled: bool,
+    /// Error of a distilled model on data held out, as that of the ensemble; `None` if none was made.
+    pub distilled_percent: Option<(f64, f64)>,
+    /// Error of the best candidate fitted to the data alone, from one start, as that of the ensemble.
+    pub plain_percent: (f64, f64),
 }
 
 impl Selection {
-    /// Of a jury of which so many members answer, at most.
-    pub(super) fn of(jury: &Jury, judges: &[Judge], most: usize) -> Self {
-        let kept = jury.members_kept(most);
-        let score = |without: Option<(usize, usize)>| {
-            let foretold: Vec<Vec<f64>> =
-                judges.iter().enumerate().map(|(fold, judge)| jury.foretold(fold, judge, without)).collect();
-            percent(Score::of(&foretold, judges))
+    /// Of a combination of which so many members of each candidate are kept.
+    pub(super) fn of(trials: &[Trial], folds: &[HeldOut], combination: &Combination, kept: &[usize]) -> Self {
+        let shares = combination.shares();
+        let without = |place: usize| {
+            let others = combination.only(|other| other != place)?;
+            Some(others.score(trials, folds).percent())
         };
-        let sum = |weight: fn(&Weights) -> f64, of: &mut dyn Iterator<Item = Weights>| -> f64 {
-            of.map(|weights| weight(&weights)).sum::<f64>().max(f64::MIN_POSITIVE)
+        let result = |(place, trial): (usize, &Trial)| {
+            let share = shares.iter().find(|(other, _)| *other == place).map(|(_, share)| *share);
+            CandidateResult {
+                name: trial.candidate.name(),
+                kind: trial.candidate.kind.name().into(),
+                error_percent: Score::of(&trial.predicted, folds, |_| true).percent(),
+                share: share.unwrap_or(Weights { inside: 0.0, outside: 0.0 }),
+                members: kept[place],
+                without_percent: share.and_then(|_| without(place)),
+            }
         };
-        let voices = jury.panels.iter().map(|panel| panel.voices().count()).sum::<usize>();
-        let kinds = (
-            sum(|weights| weights.inside, &mut jury.weights.iter().copied()),
-            sum(|weights| weights.outside, &mut jury.weights.iter().copied()),
-        );
-        let mut candidates = Vec::new();
-        for (place, (panel, kind)) in jury.panels.iter().zip(&jury.weights).enumerate() {
-            let inside = sum(|weights| weights.inside, &mut panel.panelists.iter().map(|one| one.weights));
-            let outside = sum(|weights| weights.outside, &mut panel.panelists.iter().map(|one| one.weights));
-            let mut of_kind: Vec<CandidateResult> = panel
-                .panelists
-                .iter()
-                .enumerate()
-                .map(|(of_panel, panelist)| CandidateResult {
-                    name: panelist.candidate.name(),
-                    kind: panel.kind.name().into(),
-                    error_percent: percent(panelist.score),
-                    share: Weights {
-                        inside: kind.inside / kinds.0 * panelist.weights.inside / inside,
-                        outside: kind.outside / kinds.1 * panelist.weights.outside / outside,
-                    },
-                    members: kept.iter().filter(|one| **one == (place, of_panel)).count(),
-                    without_percent: (panelist.counts() && voices > 1)
-                        .then(|| score(Some((place, of_panel)))),
-                })
-                .collect();
-            of_kind.sort_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0));
-            candidates.extend(of_kind);
+        let tried = trials.iter().enumerate().filter(|(_, trial)| trial.is_complete());
+        let mut candidates: Vec<CandidateResult> = tried.map(result).collect();
+        let kinds: Vec<String> =
+            shares.iter().map(|(place, _)| trials[*place].candidate.kind.name().into()).collect();
+        let of_kind = |kind: &String| kinds.iter().position(|other| other == kind).unwrap_or(kinds.len());
+        candidates.sort_by(|a, b| {
+            let by_kind = of_kind(&a.kind).cmp(&of_kind(&b.kind)).then(a.kind.cmp(&b.kind));
+            by_kind.then(a.error_percent.0.total_cmp(&b.error_percent.0))
+        });
+        Self {
+            folds: folds.iter().map(|fold| fold.fold.name.clone()).collect(),
+            error_percent: combination.score(trials, folds).percent(),
+            candidates,
+            single: None,
+            warm_up: None,
+            one_loop: false,
+            dropped: Vec::new(),
         }
-        let folds = judges.iter().map(|judge| judge.fold.name.clone()).collect();
-        Self { folds, error_percent: score(None), candidates }
     }
 
     /// What was chosen and why, in two lines.
     pub fn summary(&self) -> [String; 2] {
+        let mut kinds: Vec<&str> = self.candidates.iter().map(|one| one.kind.as_str()).collect();
+        kinds.dedup();
+        [self.chosen(&kinds), self.why(&kinds)]
+    }
+
+    fn chosen(&self, kinds: &[&str]) -> String {
+        if let Some(SingleModel { name, distilled, .. }) = &self.single {
+            return match distilled {
+                true => format!("one {name}, distilled from the ensemble"),
+                false => format!("one {name}, fitted to the data alone"),
+            };
+        }
         let count = |kind: &str| -> usize {
             self.candidates.iter().filter(|one| one.kind == kind).map(|one| one.members).sum()
         };
-        let mut kinds: Vec<&str> = self.candidates.iter().map(|one| one.kind.as_str()).collect();
-        kinds.dedup();
-        let parts: Vec<String> = kinds
-            .iter()
-            .filter(|kind| count(kind) > 0)
-            .map(|kind| format!("{} {kind}", count(kind)))
-            .collect();
+        let parts = kinds.iter().filter(|kind| count(kind) > 0);
+        let parts: Vec<String> = parts.map(|kind| format!("{} {kind}", count(kind))).collect();
         let most = self.candidates.iter().max_by(|a, b| a.share.inside.total_cmp(&b.share.inside));
-        let leading = most.map_or_else(String::new, |one| format!("; most counts {}", one.name));
-        let best_of = |kind: &&str| {
-            let of_kind = self.candidates.iter().filter(|one| one.kind == **kind);
-            let best = of_kind.min_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0))?;
-            Some(format!("{} {:.3} %", best.name, Significant(best.error_percent.0)))
+        let leading = most.map_or_else(String::new, |one| format!("; the largest weight has {}", one.name));
+        format!("the weighted median of {}{leading}", parts.join(", "))
+    }
+
+    fn why(&self, kinds: &[&str]) -> String {
+        let percent = |error: (f64, f64)| format!("{:.3} %", Significant(error.0));
+        let ensemble = format!("the ensemble {}", percent(self.error_percent));
+        let errors = match &self.single {
+            Some(SingleModel { distilled_percent, plain_percent, .. }) => {
+                let distilled =
+                    distilled_percent.map(|error| format!("a distilled model {}", percent(error)));
+                let plain = format!("the best single fit {}", percent(*plain_percent));
+                distilled.into_iter().chain([plain, ensemble]).collect::<Vec<String>>().join(", ")
+            }
+            None => {
+                let best_of = |kind: &&str| {
+                    let of_kind = self.candidates.iter().filter(|one| one.kind == **kind);
+                    let best = of_kind.min_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0))?;
+                    Some(format!("{} {}", best.name, percent(best.error_percent)))
+                };
+                let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
+                format!("{ensemble}; alone {}", bests.join(", "))
+            }
         };
-        let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
-        [
-            format!("the weighted median of {}{leading}", parts.join(", ")),
-            format!(
-                "on data held out {:.3} % of std; alone {}",
-                Significant(self.error_percent.0),
-                bests.join(", ")
-            ),
-        ]
+        format!("cross-validated error, geometric mean of {} folds, in % of std: {errors}", self.folds.len())
     }
 }

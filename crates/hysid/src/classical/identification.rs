@@ -21,7 +21,7 @@ use crate::classical::rate_dependent_prandtl_ishlinskii::{
 };
 use crate::classical::search::{Identified, SearchObserver};
 use crate::error::{Error, Result};
-use crate::preprocessing::Shaping;
+use crate::preprocessing::{Origin, Shaping};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::training::Termination;
@@ -103,6 +103,12 @@ impl Rival {
     /// True if it takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         self == Rival::RandomStops
+    }
+
+    /// From where the input is measured. A field of 0 is part of the law of Jiles and Atherton; all other laws
+    /// are the same wherever the input is.
+    pub(crate) fn origin(self) -> Origin {
+        if self == Rival::JilesAtherton { Origin::Zero } else { Origin::OfData }
     }
 
     /// True if it is found by a search from several starts; otherwise by linear least squares.

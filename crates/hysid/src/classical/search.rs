@@ -108,7 +108,7 @@ pub struct SearchProgress {
     pub rounds: usize,
     /// Free runs of the law so far, all starts together.
     pub evaluations: usize,
-    /// Error of the best start, in percent of the output's standard deviation.
+    /// Error of the best start in a free run, in percent of the output's standard deviation; NaN while it has none.
     pub train_nrmse_percent: f64,
 }
 

@@ -50,23 +50,33 @@ pub fn samples(excitation: &Excitation<'_>, rate: Option<RateMethod>) -> Result<
 
 /// Free run of a law from its virgin state.
 pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
-    let mut state = law.virgin();
-    samples.iter().map(|sample| law.step(&mut state, *sample)).collect()
+    let mut outputs = vec![0.0; samples.len()];
+    run_on(law, &mut law.virgin(), samples, &mut outputs);
+    outputs
+}
+
+/// Free run of a law from the state that it is in.
+pub(crate) fn run_on<L: Law>(law: &L, state: &mut L::State, samples: &[Sample], outputs: &mut [f64]) {
+    outputs.iter_mut().zip(samples).for_each(|(output, sample)| *output = law.step(state, *sample));
 }
 
 /// The work of all loops, `∮ y dx`: negative where the output lags behind a growing input as that of a
 /// play does, positive for friction, whose loops are passed the other way round.
+///
+/// Each measured row counts with half the way of the input from the row before to the row behind, which is
+/// the trapezoidal rule if all rows are measured, and still the right sign if only some are.
 pub(crate) fn work(series: &[Series]) -> f64 {
     let slope = slope(series);
     let of_one = |series: &Series| -> f64 {
-        let rows = || series.samples.iter().zip(&series.output).map(|(sample, &y)| (sample.x, y));
-        let mut measured = rows().filter(|(_, y)| !y.is_nan());
+        let x = |row: usize| series.samples[row].x;
+        let last = series.samples.len().saturating_sub(1);
+        let measured = || series.output.iter().enumerate().filter(|(_, y)| !y.is_nan());
         // Without a straight line through the first row, which has no loop but leaves an area where the
         // ends of the record lie apart.
-        let Some((x_first, y_first)) = measured.next() else { return 0.0 };
-        let bent = |(x, y): (f64, f64)| y - y_first - slope * (x - x_first);
-        let areas = rows().zip(rows().skip(1)).map(|(a, b)| 0.5 * (bent(a) + bent(b)) * (b.0 - a.0));
-        areas.filter(|area| !area.is_nan()).sum()
+        let Some((first, y_first)) = measured().next() else { return 0.0 };
+        let bent = |row: usize, y: f64| y - y_first - slope * (x(row) - x(first));
+        let way = |row: usize| 0.5 * (x((row + 1).min(last)) - x(row.saturating_sub(1)));
+        measured().map(|(row, y)| bent(row, *y) * way(row)).sum()
     };
     series.iter().map(of_one).sum()
 }

@@ -221,6 +221,13 @@ impl<'a> Survey<'a> {
         self.input.1 - self.input.0
     }
 
+    /// The branches of a record.
+    pub fn of_record(&self, record: usize) -> &[Branch] {
+        let first = self.branches.partition_point(|branch| branch.record < record);
+        let count = self.branches[first..].partition_point(|branch| branch.record == record);
+        &self.branches[first..first + count]
+    }
+
     /// Rows of the turning points between branches, record by record.
     pub fn turning_rows(&self) -> Vec<Vec<usize>> {
         let mut rows = vec![Vec::new(); self.data.records().len()];

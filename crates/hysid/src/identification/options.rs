@@ -17,6 +17,7 @@ use crate::network::{Family, Sizes};
 use crate::preprocessing::Shaping;
 use crate::rate::RateMethod;
 use crate::training::genetic::POPULATIONS;
+use crate::training::options::PENALTIES;
 use crate::training::{FitOptions, Trainer};
 
 /// Numbers of neurons or operators that can be asked for.
@@ -66,8 +67,12 @@ pub struct ChosenOptions {
     pub stall: Option<usize>,
     /// Seed of all randomness.
     pub seed: Option<u64>,
-    /// Share of the data held out to choose among the starts.
+    /// Share of the data held out to validate a network on, in the place of the folds of a cross-validation.
     pub validation: Option<f64>,
+    /// Penalty on the output weights of a network.
+    pub ridge: Option<f64>,
+    /// Penalty on the weights of stops and tanh neurons.
+    pub decay: Option<f64>,
     /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops.
     pub operators: Option<usize>,
     /// Thresholds of plays in the unit of the input.
@@ -135,7 +140,17 @@ impl ChosenOptions {
             Some(share) if !(share > 0.0 && share < 1.0) => {
                 Err(Error::Option(format!("validation {share}: a number between 0 and 1 is needed")))
             }
-            _ => Ok(()),
+            _ => {
+                [("ridge", self.ridge), ("decay", self.decay)].into_iter().try_for_each(|(name, penalty)| {
+                    match penalty {
+                        Some(penalty) if !PENALTIES.contains(&penalty) => {
+                            let (low, high) = (PENALTIES.start(), PENALTIES.end());
+                            Err(Error::Option(format!("{name} {penalty}: choose {low} to {high}")))
+                        }
+                        _ => Ok(()),
+                    }
+                })
+            }
         }
     }
 
@@ -187,6 +202,8 @@ impl ChosenOptions {
             companding: self.companding.map(|share| share > 0.0),
             history: self.history,
             warm_up: self.warm_up,
+            ridge: self.ridge,
+            decay: self.decay,
             seed: self.seed.unwrap_or(defaults.seed),
             ..defaults
         }
@@ -210,7 +227,9 @@ impl ChosenOptions {
             population: self.population.unwrap_or(defaults.population),
             stall: self.stall.unwrap_or(defaults.stall),
             seed: self.seed.unwrap_or(defaults.seed),
-            validation: self.validation.unwrap_or(defaults.validation),
+            validation: self.validation,
+            ridge: self.ridge,
+            decay: self.decay,
             ..defaults
         }
     }
@@ -286,6 +305,8 @@ impl ChosenOptions {
             ("population", self.population.is_some() && (is_rival || !has.is_genetic())),
             ("stall", self.stall.is_some() && (is_rival || has == Trainer::LevenbergMarquardt)),
             ("training", is_rival && has != Trainer::default()),
+            ("ridge", self.ridge.is_some() && is_rival),
+            ("decay", self.decay.is_some() && is_rival),
             ("stops", self.stops.is_some() && is_rival),
             ("no_deterioration", asked(self.no_deterioration) && is_rival),
             ("starts", self.starts.is_some() && !searched),
@@ -405,7 +426,7 @@ mod tests {
     #[test]
     fn every_option_reaches_the_request() {
         let network = json!({ "model": "epnn", "stops": 3, "hidden": 4, "relaxation": 0, "no_deterioration": true,
-            "training": "hybrid", "starts": 2, "epochs": 7, "population": 9, "stall": 0, "seed": 5, "validation": 0.5 });
+            "training": "hybrid", "starts": 2, "epochs": 7, "population": 9, "stall": 0, "seed": 5, "validation": 0.5, "ridge": 1e-9 });
         let Request::Network(options) = chosen(network).unwrap().request(None, false) else { panic!() };
         let expected = FitOptions {
             model: Family::Xpnn,
@@ -416,7 +437,8 @@ mod tests {
             population: 9,
             stall: 0,
             seed: 5,
-            validation: 0.5,
+            validation: Some(0.5),
+            ridge: Some(1e-9),
             ..FitOptions::of(Trainer::Hybrid)
         };
         assert_eq!(options, expected);

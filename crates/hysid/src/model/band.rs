@@ -105,6 +105,12 @@ impl Band {
         Some(Self { floor, inside: of_inside, outside: of_outside, rows: (inside.len(), outside.len()) })
     }
 
+    /// The same band, so many times as wide.
+    pub(crate) fn wider(mut self, times: f64) -> Self {
+        self.inside.iter_mut().chain(&mut self.outside).for_each(|factor| *factor *= times);
+        self
+    }
+
     /// Rows held out, inside the trained range and beyond it, that the band was calibrated on.
     pub fn rows(&self) -> (usize, usize) {
         self.rows

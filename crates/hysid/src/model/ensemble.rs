@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! y = M(y_1 .. y_n; w_1 .. w_n),    w_i = a_i^{1-o} b_i^o                  theory.md (11.3), (11.4)
+//! w_i = (1-o) a_i/Σa + o b_i/Σb           where that is 0 for all i          theory.md (11.9)
 //! ```
 //!
 //! The median, not the mean: a single fit that runs away does not move it. Voices come in groups that first
@@ -13,8 +14,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::model::band::disagreement;
-use crate::record::Excitation;
 
 /// Share of the trained range by which the input must leave it until only the outer weights count.
 /// Designed.
@@ -122,11 +121,21 @@ impl Votes {
         self.0.push((value, weight));
     }
 
+    /// Gives the votes other weights, in the order in which they were cast.
+    fn weigh_anew(&mut self, weights: impl Iterator<Item = f64>) {
+        self.0.iter_mut().zip(weights).for_each(|(vote, weight)| vote.1 = weight);
+    }
+
+    /// Weight of all together.
+    fn weight(&self) -> f64 {
+        self.0.iter().map(|(_, weight)| weight).sum()
+    }
+
     /// The weighted quantile, theory.md (11.3): each vote stands at the middle of its weight, and values
     /// between are interpolated. With equal weights, `quantile(0.5)` is the ordinary median.
     pub fn quantile(&mut self, level: f64) -> f64 {
         self.0.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let wanted = level * self.0.iter().map(|(_, weight)| weight).sum::<f64>();
+        let wanted = level * self.weight();
         let (mut passed, mut below) = (0.0, None::<(f64, f64)>);
         for &(value, weight) in &self.0 {
             if weight == 0.0 {
@@ -152,7 +161,7 @@ impl Ensemble {
     ///
     /// # Errors
     /// A group without voices, a member that is not there, an ensemble as a member, members of different
-    /// inputs, weights that are negative, not finite or all 0.
+    /// inputs, weights that are negative, not finite or all 0, inside and outside.
     pub fn new(members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
         if members.iter().any(|member| member.ensemble().is_some()) {
@@ -186,35 +195,6 @@ impl Ensemble {
     pub(crate) fn remembers_excursions(&self) -> bool {
         self.group.remembers_excursions()
     }
-
-    pub(super) fn simulate(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
-        let mut council = Council::new(&self.group);
-        let mut excursion = Excursion::beyond(self.range);
-        let outputs = self.outputs(excitation)?;
-        let row = |(row, &x): (usize, &f64)| {
-            let outside = excursion.take(x);
-            council.output(&self.group, outside, |member| outputs[member][row])
-        };
-        Ok(excitation.inputs()[0].iter().enumerate().map(row).collect())
-    }
-
-    /// What the members say of each row of an excitation.
-    pub(super) fn answers(&self, excitation: &Excitation<'_>) -> Result<Vec<Answer>> {
-        let mut council = Council::new(&self.group);
-        let mut excursion = Excursion::beyond(self.range);
-        let outputs = self.outputs(excitation)?;
-        let row = |(row, &x): (usize, &f64)| {
-            let outside = excursion.take(x);
-            let output = council.output(&self.group, outside, |member| outputs[member][row]);
-            let all = council.everybody(&self.group, outside, |member| outputs[member][row]);
-            Answer { output, disagreement: disagreement(all), outside }
-        };
-        Ok(excitation.inputs()[0].iter().enumerate().map(row).collect())
-    }
-
-    fn outputs(&self, excitation: &Excitation<'_>) -> Result<Vec<Vec<f64>>> {
-        self.members.iter().map(|member| member.response(excitation)).collect()
-    }
 }
 
 impl Group {
@@ -225,11 +205,13 @@ impl Group {
         if deepest == 0 {
             return Err(Error::Option("the groups of an ensemble are nested too deeply".into()));
         }
-        for weight in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
-            let all = self.voices.iter().map(|voice| weight(&voice.weights));
-            if !all.clone().all(|weight| (0.0..=1e9).contains(&weight)) || all.sum::<f64>() < 1e-9 {
-                return Err(Error::Option("the weights of an ensemble are no weights".into()));
-            }
+        let (inside, outside) = self.sums();
+        let is_weight = |weight: f64| (0.0..=1e9).contains(&weight);
+        let are_weights =
+            |Voice { weights, .. }: &Voice| is_weight(weights.inside) && is_weight(weights.outside);
+        if !self.voices.iter().all(are_weights) || inside.max(outside) < 1e-9 {
+            let problem = "a group of an ensemble needs weights from 0 to 1e9 that are not all 0";
+            return Err(Error::Option(problem.into()));
         }
         for voice in &self.voices {
             match &voice.who {
@@ -241,6 +223,67 @@ impl Group {
             }
         }
         Ok(())
+    }
+
+    /// The same with something else in the place of each member, or nothing; `None` if nothing is left. The
+    /// weights of each group sum to 1; a class whose weights are all gone has those of the other.
+    pub(crate) fn map_members(&self, with: &mut impl FnMut(usize) -> Option<Speaker>) -> Option<Group> {
+        let mut voices = Vec::new();
+        for Voice { weights, who } in &self.voices {
+            let who = match who {
+                Speaker::Member(member) => with(*member),
+                Speaker::Group(group) => group.map_members(with).map(Speaker::Group),
+            };
+            voices.extend(who.map(|who| Voice { weights: *weights, who }));
+        }
+        let mut group = Group { name: self.name.clone(), voices };
+        let (inside, outside): (Vec<f64>, Vec<f64>) =
+            (group.blended(0.0).collect(), group.blended(1.0).collect());
+        for (voice, (inside, outside)) in group.voices.iter_mut().zip(inside.into_iter().zip(outside)) {
+            voice.weights = Weights { inside, outside };
+        }
+        let (inside, outside) = group.sums();
+        (inside > 0.0 && outside > 0.0).then_some(group)
+    }
+
+    /// What each member counts in the whole, inside and outside.
+    pub(crate) fn shares(&self) -> Vec<(usize, Weights)> {
+        let mut shares = Vec::new();
+        let weights = self.blended(0.0).zip(self.blended(1.0));
+        for (voice, (inside, outside)) in self.voices.iter().zip(weights) {
+            match &voice.who {
+                Speaker::Member(member) => shares.push((*member, Weights { inside, outside })),
+                Speaker::Group(group) => {
+                    shares.extend(group.shares().into_iter().map(|(member, weights)| {
+                        let (inside, outside) = (inside * weights.inside, outside * weights.outside);
+                        (member, Weights { inside, outside })
+                    }))
+                }
+            }
+        }
+        shares
+    }
+
+    /// Sums of the weights inside and outside.
+    fn sums(&self) -> (f64, f64) {
+        let weights = || self.voices.iter().map(|voice| voice.weights);
+        (weights().map(|weights| weights.inside).sum(), weights().map(|weights| weights.outside).sum())
+    }
+
+    /// The weights of a record that has been outside by this degree where (11.4) leaves none: theory.md
+    /// (11.9). A class without weights has those of the other.
+    fn blended(&self, outside: f64) -> impl Iterator<Item = f64> {
+        let (a, b) = self.sums();
+        self.voices.iter().map(move |Voice { weights, .. }| {
+            let of_inside = if a > 0.0 { weights.inside / a } else { weights.outside / b };
+            let of_outside = if b > 0.0 { weights.outside / b } else { weights.inside / a };
+            (1.0 - outside) * of_inside + outside * of_outside
+        })
+    }
+
+    /// Sum of the weights of (11.4).
+    fn sum_at(&self, outside: f64) -> f64 {
+        self.voices.iter().map(|voice| voice.weights.at(outside)).sum()
     }
 
     fn remembers_excursions(&self) -> bool {
@@ -271,14 +314,19 @@ impl Group {
             };
             votes.cast(value, voice.weights.at(outside));
         }
+        if votes.weight() == 0.0 {
+            votes.weigh_anew(self.blended(outside));
+        }
         votes.quantile(0.5)
     }
 
     /// Casts the votes of all members below, which share out `share`.
     fn gather(&self, outside: f64, share: f64, of_member: &impl Fn(usize) -> f64, all: &mut Votes) {
-        let sum: f64 = self.voices.iter().map(|voice| voice.weights.at(outside)).sum();
-        for voice in &self.voices {
-            let share = share * voice.weights.at(outside) / sum;
+        let sum = self.sum_at(outside);
+        let of_11_4 = self.voices.iter().map(|voice| voice.weights.at(outside) / sum);
+        let mut blended = self.blended(outside);
+        for (voice, weight) in self.voices.iter().zip(of_11_4) {
+            let share = share * if sum > 0.0 { weight } else { blended.next().unwrap_or_default() };
             match &voice.who {
                 Speaker::Member(member) => all.cast(of_member(*member), share),
                 Speaker::Group(group) => group.gather(outside, share, of_member, all),
@@ -314,15 +362,6 @@ impl Council {
     }
 }
 
-/// What the members of an ensemble say of a row.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Answer {
-    pub output: f64,
-    pub disagreement: f64,
-    /// Degree of having been outside the trained range, 0 to 1.
-    pub outside: f64,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -355,6 +394,71 @@ mod tests {
             assert!(value >= last && (-1.0..=3.0).contains(&value), "{percent}: {value} after {last}");
             last = value;
         }
+    }
+
+    fn group(weights: &[(f64, f64)]) -> Group {
+        let voice = |(member, &(inside, outside)): (usize, &(f64, f64))| Voice {
+            weights: Weights { inside, outside },
+            who: Speaker::Member(member),
+        };
+        Group { name: "g".into(), voices: weights.iter().enumerate().map(voice).collect() }
+    }
+
+    /// theory.md (11.9): a degree at which no member has a weight of (11.4), a class without any.
+    #[test]
+    fn there_is_an_output_at_every_degree_of_having_been_outside() {
+        let values = [1.0, 3.0];
+        let output = |weights: &[(f64, f64)], outside: f64| {
+            let group = group(weights);
+            let mut council = Council::new(&group);
+            let output = council.output(&group, outside, |member| values[member]);
+            let all = council.everybody(&group, outside, |member| values[member]);
+            assert!((all.weight() - 1.0).abs() < 1e-12 && all.quantile(0.5).is_finite());
+            output
+        };
+        let crossed = [(1.0, 0.0), (0.0, 1.0)];
+        assert_eq!((output(&crossed, 0.0), output(&crossed, 1.0)), (1.0, 3.0));
+        assert_eq!(output(&crossed, 0.5), 2.0, "half of each");
+        let mut last = 1.0;
+        for percent in 1..100 {
+            let y = output(&crossed, f64::from(percent) / 100.0);
+            assert!((last..=3.0).contains(&y), "{percent} %: {y} after {last}");
+            last = y;
+        }
+        // Outside nobody has a weight: the weights inside hold there too.
+        let inside_only = [(1.0, 0.0), (3.0, 0.0)];
+        for outside in [0.0, 0.4, 1.0] {
+            assert_eq!(output(&inside_only, outside), output(&[(1.0, 1.0), (3.0, 3.0)], outside));
+        }
+        assert!(group(&[(0.0, 0.0), (0.0, 0.0)]).check(2, 1).is_err());
+        assert!(group(&[(f64::NAN, 1.0), (1.0, 1.0)]).check(2, 1).is_err());
+    }
+
+    #[test]
+    fn weights_that_are_left_sum_to_one() {
+        let tree = Group {
+            name: "all".into(),
+            voices: vec![
+                Voice {
+                    weights: Weights { inside: 1.0, outside: 0.0 },
+                    who: Speaker::Group(group(&[(1.0, 1e-12), (2.0, 1.0)])),
+                },
+                Voice { weights: Weights { inside: 3.0, outside: 2.0 }, who: Speaker::Member(2) },
+            ],
+        };
+        let shares = tree.shares();
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        close(shares[0].1.inside, 0.25 / 3.0);
+        close(shares[1].1.inside, 0.5 / 3.0);
+        close(shares[2].1.outside, 1.0);
+        // Without its second member the first group has next to no weight outside; it has all there is.
+        let left = tree.map_members(&mut |member| (member != 1).then_some(Speaker::Member(member))).unwrap();
+        left.check(3, DEEPEST).unwrap();
+        let Speaker::Group(first) = &left.voices[0].who else { panic!("a group") };
+        assert_eq!(first.voices[0].weights, Weights { inside: 1.0, outside: 1.0 });
+        let alone = tree.map_members(&mut |member| (member == 0).then_some(Speaker::Member(0))).unwrap();
+        assert_eq!(alone.voices[0].weights, Weights { inside: 1.0, outside: 1.0 });
+        assert_eq!(tree.map_members(&mut |_| None), None);
     }
 
     #[test]

@@ -18,7 +18,7 @@ use crate::scaling::Scaling;
 use crate::unit;
 
 /// Version of the layout that is written.
-pub const FORMAT_VERSION: u64 = 3;
+pub const FORMAT_VERSION: u64 = 4;
 
 const FORMAT: &str = "hysid-model";
 const CHECKSUM_KEY: &str = "\"checksum\"";
@@ -203,7 +203,7 @@ impl MemberParts {
         Self {
             model: model.name(),
             rate: model.rate,
-            preprocessing: model.preprocessing,
+            preprocessing: model.preprocessing.clone(),
             trained_ranges: model.trained.clone(),
             network,
             law,
@@ -235,7 +235,7 @@ pub(super) fn write(model: &Model) -> String {
         columns: model.names.clone(),
         units: Units::of(&model.names),
         rate: model.rate,
-        preprocessing: model.preprocessing,
+        preprocessing: model.preprocessing.clone(),
         trained_ranges: model.trained.clone(),
         network,
         law,
@@ -364,6 +364,11 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
     };
     if inputs == 0 || [model.names.inputs.len(), model.trained.inputs.len()] != [inputs; 2] {
         return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
+    }
+    if ![0, inputs].contains(&model.preprocessing.origins.len()) {
+        return Err(Error::Option(format!(
+            "its preprocessing does not have an origin for each of {inputs} inputs"
+        )));
     }
     if let Body::Network { network, scaling } = &model.body
         && (network.architecture().rate != model.rate.is_some()

@@ -46,6 +46,11 @@ impl Family {
         matches!(self, Family::Xpnn | Family::XpnnPlus)
     }
 
+    /// True if the family's stops deteriorate.
+    pub fn deteriorates(self) -> bool {
+        matches!(self, Family::Gpnn | Family::Xpnn | Family::XpnnPlus)
+    }
+
     /// True if the family takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         self == Family::XpnnPlus
@@ -137,7 +142,7 @@ impl Architecture {
             inputs,
             rate: rate && family.uses_rate(),
             stops: sizes.stops,
-            deterioration: matches!(family, Family::Gpnn | Family::Xpnn | Family::XpnnPlus),
+            deterioration: family.deteriorates(),
             linear: neural,
             relaxation: if plus && time { sizes.relaxation } else { 0 },
             hidden: if neural { sizes.hidden } else { 0 },

@@ -9,6 +9,7 @@
 mod devices;
 mod draw;
 mod magnets;
+mod one_loop;
 mod plans;
 mod quasi_static;
 mod structures;
@@ -20,6 +21,7 @@ use crate::record::{ColumnNames, Dataset, Record};
 
 use super::noise::with_noise;
 use draw::Draw;
+pub use one_loop::one_loop;
 use plans::PLANS;
 
 /// An identification case.
@@ -75,7 +77,7 @@ fn case(index: usize, seed: u64) -> Result<Case> {
         output: plan.output.to_owned(),
     };
     let percent = draw.between(plan.noise.0, plan.noise.1);
-    let mut noisy = |records| with_noise(&Dataset::new(names.clone(), records)?, percent, draw.seed());
+    let mut noisy = |records| noisy(Dataset::new(names.clone(), records)?, percent, &mut draw);
     Ok(Case {
         name: format!("g{:02}-{}", index + 1, plan.name),
         law: plan.law,
@@ -83,6 +85,11 @@ fn case(index: usize, seed: u64) -> Result<Case> {
         train: noisy(parts.train)?,
         test: noisy(parts.test)?,
     })
+}
+
+/// Data with noise of this deviation, in percent of that of the output.
+fn noisy(data: Dataset, percent: f64, draw: &mut Draw) -> Result<Dataset> {
+    with_noise(&data, percent, draw.seed())
 }
 
 #[cfg(test)]

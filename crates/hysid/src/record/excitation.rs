@@ -34,6 +34,16 @@ impl<'a> Excitation<'a> {
         Ok(excitation)
     }
 
+    /// An excitation of columns that were checked before, each of the same length.
+    pub(crate) fn unchecked(
+        name: &'a str,
+        time: Option<&'a [f64]>,
+        inputs: Vec<&'a [f64]>,
+        given_rate: Option<&'a [f64]>,
+    ) -> Self {
+        Self { name, time, inputs, given_rate }
+    }
+
     /// The same with time stamps, strictly increasing.
     ///
     /// # Errors

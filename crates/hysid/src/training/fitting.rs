@@ -1,5 +1,8 @@
 //! A fit on its way: which runs there are, and in which order.
 //!
+//! Several starts are trained on everything, and the lowest objective wins. The same is done on the folds of a
+//! cross-validation, from fewer starts: that tells the error on new data, and whether penalties are needed.
+//!
 //! Runs advance in rounds, one epoch of a few runs at a time; between rounds the whole state is plain
 //! data, so that the observer can store it. No run depends on another, nor on how many advance
 //! together.
@@ -13,18 +16,33 @@ use crate::identification::{ModelName, Request};
 use crate::metrics::Errors;
 use crate::model::{Body, Model, Provenance};
 use crate::network::{Architecture, Network};
-use crate::preprocessing::{Preprocessing, Seen};
+use crate::preprocessing::{Origin, Preprocessing, Seen};
+use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
 use crate::training::checkpoint::Snapshot;
-use crate::training::history::{Phase, Run};
+use crate::training::history::Phase;
 use crate::training::objective::Objective;
-use crate::training::options::{FitOptions, Trainer};
+use crate::training::options::{FitOptions, Regularisation, Trainer};
 use crate::training::run::{From, TrainingRun};
 use crate::training::termination::Termination;
 use crate::training::{FEWEST_ROWS, Fit, Observer, Progress};
+use crate::validation::{Fold, PooledErrors, folds};
 
-/// Starts that do best on the data held out, and are then trained on everything.
+/// Most folds that a fit is validated on.
+const MOST_FOLDS: usize = 5;
+
+/// Starts on each fold.
+const STARTS_ON_FOLDS: usize = 3;
+
+/// Penalties of data without noise, as good as none: what they would bias is exact.
+const NO_PENALTIES: Regularisation = Regularisation { ridge: 1e-10, decay: 1e-12 };
+
+/// The error that leaving the penalties out must come to, as a share of the error with them, if they are to be left
+/// out.
+const WORTH: f64 = 0.9;
+
+/// The best starts on everything, which go on without penalties where these are left out.
 const FINALISTS: usize = 3;
 
 /// Iterations of the winner that see every row.
@@ -36,10 +54,13 @@ const RUNS_PER_THREAD: usize = 4;
 /// All runs of a fit so far.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct State {
-    /// The starts on the training part; none if there is only one start.
-    starts: Vec<TrainingRun>,
-    /// The best starts, or the only one, on all data.
+    /// The starts on everything.
     all_data: Vec<TrainingRun>,
+    /// The first starts on the training part of each fold, fold by fold.
+    folds: Vec<TrainingRun>,
+    /// The best of each fold, and then the best on everything, further without penalties.
+    folds_exact: Vec<TrainingRun>,
+    all_exact: Vec<TrainingRun>,
     /// The winner on all rows, where those before saw some of many.
     all_rows: Vec<TrainingRun>,
 }
@@ -49,58 +70,93 @@ pub(crate) struct Fitting<'a> {
     /// The data as measured, and what was asked for.
     measured: &'a Dataset,
     asked: FitOptions,
-    /// The data as the network sees them, and the options for these.
-    preprocessing: Preprocessing,
-    data: &'a Dataset,
-    options: FitOptions,
+    /// The data as the network sees them.
+    whole: Part<'a>,
     architecture: Architecture,
-    scaling: Scaling,
     state: State,
+    /// Epochs of all runs, as far as they are known.
+    epochs_expected: usize,
     stopped: bool,
+}
+
+/// Data that networks are trained on, as they see them.
+struct Part<'a> {
+    data: &'a Dataset,
+    preprocessing: Preprocessing,
+    scaling: Scaling,
+    /// The options for data seen in this way.
+    options: FitOptions,
+}
+
+/// Where a run of a stage begins, and on which of its objectives.
+struct Beginning {
+    objective: usize,
+    start: usize,
+    from: From,
 }
 
 /// Runs that advance together.
 struct Stage<'o> {
     phase: Phase,
     /// Where the runs are kept.
-    runs: fn(&mut State) -> &mut Vec<TrainingRun>,
-    objective: &'o Objective<'o>,
+    runs: Runs,
+    objectives: &'o [Objective<'o>],
     /// Epochs of each run.
     epochs: usize,
     /// Epochs that the observer is to add to those of the runs.
     epochs_before: usize,
 }
 
-/// A start that was judged by data held out.
-struct Judged {
-    start: usize,
-    parameters: Vec<f64>,
-    network: Network,
-    termination: Termination,
-    validation: Errors,
+/// What the folds tell.
+#[derive(Default)]
+struct Validation {
+    errors: Option<Errors>,
+    /// Penalties do harm.
+    is_exact: bool,
 }
 
-/// What a fit comes to.
-struct Outcome {
-    network: Network,
-    start: usize,
-    termination: Termination,
-    validation: Option<Errors>,
-    runs: Vec<Run>,
+impl<'a> Part<'a> {
+    /// `seen` is what the shaping of the options makes of data measured.
+    fn of(seen: &'a Seen<'_>, asked: &FitOptions) -> Result<Self> {
+        Ok(Self {
+            data: &seen.data,
+            preprocessing: seen.preprocessing.clone(),
+            scaling: Scaling::of(&seen.data, seen.rate)?,
+            options: FitOptions { rate: seen.rate, ..asked.clone() },
+        })
+    }
+
+    fn objective(&self, architecture: Architecture, penalties: Regularisation) -> Result<Objective<'static>> {
+        let Regularisation { ridge, decay } = penalties;
+        let options = FitOptions { ridge: Some(ridge), decay: Some(decay), ..self.options.clone() };
+        Objective::new(self.data, &self.scaling, architecture, &options)
+    }
+
+    /// What a network predicts of the rows of a fold that are held out, in the user's unit.
+    fn predicted(&self, network: &Network, fold: &Fold, rate: Option<RateMethod>) -> Result<Vec<f64>> {
+        let (seen, rate) = self.preprocessing.data(&fold.held_out, rate)?;
+        let mut run = FreeRun::new(network, &self.scaling, rate);
+        let mut predicted = Vec::with_capacity(fold.held_out.scored());
+        for record in seen.records() {
+            let rows = run.response(&record.excitation())?.into_iter().zip(record.output());
+            predicted.extend(rows.filter(|(_, y)| !y.is_nan()).map(|(simulated, _)| simulated));
+        }
+        Ok(predicted)
+    }
 }
 
 impl<'a> Fitting<'a> {
     /// `seen` is what the shaping of the options makes of the data measured.
     pub fn new(measured: &'a Dataset, seen: &'a Seen<'_>, asked: FitOptions) -> Result<Self> {
         asked.check()?;
+        let starts = asked.starts;
+        let on_folds = if starts > 1 { MOST_FOLDS * STARTS_ON_FOLDS.min(starts) } else { 0 };
         Ok(Self {
             architecture: asked.architecture(measured)?,
-            scaling: Scaling::of(&seen.data, seen.rate)?,
+            whole: Part::of(seen, &asked)?,
+            epochs_expected: (starts + on_folds) * asked.epochs,
             measured,
-            options: FitOptions { rate: seen.rate, ..asked.clone() },
             asked,
-            preprocessing: seen.preprocessing,
-            data: &seen.data,
             state: State::default(),
             stopped: false,
         })
@@ -113,128 +169,189 @@ impl<'a> Fitting<'a> {
 
     /// Goes on to the end, or until the observer says stop.
     pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fit> {
-        let outcome = if self.options.starts == 1 {
-            self.train_on_all_data(vec![(0, From::Random)], observer)?
+        let penalties = self.asked.penalties();
+        self.train_on_everything(penalties, observer)?;
+        let validation = self.validate(penalties, observer)?;
+        let (winner, penalties) = if validation.is_exact && !self.stopped {
+            (self.without_penalties(observer)?, NO_PENALTIES)
         } else {
-            self.choose_among_starts(observer)?
+            (best_of(&self.state.all_data), penalties)
         };
+        let (winner, network) = self.finished(winner, penalties, observer)?;
+
+        let runs =
+            self.state.folds.iter().flat_map(TrainingRun::runs).chain(winner.runs()).cloned().collect();
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
-        let Self { measured, asked, preprocessing, data, options, scaling, stopped, .. } = self;
+        let Self { measured, asked, whole, stopped, .. } = self;
+        let Part { data, preprocessing, scaling, options } = whole;
         let provenance = Provenance {
             samples: data.scored(),
             records: data.records().len(),
-            chosen_start: outcome.start,
-            termination: if stopped { Termination::Stopped } else { outcome.termination },
-            runs: outcome.runs,
-            train: FreeRun::new(&outcome.network, &scaling, options.rate).errors(data)?,
-            validation: outcome.validation,
+            chosen_start: winner.start(),
+            termination: if stopped { Termination::Stopped } else { winner.termination() },
+            runs,
+            train: FreeRun::new(&network, &scaling, options.rate).errors(data)?,
+            validation: validation.errors,
+            penalties: Some(penalties),
             selection: None,
             options: Request::Network(asked.clone()),
         };
-        let body = Body::Network { network: outcome.network, scaling };
+        let body = Body::Network { network, scaling };
         let model = Model::new(body, preprocessing, asked.rate, measured, provenance)?;
         Ok(Fit { model, evaluations })
     }
 
-    /// Several starts on a part of the data; those that do best on the rest are trained on everything.
-    fn choose_among_starts(&mut self, observer: &mut Observer<'_>) -> Result<Outcome> {
-        let split = self.data.split_for_validation(self.options.validation);
-        let split = split.filter(|(kept, _)| kept.scored() >= FEWEST_ROWS);
-        let (kept, held_out) = match &split {
-            Some((kept, held_out)) => (kept, Some(held_out)),
-            None => (self.data, None),
-        };
-        let objective = Objective::new(kept, &self.scaling, self.architecture, &self.options)?;
-        let thinned = objective.thinned(self.options.thin);
-        let stage = Stage {
-            phase: Phase::Starts,
-            runs: |state| &mut state.starts,
-            objective: &thinned,
-            epochs: self.options.epochs,
-            epochs_before: 0,
-        };
-        let beginnings = (0..self.options.starts).map(|start| (start, From::Random)).collect();
-        self.drive(&stage, beginnings, observer)?;
-
-        let judged = self.judge(&thinned, held_out.unwrap_or(kept))?;
-        let mut runs = Vec::new();
-        for (run, judged) in self.state.starts.iter().zip(&judged) {
-            runs.extend_from_slice(run.runs());
-            let last = runs.last_mut().expect("every run has a history");
-            last.validation_nrmse_percent =
-                judged.validation.nrmse_std_percent.filter(|_| held_out.is_some());
-        }
-        let mut finalists: Vec<&Judged> = judged.iter().collect();
-        finalists.sort_by(|a, b| a.validation.mse.total_cmp(&b.validation.mse));
-        finalists.truncate(FINALISTS);
-        let mut outcome = if self.stopped {
-            let best = finalists[0];
-            let (start, termination) = (best.start, best.termination);
-            Outcome { network: best.network.clone(), start, termination, validation: None, runs: Vec::new() }
-        } else {
-            // Each goes on from where it was judged, and once more from its random beginning, because
-            // data that were held out may lie beyond a barrier from there.
-            let beginnings = finalists.iter().flat_map(|judged| {
-                [(judged.start, From::Parameters(judged.parameters.clone())), (judged.start, From::Random)]
-            });
-            self.train_on_all_data(beginnings.collect(), observer)?
-        };
-        runs.append(&mut outcome.runs);
-        let chosen = judged.into_iter().find(|judged| judged.start == outcome.start);
-        let validation = chosen.filter(|_| held_out.is_some()).map(|judged| judged.validation);
-        Ok(Outcome { validation, runs, ..outcome })
-    }
-
-    /// The starts on data they were not trained on, in their order.
-    fn judge(&self, objective: &Objective, held_out: &Dataset) -> Result<Vec<Judged>> {
-        let judge = |run: &TrainingRun| {
-            let network = run.network(objective)?;
-            let validation = FreeRun::new(&network, &self.scaling, self.options.rate).errors(held_out)?;
-            let (start, termination) = (run.start(), run.termination());
-            Ok(Judged { start, parameters: run.best().parameters.clone(), network, termination, validation })
-        };
-        self.state.starts.par_iter().map(judge).collect()
-    }
-
-    /// All beginnings on all data, thinned if they are many; then the lowest on every row.
-    fn train_on_all_data(
-        &mut self,
-        beginnings: Vec<(usize, From)>,
-        observer: &mut Observer<'_>,
-    ) -> Result<Outcome> {
-        let objective = Objective::new(self.data, &self.scaling, self.architecture, &self.options)?;
-        let thinned = objective.thinned(self.options.thin);
+    /// All starts on everything, thinned if it is much.
+    fn train_on_everything(&mut self, penalties: Regularisation, observer: &mut Observer<'_>) -> Result<()> {
+        let objective = self.whole.objective(self.architecture, penalties)?;
         let stage = Stage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_data,
-            objective: &thinned,
-            epochs: self.options.epochs,
+            objectives: &[objective.thinned(self.asked.thin)],
+            epochs: self.asked.epochs,
             epochs_before: 0,
         };
+        let random = |start| Beginning { objective: 0, start, from: From::Random };
+        self.drive(&stage, (0..self.asked.starts).map(random).collect(), observer)
+    }
+
+    /// A few starts on each fold, where several were asked for: the lowest objective of each fold predicts what
+    /// was held out of it.
+    fn validate(&mut self, penalties: Regularisation, observer: &mut Observer<'_>) -> Result<Validation> {
+        if self.asked.starts == 1 || self.stopped {
+            return Ok(Validation::default());
+        }
+        let folds = self.folds();
+        let (shaping, rate) = (self.asked.shaping, self.asked.rate);
+        let seen: Vec<Seen> = folds
+            .iter()
+            .map(|fold| Seen::of(&fold.train, &shaping, rate, Origin::OfData))
+            .collect::<Result<_>>()?;
+        let parts: Vec<Part> = seen.iter().map(|seen| Part::of(seen, &self.asked)).collect::<Result<_>>()?;
+        let starts = STARTS_ON_FOLDS.min(self.asked.starts);
+        let random = |(objective, start)| Beginning { objective, start, from: From::Random };
+        let all = (0..folds.len()).flat_map(|fold| (0..starts).map(move |start| (fold, start)));
+        let stage = FoldStage { runs: |state| &mut state.folds, phase: Phase::Starts, penalties };
+        let objectives = self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer)?;
+        if self.stopped || folds.is_empty() {
+            return Ok(Validation::default());
+        }
+        let of_run = |(index, run): (usize, &TrainingRun)| {
+            let fold = index / starts;
+            OnFold::of(run, &parts[fold], &objectives[fold], &folds[fold], rate)
+        };
+        let on_folds: Vec<OnFold> = self.state.folds.iter().enumerate().map(of_run).collect::<Result<_>>()?;
+        for (index, (run, on_fold)) in self.state.folds.iter_mut().zip(&on_folds).enumerate() {
+            run.validated(index / starts, on_fold.error_percent());
+        }
+        let lowest = |fold: usize| {
+            let of_fold = fold * starts..(fold + 1) * starts;
+            of_fold
+                .min_by(|&a, &b| self.state.folds[a].objective().total_cmp(&self.state.folds[b].objective()))
+        };
+        let best: Vec<usize> = (0..folds.len()).filter_map(lowest).collect();
+        let with_penalties: Vec<&OnFold> = best.iter().map(|&index| &on_folds[index]).collect();
+        let onward: Vec<Beginning> =
+            best.iter().enumerate().map(|(fold, &index)| onward(fold, &self.state.folds[index])).collect();
+        let validation = Validation { errors: self.pooled(&with_penalties, &folds), is_exact: false };
+        if self.asked.keeps_penalties() {
+            return Ok(validation);
+        }
+        let stage = FoldStage { runs: |state| &mut state.folds_exact, penalties: NO_PENALTIES, ..stage };
+        let objectives = self.drive_on_folds(&stage, &parts, onward, observer)?;
+        if self.stopped {
+            return Ok(validation);
+        }
+        let of_run = |(fold, run): (usize, &TrainingRun)| {
+            OnFold::of(run, &parts[fold], &objectives[fold], &folds[fold], rate)
+        };
+        let without: Vec<OnFold> =
+            self.state.folds_exact.iter().enumerate().map(of_run).collect::<Result<_>>()?;
+        let without: Vec<&OnFold> = without.iter().collect();
+        if mean_error(&without) < WORTH * mean_error(&with_penalties) {
+            return Ok(Validation { errors: self.pooled(&without, &folds), is_exact: true });
+        }
+        Ok(validation)
+    }
+
+    /// The parts that are held out in turn: those of a cross-validation, or the share that was asked for.
+    fn folds(&self) -> Vec<Fold> {
+        let Some(share) = self.asked.validation else { return folds(self.measured, MOST_FOLDS) };
+        let split = self.measured.split_for_validation(share);
+        let split = split.filter(|(train, _)| train.check_identifiable(FEWEST_ROWS).is_ok());
+        let fold = |(train, held_out)| Fold { name: format!("{} %", 100.0 * share), train, held_out };
+        split.map(fold).into_iter().collect()
+    }
+
+    /// Drives a stage on the training parts of all folds; gives the objectives there.
+    fn drive_on_folds(
+        &mut self,
+        stage: &FoldStage,
+        parts: &[Part],
+        beginnings: Vec<Beginning>,
+        observer: &mut Observer<'_>,
+    ) -> Result<Vec<Objective<'static>>> {
+        let FoldStage { phase, runs, penalties } = *stage;
+        let objectives = parts.iter().map(|part| part.objective(self.architecture, penalties));
+        let objectives: Vec<Objective> = objectives.collect::<Result<_>>()?;
+        let thinned: Vec<Objective> =
+            objectives.iter().map(|objective| objective.thinned(self.asked.thin)).collect();
+        let stage = Stage { phase, runs, objectives: &thinned, epochs: self.asked.epochs, epochs_before: 0 };
         self.drive(&stage, beginnings, observer)?;
-        let runs = self.state.all_data.iter();
-        let lowest = runs.min_by(|a, b| a.best().objective.total_cmp(&b.best().objective));
-        let mut winner = lowest.expect("at least one run has begun").clone();
-        let is_whole = objective.scored() == thinned.scored();
-        if self.options.training == Trainer::LevenbergMarquardt && !is_whole && !self.stopped {
+        Ok(objectives)
+    }
+
+    /// Errors of one run on each fold, on what was held out, all together.
+    fn pooled(&self, runs: &[&OnFold], folds: &[Fold]) -> Option<Errors> {
+        let mut pooled = PooledErrors::default();
+        runs.iter().zip(folds).for_each(|(run, fold)| pooled.add(&fold.held_out, &run.predicted));
+        pooled.errors(&self.measured.names().output)
+    }
+
+    /// The best starts on everything, further without penalties: the lowest objective of these.
+    fn without_penalties(&mut self, observer: &mut Observer<'_>) -> Result<TrainingRun> {
+        let mut best: Vec<TrainingRun> = self.state.all_data.clone();
+        best.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
+        best.truncate(FINALISTS);
+        let objective = self.whole.objective(self.architecture, NO_PENALTIES)?;
+        let stage = Stage {
+            phase: Phase::AllData,
+            runs: |state| &mut state.all_exact,
+            objectives: &[objective.thinned(self.asked.thin)],
+            epochs: self.asked.epochs,
+            epochs_before: self.asked.epochs,
+        };
+        self.drive(&stage, best.iter().map(|run| onward(0, run)).collect(), observer)?;
+        let begun = best.into_iter().zip(&self.state.all_exact);
+        let lowest = begun.min_by(|a, b| a.1.objective().total_cmp(&b.1.objective()));
+        let (mut winner, finish) = lowest.expect("at least one run has begun");
+        winner.append(finish.clone());
+        Ok(winner)
+    }
+
+    /// The winner with its output weights; of thinned data it goes on for a few epochs on every row.
+    fn finished(
+        &mut self,
+        winner: TrainingRun,
+        penalties: Regularisation,
+        observer: &mut Observer<'_>,
+    ) -> Result<(TrainingRun, Network)> {
+        let mut winner = winner;
+        let objective = self.whole.objective(self.architecture, penalties)?;
+        let is_whole = objective.scored() <= self.asked.thin;
+        if self.asked.training == Trainer::LevenbergMarquardt && !is_whole && !self.stopped {
             let stage = Stage {
+                phase: Phase::AllData,
                 runs: |state| &mut state.all_rows,
-                objective: &objective,
+                objectives: std::slice::from_ref(&objective),
                 epochs: LAST_EPOCHS_ON_ALL_ROWS,
                 epochs_before: winner.epoch(),
-                ..stage
             };
-            let from = From::Parameters(winner.best().parameters.clone());
-            self.drive(&stage, vec![(winner.start(), from)], observer)?;
+            self.drive(&stage, vec![onward(0, &winner)], observer)?;
             winner.append(self.state.all_rows[0].clone());
         }
-        Ok(Outcome {
-            network: winner.network(&objective)?,
-            start: winner.start(),
-            termination: winner.termination(),
-            validation: None,
-            runs: winner.runs().to_vec(),
-        })
+        let network = winner.network(&objective)?;
+        Ok((winner, network))
     }
 
     /// Advances runs in rounds until all are over or the observer says stop. `beginnings` are those of
@@ -242,22 +359,25 @@ impl<'a> Fitting<'a> {
     fn drive(
         &mut self,
         stage: &Stage,
-        beginnings: Vec<(usize, From)>,
+        beginnings: Vec<Beginning>,
         observer: &mut Observer<'_>,
     ) -> Result<()> {
+        let objective_of: Vec<usize> = beginnings.iter().map(|beginning| beginning.objective).collect();
         let (all, begun) = (beginnings.len(), (stage.runs)(&mut self.state).len());
         let mut waiting = beginnings.into_iter().skip(begun);
         let room = RUNS_PER_THREAD * rayon::current_num_threads();
         while !self.stopped {
-            let (options, runs) = (&self.options, (stage.runs)(&mut self.state));
+            let (options, runs) = (&self.whole.options, (stage.runs)(&mut self.state));
             let under_way = runs.iter().filter(|run| !run.is_over()).count();
-            let next: Vec<(usize, From)> = waiting.by_ref().take(room.saturating_sub(under_way)).collect();
-            let begin = |(start, from)| {
-                TrainingRun::new(stage.objective, options, stage.phase, start, stage.epochs, from)
+            let next: Vec<Beginning> = waiting.by_ref().take(room.saturating_sub(under_way)).collect();
+            let begin = |Beginning { objective, start, from }| {
+                let objective = &stage.objectives[objective];
+                TrainingRun::new(objective, options, stage.phase, start, stage.epochs, from)
             };
             runs.extend(next.into_par_iter().map(begin).collect::<Result<Vec<_>>>()?);
             let advance = |(index, run): (usize, &mut TrainingRun)| {
-                Ok(run.advance(stage.objective, options)?.then_some(index))
+                let objective = &stage.objectives[objective_of[index]];
+                Ok(run.advance(objective, options)?.then_some(index))
             };
             let under_way = runs.par_iter_mut().enumerate().filter(|(_, run)| !run.is_over());
             let advanced: Vec<Option<usize>> = under_way.map(advance).collect::<Result<_>>()?;
@@ -297,16 +417,71 @@ impl<'a> Fitting<'a> {
 
     /// Share of the work done, if every run takes all its epochs.
     fn done(&self) -> f64 {
-        let FitOptions { starts, epochs, .. } = self.options;
-        let runs = if starts == 1 { 1 } else { starts + 2 * FINALISTS.min(starts) };
+        let epochs = self.asked.epochs;
         let of_run = |run: &TrainingRun| if run.is_over() { epochs } else { run.epoch().min(epochs) };
-        let done: usize = self.state.starts.iter().chain(&self.state.all_data).map(of_run).sum();
-        done as f64 / (runs * epochs).max(1) as f64
+        let done: usize = self.state.all_runs().map(of_run).sum();
+        (done as f64 / self.epochs_expected.max(1) as f64).min(1.0)
     }
+}
+
+/// Where the runs of a stage are kept.
+type Runs = fn(&mut State) -> &mut Vec<TrainingRun>;
+
+/// Runs on the training parts of all folds.
+#[derive(Clone, Copy)]
+struct FoldStage {
+    phase: Phase,
+    runs: Runs,
+    penalties: Regularisation,
+}
+
+/// What a run on the training part of a fold predicts of what is held out.
+struct OnFold {
+    predicted: Vec<f64>,
+    errors: Option<Errors>,
+}
+
+impl OnFold {
+    fn of(
+        run: &TrainingRun,
+        part: &Part,
+        objective: &Objective,
+        fold: &Fold,
+        rate: Option<RateMethod>,
+    ) -> Result<Self> {
+        let predicted = part.predicted(&run.network(objective)?, fold, rate)?;
+        let mut pooled = PooledErrors::default();
+        pooled.add(&fold.held_out, &predicted);
+        Ok(Self { predicted, errors: pooled.errors("") })
+    }
+
+    /// Error in percent of the standard deviation of what is held out.
+    fn error_percent(&self) -> Option<f64> {
+        self.errors.as_ref().and_then(|errors| errors.nrmse_std_percent)
+    }
+}
+
+/// Geometric mean of the errors on several folds: one fold that goes far beyond the others does not decide it.
+fn mean_error(folds: &[&OnFold]) -> f64 {
+    let errors = folds.iter().filter_map(|fold| fold.errors.as_ref());
+    let logarithms: Vec<f64> = errors.map(|errors| errors.rmse.max(f64::MIN_POSITIVE).ln()).collect();
+    (logarithms.iter().sum::<f64>() / logarithms.len() as f64).exp()
+}
+
+/// On from where a run has come to.
+fn onward(objective: usize, run: &TrainingRun) -> Beginning {
+    Beginning { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
+}
+
+/// The run with the lowest objective.
+fn best_of(runs: &[TrainingRun]) -> TrainingRun {
+    let lowest = runs.iter().min_by(|a, b| a.objective().total_cmp(&b.objective()));
+    lowest.expect("at least one run has begun").clone()
 }
 
 impl State {
     fn all_runs(&self) -> impl Iterator<Item = &TrainingRun> {
-        self.starts.iter().chain(&self.all_data).chain(&self.all_rows)
+        let exact = self.folds_exact.iter().chain(&self.all_exact);
+        self.all_data.iter().chain(&self.folds).chain(exact).chain(&self.all_rows)
     }
 }

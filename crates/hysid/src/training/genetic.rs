@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::random::mix;
 
 /// Individuals that enter a tournament.
 const TOURNAMENT: usize = 2;
@@ -156,14 +157,6 @@ impl Problem<'_> {
 fn generator(seed: u64, generation: usize, index: usize) -> Xoshiro256PlusPlus {
     let mixed = mix(mix(mix(seed) ^ generation as u64) ^ index as u64);
     Xoshiro256PlusPlus::seed_from_u64(mixed)
-}
-
-/// A fixed hash (splitmix) in which every bit depends on every bit.
-pub(crate) fn mix(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ (value >> 31)
 }
 
 /// The best of a few drawn at random.

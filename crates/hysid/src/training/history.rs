@@ -9,9 +9,9 @@ use crate::training::termination::Termination;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
-    /// Several starts, on the training part.
+    /// Starts on the training part of a fold.
     Starts,
-    /// The best few starts, or the only one, on all data; the run kept is the winner's.
+    /// The starts on all data; the run kept is the winner's.
     #[serde(alias = "refit")]
     AllData,
 }
@@ -43,6 +43,9 @@ pub struct Run {
     pub history: Vec<HistoryPoint>,
     /// Why it ended.
     pub termination: Termination,
-    /// Error on the data held out, in percent of their standard deviation.
+    /// The fold that it was trained on, counted from 0; `None` for all data, and in files of before version 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fold: Option<usize>,
+    /// Error on what was held out of the fold, in percent of the standard deviation there.
     pub validation_nrmse_percent: Option<f64>,
 }

@@ -6,9 +6,8 @@ use std::borrow::Cow;
 use crate::error::Result;
 use crate::linear_algebra::Symmetric;
 use crate::network::{Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout};
-use crate::record::Dataset;
+use crate::record::{Dataset, Thinning};
 use crate::scaling::Scaling;
-use crate::training::genetic::mix;
 use crate::training::least_squares::{OutputProblem, OutputSolution};
 use crate::training::options::{FitOptions, Regularisation};
 
@@ -66,7 +65,7 @@ impl<'a> Objective<'a> {
         Ok(Self {
             architecture,
             layout: Layout::new(architecture),
-            regularisation: options.regularisation,
+            regularisation: options.penalties(),
             drives: Cow::Owned(drives?),
             targets,
             rows: data.scored(),
@@ -78,24 +77,10 @@ impl<'a> Objective<'a> {
         self.rows
     }
 
-    /// The same objective on at most about `most` rows, one drawn from each run of equal length, so
-    /// that no period of the record is favoured. The memory still runs through every row.
+    /// The same objective on at most `most` rows. The memory still runs through every row.
     pub fn thinned(&self, most: usize) -> Objective<'_> {
-        let run = self.rows.div_ceil(most.max(1));
         let mut targets = self.targets.clone();
-        let mut rows = self.rows;
-        if run > 1 {
-            rows = 0;
-            for (seen, y) in targets.iter_mut().flatten().filter(|y| !y.is_nan()).enumerate() {
-                let (index, place) = (seen / run, seen % run);
-                // A fixed hash picks the place within each run.
-                if place as u64 == (mix(index as u64) >> 33) % run as u64 {
-                    rows += 1;
-                } else {
-                    *y = f64::NAN;
-                }
-            }
-        }
+        let rows = Thinning::new(self.rows, most).blank(targets.iter_mut().flatten());
         Objective {
             drives: Cow::Borrowed(&self.drives),
             targets,

@@ -1,5 +1,7 @@
 //! What the user can choose of a fit.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -117,12 +119,11 @@ pub struct FitOptions {
     /// The trainer.
     #[serde(default)]
     pub training: Trainer,
-    /// Random networks, or populations, to start from. Of several, those are chosen that do best on
-    /// data held out; a single one is trained on everything at once.
+    /// Random networks, or populations, to start from. Of several, the one with the lowest objective is taken,
+    /// and a few of them are cross-validated.
     pub starts: usize,
     /// Epochs of each start: Levenberg-Marquardt iterations, generations or outer iterations of the
-    /// sub-gradient method; a hybrid shares them out in halves. The best few of several starts get as
-    /// many again on all data.
+    /// sub-gradient method; a hybrid shares them out in halves.
     pub epochs: usize,
     /// Individuals of the genetic algorithm.
     #[serde(default = "default_population")]
@@ -133,11 +134,16 @@ pub struct FitOptions {
     pub stall: usize,
     /// Seed of the random starts.
     pub seed: u64,
-    /// Share of the data held out to choose among the starts.
-    pub validation: f64,
-    /// Penalties on the weights.
-    #[serde(flatten)]
-    pub regularisation: Regularisation,
+    /// Share of the data held out to validate the fit on; `None` for the folds of a cross-validation.
+    #[serde(default)]
+    pub validation: Option<f64>,
+    /// λ of theory.md (3.1), on the output weights, in scaled units; `None` for the default, which is left
+    /// out where cross-validation finds it does harm.
+    #[serde(default)]
+    pub ridge: Option<f64>,
+    /// κ of theory.md (3.1), on the weights of stops and tanh neurons; `None` as for `ridge`.
+    #[serde(default)]
+    pub decay: Option<f64>,
     /// Scored rows that early iterations use at most; the memory runs through every row, and the last
     /// iterations see all.
     pub thin: usize,
@@ -172,8 +178,9 @@ impl FitOptions {
             population: default_population(),
             stall: default_stall(),
             seed: 1,
-            validation: 0.25,
-            regularisation: Regularisation::default(),
+            validation: None,
+            ridge: None,
+            decay: None,
             thin: 20_000,
         }
     }
@@ -190,10 +197,29 @@ impl FitOptions {
         Ok(architecture)
     }
 
+    /// The penalties that were asked for, or the defaults.
+    pub fn penalties(&self) -> Regularisation {
+        let defaults = Regularisation::default();
+        Regularisation {
+            ridge: self.ridge.unwrap_or(defaults.ridge),
+            decay: self.decay.unwrap_or(defaults.decay),
+        }
+    }
+
+    /// True if the penalties stay as they were asked for.
+    pub(crate) fn keeps_penalties(&self) -> bool {
+        self.ridge.is_some() || self.decay.is_some()
+    }
+
+    /// True if the stops deteriorate.
+    pub(crate) fn deteriorates(&self) -> bool {
+        !self.no_deterioration && self.model.deteriorates()
+    }
+
     /// Refuses options outside their meaning.
     pub(crate) fn check(&self) -> Result<()> {
-        if !(self.validation > 0.0 && self.validation < 1.0) {
-            return Err(Error::Option(format!("validation {} is not between 0 and 1", self.validation)));
+        if let Some(share) = self.validation.filter(|share| !(*share > 0.0 && *share < 1.0)) {
+            return Err(Error::Option(format!("validation {share} is not between 0 and 1")));
         }
         if self.starts == 0 || self.starts > MOST_STARTS {
             return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
@@ -209,7 +235,7 @@ impl FitOptions {
             )));
         }
         self.shaping.check()?;
-        self.regularisation.check()
+        self.penalties().check()
     }
 }
 
@@ -234,10 +260,17 @@ impl Default for Regularisation {
     }
 }
 
+/// Penalties of networks that are combined with others. Chosen on measured and generated cases:
+/// docs/accuracy.md.
+pub(crate) const ENSEMBLE_PENALTIES: Regularisation = Regularisation { ridge: 3e-4, decay: 1e-7 };
+
+/// Penalties that can be asked for.
+pub const PENALTIES: RangeInclusive<f64> = 0.0..=1e6;
+
 impl Regularisation {
     pub(crate) fn check(&self) -> Result<()> {
         for (name, value) in [("ridge", self.ridge), ("decay", self.decay)] {
-            if !(0.0..=1e6).contains(&value) {
+            if !PENALTIES.contains(&value) {
                 return Err(Error::Option(format!("{name} {value} is not between 0 and 1e6")));
             }
         }

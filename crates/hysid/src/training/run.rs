@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::network::{Layout, Network};
+use crate::random::mix;
 use crate::training::encoding::Encoding;
-use crate::training::genetic::{self, Genetic, mix};
+use crate::training::genetic::{self, Genetic};
 use crate::training::history::{HistoryPoint, Phase, Run};
 use crate::training::levenberg_marquardt::LevenbergMarquardt;
 use crate::training::objective::Objective;
@@ -172,6 +173,7 @@ impl TrainingRun {
             method: self.plan[0].0,
             history: Vec::new(),
             termination: Termination::EpochsUsed,
+            fold: None,
             validation_nrmse_percent: None,
         });
         self.record();
@@ -208,6 +210,13 @@ impl TrainingRun {
         }
     }
 
+    /// Takes down the error on what was held out of the fold it was trained on.
+    pub fn validated(&mut self, fold: usize, error_percent: Option<f64>) {
+        self.runs.iter_mut().for_each(|run| run.fold = Some(fold));
+        let last = self.runs.last_mut().expect("every run has a history");
+        last.validation_nrmse_percent = error_percent;
+    }
+
     /// Appends the epochs of a run that went on from where this one ended.
     pub fn append(&mut self, next: TrainingRun) {
         let (epoch, evaluations) = (self.epoch, self.evaluations());
@@ -242,6 +251,11 @@ impl TrainingRun {
 
     pub fn best(&self) -> &Point {
         &self.best
+    }
+
+    /// The objective at the best point.
+    pub fn objective(&self) -> f64 {
+        self.best.objective
     }
 
     pub fn last(&self) -> HistoryPoint {

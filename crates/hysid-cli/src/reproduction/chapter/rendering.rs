@@ -64,7 +64,17 @@ pub fn markdown(title: &str, made: &str, chapters: &[Chapter]) -> String {
             };
         }
     }
-    text.trim_end().to_string() + "\n"
+    without_tags(&text).trim_end().to_string() + "\n"
+}
+
+/// Markdown lets HTML through: what would begin a tag is plain text.
+fn without_tags(text: &str) -> String {
+    let mut pieces = text.split('<');
+    let first = pieces.next().unwrap_or_default().to_string();
+    pieces.fold(first, |text, piece| {
+        let is_tag = piece.starts_with(|letter: char| letter.is_ascii_alphabetic() || "/!?".contains(letter));
+        text + if is_tag { "\\<" } else { "<" } + piece
+    })
 }
 
 fn table_markdown(table: &Table) -> String {
@@ -78,9 +88,12 @@ fn table_markdown(table: &Table) -> String {
     text + "\n"
 }
 
+/// Header line of [`csv`].
+pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
+
 /// All tables, a line for each cell, numbers with all their digits.
 pub fn csv(chapters: &[Chapter]) -> String {
-    let mut text = String::from("experiment,table,row,column,value\n");
+    let mut text = String::from(CSV_HEADER);
     let mut add = |name: &str, table: &Table| {
         for row in &table.rows {
             let heading = row.first().map(Cell::shown).unwrap_or_default();

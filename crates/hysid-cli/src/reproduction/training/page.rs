@@ -2,6 +2,7 @@
 
 use hysid::training::Trainer;
 use hysid::warning::Significant;
+use hysid_files::Kind;
 
 use super::super::chapter::{Cell, Chapter, Part, Table, stands_in};
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
@@ -17,14 +18,33 @@ fn heading(protocol: &Protocol) -> String {
     )
 }
 
+/// Names of the files beside page and tables, and header lines of those that are tables.
+const SEEDS_TABLE: &str = "training-seeds.csv";
+const HISTORY_TABLE: &str = "training-history.csv";
+const EPOCHS_CHART: &str = "training-epochs.svg";
+const SECONDS_CHART: &str = "training-seconds.svg";
+const SEEDS_HEADER: &str =
+    "seed,trainer,train_mse,train_nrmse_std_percent,test_mse,test_nrmse_std_percent,seconds,evaluations\n";
+const HISTORY_HEADER: &str = "seed,trainer,epoch,evaluations,seconds,train_nrmse_std_percent\n";
+
+/// Names of the files beside page and tables, and what they are.
+pub fn further_files() -> Vec<(&'static str, Kind)> {
+    vec![
+        (SEEDS_TABLE, Kind::Beginning(SEEDS_HEADER.into())),
+        (HISTORY_TABLE, Kind::Beginning(HISTORY_HEADER.into())),
+        (EPOCHS_CHART, Kind::Drawing),
+        (SECONDS_CHART, Kind::Drawing),
+    ]
+}
+
 /// The chapter on all repetitions.
 pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
     let files = [
-        ("training-seeds.csv", csv(repetitions)),
-        ("training-history.csv", history(repetitions)),
-        ("training-epochs.svg", plot::standalone(&epochs)),
-        ("training-seconds.svg", plot::standalone(&seconds)),
+        (SEEDS_TABLE, csv(repetitions)),
+        (HISTORY_TABLE, history(repetitions)),
+        (EPOCHS_CHART, plot::standalone(&epochs)),
+        (SECONDS_CHART, plot::standalone(&seconds)),
     ];
     let specimen = protocol.specimen;
     let mut parts = vec![
@@ -229,9 +249,7 @@ fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
 }
 
 fn csv(repetitions: &[Repetition]) -> String {
-    let mut text = String::from(
-        "seed,trainer,train_mse,train_nrmse_std_percent,test_mse,test_nrmse_std_percent,seconds,evaluations\n",
-    );
+    let mut text = String::from(SEEDS_HEADER);
     for training in repetitions.iter().flat_map(|repetition| &repetition.trainings) {
         let percent = |errors: &hysid::metrics::Errors| errors.nrmse_std_percent.unwrap_or(f64::NAN);
         text += &format!(
@@ -250,7 +268,7 @@ fn csv(repetitions: &[Repetition]) -> String {
 }
 
 fn history(repetitions: &[Repetition]) -> String {
-    let mut text = String::from("seed,trainer,epoch,evaluations,seconds,train_nrmse_std_percent\n");
+    let mut text = String::from(HISTORY_HEADER);
     for training in repetitions.iter().flat_map(|repetition| &repetition.trainings) {
         for moment in kept(&training.moments) {
             text += &format!(

@@ -56,9 +56,10 @@ impl GeneralizedPrandtlIshlinskii {
         if options.operators == 0 || options.operators > MOST_PLAYS {
             return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
         }
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let series = Series::all(data, None)?;
         let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
         let lags = sign * work(&series) < 0.0;
+        let series = thinned(series, Memory::TurningPoints);
         let family = Plays::new(data.input_range(0), sign, lags, options);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
         let found = search(&family, &series, effort, observer)?;

@@ -114,7 +114,12 @@ impl<'a> Training<'a> {
         let mut termination = Termination::EpochsUsed;
         for epoch in 1..=self.epochs {
             self.epoch(epoch, forced);
-            if observer(self.progress(epoch, self.epochs + last)).is_break() {
+            let mut told = self.progress(epoch, self.epochs + last);
+            if epoch <= forced {
+                // With the measured output at every turning point it is no error of a free run.
+                told.train_nrmse_percent = f64::NAN;
+            }
+            if observer(told).is_break() {
                 termination = Termination::Stopped;
                 break;
             }

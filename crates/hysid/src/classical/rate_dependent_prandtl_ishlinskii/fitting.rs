@@ -70,8 +70,9 @@ impl RateDependentPrandtlIshlinskii {
         if options.operators == 0 || options.operators > MOST_PLAYS {
             return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
         }
-        let series = thinned(Series::all(data, Some(options.rate))?, Memory::EveryRow);
+        let series = Series::all(data, Some(options.rate))?;
         let family = Plays::new(&series, options);
+        let series = thinned(series, Memory::EveryRow);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
         let found = search(&family, &series, effort, observer)?;
         let mut law = family.law(&found.parameters);

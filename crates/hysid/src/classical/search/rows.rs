@@ -1,6 +1,7 @@
 //! Which rows of long records a search looks at.
 
 use crate::classical::series::Series;
+use crate::record::Thinning;
 
 /// Rows compared with the measured output at most.
 const MOST_COMPARED: usize = 5000;
@@ -23,18 +24,9 @@ pub(crate) fn thinned(series: Vec<Series>, memory: Memory) -> Vec<Series> {
     let scored = |series: &[Series]| -> usize {
         series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
     };
-    let keep_every = scored(&series).div_ceil(MOST_COMPARED).max(1);
-    let mut count = 0;
-    let thin = |mut series: Series| {
-        for y in series.output.iter_mut().filter(|y| !y.is_nan()) {
-            if count % keep_every > 0 {
-                *y = f64::NAN;
-            }
-            count += 1;
-        }
-        series
-    };
-    let series: Vec<Series> = series.into_iter().map(thin).collect();
+    let mut series = series;
+    let thinning = Thinning::new(scored(&series), MOST_COMPARED);
+    thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
     let series: Vec<Series> = match memory {
         Memory::TurningPoints => series.iter().map(condensed).collect(),
         Memory::EveryRow => series,

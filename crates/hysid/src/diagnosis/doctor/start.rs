@@ -34,7 +34,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
         Some(Complaint::of_rows(kind, severity, statement, vec![piece(survey, number, 0, 0)]))
     };
     let largest = survey.input.0.abs().max(survey.input.1.abs());
-    let later: Vec<&Branch> = survey.branches.iter().filter(|b| b.record == number).skip(2).collect();
+    let later: Vec<&Branch> = survey.of_record(number).iter().skip(2).collect();
     let inside = |branch: &&&Branch| {
         let (low, high) = branch.curve.range();
         low <= x && x <= high

@@ -88,10 +88,12 @@ pub(super) fn whatever_the_input(model: &Model) -> Option<Interval> {
 
 fn possible(model: &Model, inputs: &[Interval], rate: Interval) -> Interval {
     let preprocessing = model.preprocessing();
-    let mut seen = inputs.to_vec();
-    seen[0] = seen[0].rising(|x| preprocessing.input(x));
+    let seen = inputs.iter().enumerate();
+    let mut seen: Vec<Interval> =
+        seen.map(|(input, range)| range.rising(|value| preprocessing.input_as_seen(input, value))).collect();
     if let Some((largest, _)) = preprocessing.history {
-        let farthest = inputs[0].0.abs().max(inputs[0].1.abs());
+        let from_origin = inputs[0].rising(|x| x - preprocessing.origin(0));
+        let farthest = from_origin.0.abs().max(from_origin.1.abs());
         // The path has no end.
         seen.extend([Interval(0.0, farthest / largest), Interval(0.0, f64::INFINITY)]);
     }

@@ -13,7 +13,7 @@ use crate::warning::Significant;
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The input is mirrored about 0 if this share of its range lies evenly about it.
-const EVENLY_ABOUT_ZERO: f64 = 0.6;
+const EVENLY_ABOUT_ORIGIN: f64 = 0.6;
 
 /// Loops of several sizes, whole ones first: what is left of the virgin state is gone after two branches.
 const LOOPS: [f64; 11] = [0.0, 1.0, -1.0, 1.0, -1.0, 0.5, -0.5, 0.8, -0.2, 1.0, -1.0];
@@ -91,33 +91,37 @@ struct Mirrored {
     rows: (usize, usize),
 }
 
-/// The input mirrored about 0, where the trained range allows it, and about the middle of the range. One is
-/// enough.
+/// The input mirrored about the model's origin, where the trained range allows it, and about the middle of the
+/// range. One is enough.
 ///
 /// # Errors
 /// A rate that cannot be computed.
 pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     let Probe { centre, half, .. } = *probe;
     let middle = mirrored(probe, centre, half)?;
-    let zero = if about_zero(probe) { Some(mirrored(probe, 0.0, half - centre.abs())?) } else { None };
+    let origin = probe.origin();
+    let off_centre = (origin - centre).abs();
+    let at_origin =
+        if about_origin(probe) { Some(mirrored(probe, origin, half - off_centre)?) } else { None };
     let percent = |mirrored: &Mirrored| Significant(100.0 * mirrored.index);
     let middle_of_range = "the middle of the input's range";
-    let (about, further) = match &zero {
-        Some(zero) if centre == 0.0 => {
-            (format!("x = 0 is off itself by {:.3} %", percent(zero)), String::new())
+    let x_origin = format!("x = {}", Significant(origin));
+    let (about, further) = match &at_origin {
+        Some(found) if off_centre == 0.0 => {
+            (format!("{x_origin} is off itself by {:.3} %", percent(found)), String::new())
         }
-        Some(zero) => (
-            format!("x = 0 is off itself by {:.3} %", percent(zero)),
+        Some(found) => (
+            format!("{x_origin} is off itself by {:.3} %", percent(found)),
             format!(", about {middle_of_range} by {:.3} %", percent(&middle)),
         ),
         None => (
             format!("{middle_of_range} is off itself by {:.3} %", percent(&middle)),
-            "; x = 0 is not in the middle of what was trained".into(),
+            format!("; {x_origin} is not in the middle of what was trained"),
         ),
     };
     let statement = format!("an output turned about {about} of its range{further}");
-    let best = match zero {
-        Some(zero) if zero.index <= middle.index => zero,
+    let best = match at_origin {
+        Some(found) if found.index <= middle.index => found,
         _ => middle,
     };
     Ok(Finding {
@@ -134,9 +138,9 @@ pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     })
 }
 
-/// True if the trained range lies evenly enough about 0 to be mirrored there.
-pub(super) fn about_zero(probe: &Probe) -> bool {
-    probe.half - probe.centre.abs() >= EVENLY_ABOUT_ZERO * probe.half
+/// True if the trained range lies evenly enough about the model's origin to be mirrored there.
+pub(super) fn about_origin(probe: &Probe) -> bool {
+    probe.half - (probe.centre - probe.origin()).abs() >= EVENLY_ABOUT_ORIGIN * probe.half
 }
 
 fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {

@@ -101,12 +101,14 @@ impl<'a> Inside<'a> {
         let architecture = *network.architecture();
         let drive = |x: &[f64]| {
             let record = probe.record("protocol", x, &times(x, probe.speeds.middle))?;
-            scaling.drive(&record, &architecture, probe.model.rate())
+            let (seen, rate) = probe.as_seen(record)?;
+            scaling.drive(&seen, &architecture, rate)
         };
         let path = probe.path(&PROTOCOL);
         let every = path.x.len().div_ceil(COMPARED);
-        let (low, high) = (probe.centre - probe.half, probe.centre + probe.half);
-        let fastest = probe.speeds.tried()[3];
+        let preprocessing = probe.model.preprocessing();
+        let [low, high] = [-probe.half, probe.half].map(|by| preprocessing.input(probe.centre + by));
+        let fastest = preprocessing.rate(probe.speeds.tried()[3]);
         let mut inside = Self {
             network,
             layout: Layout::new(architecture),

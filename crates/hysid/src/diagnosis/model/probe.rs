@@ -160,6 +160,21 @@ impl<'m> Probe<'m> {
         }
     }
 
+    /// Where the model's memory is virgin, in the unit of the first input.
+    pub fn origin(&self) -> f64 {
+        origin(self.model)
+    }
+
+    /// A record as the body of the model sees it, and how the rate is found there.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn as_seen(&self, record: Record) -> Result<(Record, Option<RateMethod>)> {
+        let data = Dataset::new(self.model.names().clone(), vec![record])?;
+        let (seen, rate) = self.model.preprocessing().data(&data, self.model.rate())?;
+        Ok((seen.records()[0].clone(), rate))
+    }
+
     /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
     pub fn path(&self, turning: &[f64]) -> Path {
         path(self.centre, self.half, turning, STEPS)
@@ -200,6 +215,15 @@ impl<'m> Probe<'m> {
         }
         Ok(record)
     }
+}
+
+/// Where the memory of a model is virgin, in the unit of the first input; of an ensemble's members that do not
+/// agree, 0.
+fn origin(model: &Model) -> f64 {
+    let Some(ensemble) = model.ensemble() else { return model.preprocessing().origin(0) };
+    let mut origins = ensemble.members().iter().map(origin);
+    let first = origins.next().unwrap_or_default();
+    if origins.all(|other| other == first) { first } else { 0.0 }
 }
 
 /// A path in equal steps, `steps` to each half of the range: equal places on different ways are equal numbers.

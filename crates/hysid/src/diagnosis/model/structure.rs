@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::direct::about_zero;
+use super::direct::about_origin;
 use super::probe::Probe;
 use crate::classical::Classical;
 use crate::diagnosis::{Finding, Property, Verdict};
@@ -25,7 +25,7 @@ pub struct Promise {
 
 /// All that is promised, with what was found.
 pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<Promise> {
-    let of_model = of_model(probe.model, about_zero(probe));
+    let of_model = of_model(probe.model, about_origin(probe));
     let promise = |(property, holds): (Property, bool)| {
         let verdict = if holds { Verdict::Yes } else { Verdict::No };
         let found = findings.iter().find(|finding| finding.property == property)?.verdict;
@@ -35,11 +35,11 @@ pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<Promise> {
     of_model.into_iter().filter_map(promise).collect()
 }
 
-fn of_model(model: &Model, about_zero: bool) -> Vec<(Property, bool)> {
+fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
     let mut all = match model.body() {
-        Body::Network { network, .. } => of_network(network.architecture(), about_zero),
-        Body::Law(law) => of_law(law, about_zero),
-        Body::Ensemble(ensemble) => return of_ensemble(ensemble, about_zero),
+        Body::Network { network, .. } => of_network(network.architecture(), about_origin),
+        Body::Law(law) => of_law(law, about_origin),
+        Body::Ensemble(ensemble) => return of_ensemble(ensemble, about_origin),
     };
     if model.preprocessing().companding.is_some() {
         // A branch of a companded input is no initial curve doubled in the input itself.
@@ -54,8 +54,8 @@ fn of_model(model: &Model, about_zero: bool) -> Vec<(Property, bool)> {
 
 /// What every member promises, as far as a median keeps it: it does not keep the shape of increments, which
 /// congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
-fn of_ensemble(ensemble: &Ensemble, about_zero: bool) -> Vec<(Property, bool)> {
-    let mut members = ensemble.members().iter().map(|member| of_model(member, about_zero));
+fn of_ensemble(ensemble: &Ensemble, about_origin: bool) -> Vec<(Property, bool)> {
+    let mut members = ensemble.members().iter().map(|member| of_model(member, about_origin));
     let mut all = members.next().unwrap_or_default();
     members.for_each(|promises| all.retain(|promise| promises.contains(promise)));
     let remembers = ensemble.remembers_excursions();
@@ -74,7 +74,7 @@ const MASING: (Property, bool) = (Property::Masing, true);
 const ODD: (Property, bool) = (Property::OddSymmetry, true);
 const RATE_INDEPENDENT: (Property, bool) = (Property::RateDependence, false);
 
-fn of_network(architecture: &Architecture, about_zero: bool) -> Vec<(Property, bool)> {
+fn of_network(architecture: &Architecture, about_origin: bool) -> Vec<(Property, bool)> {
     let linear_readout = architecture.hidden == 0;
     let mut all = Vec::new();
     if !sees_time(architecture) {
@@ -87,7 +87,7 @@ fn of_network(architecture: &Architecture, about_zero: bool) -> Vec<(Property, b
         }
     }
     // A sum of stops and springs is odd about 0, worn or not.
-    if linear_readout && about_zero && !all.contains(&ODD) {
+    if linear_readout && about_origin && !all.contains(&ODD) {
         all.push(ODD);
     }
     all
@@ -98,7 +98,7 @@ pub(super) fn sees_time(architecture: &Architecture) -> bool {
     architecture.rate || architecture.relaxation > 0
 }
 
-fn of_law(law: &Classical, about_zero: bool) -> Vec<(Property, bool)> {
+fn of_law(law: &Classical, about_origin: bool) -> Vec<(Property, bool)> {
     let mut all = Vec::new();
     match law {
         Classical::Masing(_) | Classical::PrandtlIshlinskii(_) => {
@@ -119,13 +119,13 @@ fn of_law(law: &Classical, about_zero: bool) -> Vec<(Property, bool)> {
             if law.degradation.is_none() {
                 all.push((Property::Deterioration, false));
             }
-            if about_zero {
+            if about_origin {
                 all.push(ODD);
             }
         }
         Classical::JilesAtherton(_) => {
             all.push((Property::Deterioration, false));
-            if about_zero {
+            if about_origin {
                 all.push(ODD);
             }
         }

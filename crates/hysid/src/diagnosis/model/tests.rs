@@ -46,6 +46,7 @@ fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
         termination: Termination::Converged,
         train,
         validation: None,
+        penalties: None,
         runs: Vec::new(),
         selection: None,
     };

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::direct::about_zero;
+use super::direct::about_origin;
 use super::neurons::{Inside, MATTERS, Neuron, NeuronKind, SLIPS};
 use super::probe::Probe;
 use crate::diagnosis::{Finding, Property, Verdict};
@@ -69,7 +69,7 @@ impl WeightDiagnosis {
             straight_readout(&inside, Property::Congruency, unworn),
             straight_readout(&inside, Property::Masing, unworn),
         ]);
-        if about_zero(probe) {
+        if about_origin(probe) {
             criteria.push(even_readout(probe, &inside));
         }
         for criterion in &mut criteria {

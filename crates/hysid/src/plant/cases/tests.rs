@@ -67,3 +67,27 @@ fn continued_records_carry_their_past() {
     }
     assert_eq!(count, KINDS / 3 + 1);
 }
+
+#[test]
+fn one_loop_has_no_reversal_inside_and_its_test_has() {
+    let cases = one_loop(26, 1).unwrap();
+    assert_eq!(cases[3].train, one_loop(4, 1).unwrap()[3].train);
+    for Case { name, train, test, .. } in &cases {
+        let (low, high) = train.input_range(0);
+        let at_an_end =
+            |x: &f64| x.min(high - 1e-9 * (high - low)) <= low || *x >= high - 1e-9 * (high - low);
+        let turning = |record: &Record| -> Vec<f64> {
+            let x = &record.inputs()[0];
+            crate::turning_points::turning_points(x, 0.02 * (high - low))
+                .into_iter()
+                .map(|row| x[row])
+                .collect()
+        };
+        assert!(train.records().iter().flat_map(turning).all(|x| at_an_end(&x)), "{name}");
+        assert!(test.records().iter().all(|record| !turning(record).iter().all(at_an_end)), "{name}");
+        let of_test = test.input_range(0);
+        assert!((of_test.0 - low).abs() + (of_test.1 - high).abs() < 1e-9 * (high - low), "{name}");
+        assert!(test.records().iter().all(|record| record.scored() > 0), "{name}");
+        train.check_identifiable(10).unwrap();
+    }
+}

@@ -1,0 +1,63 @@
+//! The files of `hysid reproduce`: their names, and how Hysid knows its own again.
+
+use std::path::Path;
+
+use hysid_files::{Destination, Kind};
+
+use super::Experiment;
+use super::chapter::CSV_HEADER;
+
+/// The folder that files go to.
+#[derive(Debug, Clone, Copy)]
+pub struct Outputs<'a> {
+    /// The folder.
+    pub folder: &'a Path,
+    /// Files that Hysid did not write are replaced too.
+    pub force: bool,
+}
+
+impl Outputs<'_> {
+    /// The finished experiment, to be taken up again.
+    pub fn stored(&self, name: &str) -> Destination {
+        let chapter = format!("\"chapter\":{{\"name\":\"{name}\"");
+        self.destination(&format!("{name}.json"), Kind::Marked("{\"version\":\"", chapter))
+    }
+
+    /// The page.
+    pub fn page(&self, name: &str) -> Destination {
+        self.destination(&format!("{name}.html"), Kind::Page)
+    }
+
+    /// The same as Markdown.
+    pub fn markdown(&self, name: &str) -> Destination {
+        self.destination(&format!("{name}.md"), Kind::Marked("# ", "Made by hysid ".into()))
+    }
+
+    /// The tables.
+    pub fn tables(&self, name: &str) -> Destination {
+        self.destination(&format!("{name}.csv"), Kind::Beginning(CSV_HEADER.into()))
+    }
+
+    /// Page, Markdown and tables of one experiment or of all together.
+    pub fn rendered(&self, name: &str) -> [Destination; 3] {
+        [self.page(name), self.markdown(name), self.tables(name)]
+    }
+
+    /// A file that only this experiment has; `None` if it has none of this name.
+    pub fn further(&self, experiment: Experiment, name: &str) -> Option<Destination> {
+        let (name, kind) = experiment.further_files().into_iter().find(|(known, _)| *known == name)?;
+        Some(self.destination(name, kind))
+    }
+
+    /// All files of an experiment.
+    pub fn of(&self, experiment: Experiment) -> Vec<Destination> {
+        let name = experiment.name();
+        let further = experiment.further_files().into_iter();
+        let further = further.map(|(name, kind)| self.destination(name, kind));
+        std::iter::once(self.stored(name)).chain(self.rendered(name)).chain(further).collect()
+    }
+
+    fn destination(&self, name: &str, kind: Kind) -> Destination {
+        Destination::new(self.folder.join(name), kind, self.force)
+    }
+}

@@ -1,0 +1,50 @@
+//! A copy of a file that is about to be replaced.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::failure::Failure;
+use crate::kind::Kind;
+use crate::temporary::{beginning, builder, folder_of, plain, with_ending};
+
+/// Where a copy of the target is kept.
+pub(crate) fn path_of(target: &Path) -> PathBuf {
+    with_ending(target, ".bak")
+}
+
+/// Refuses a copy that would replace a file of another kind.
+pub(crate) fn check(target: &Path, kind: &Kind) -> Result<(), Failure> {
+    let path = path_of(target);
+    match fs::symlink_metadata(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Ok(there) if there.is_file() && kind.recognises(&path).map_err(Failure::refused(&path))? => Ok(()),
+        Ok(_) => Err(Failure::NotOurs { path, expected: kind.words() }),
+        Err(error) => Err(Failure::refused(&path)(error)),
+    }
+}
+
+/// Keeps the target as `NAME.bak`. At every moment the target is there.
+pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
+    let path = path_of(target);
+    let beginning = beginning(target);
+    let folder = folder_of(target);
+    let linked = builder(&beginning).make_in(folder, |name| fs::hard_link(target, name));
+    match linked {
+        Ok(copy) => copy.persist(&path).map_err(|error| error.error)?,
+        // Not every file system has hard links.
+        Err(_) => {
+            let mut copy = builder(&beginning).tempfile_in(folder).map_err(plain)?;
+            io::copy(&mut File::open(target)?, &mut copy)?;
+            copy.as_file().set_permissions(fs::metadata(target)?.permissions())?;
+            copy.as_file().sync_all()?;
+            copy.persist(&path).map_err(|error| error.error)?;
+        }
+    }
+    Ok(path)
+}
+
+/// True if both files have the same content.
+pub(crate) fn are_same(a: &Path, b: &Path) -> io::Result<bool> {
+    Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)
+}

@@ -1,0 +1,103 @@
+//! A path and what goes there.
+
+use std::fs::{self, OpenOptions};
+use std::io;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::failure::Failure;
+use crate::kind::Kind;
+use crate::new_file::NewFile;
+use crate::target::Target;
+use crate::{backup, leftovers, temporary};
+
+/// A path and what goes there.
+#[derive(Debug, Clone)]
+pub struct Destination {
+    path: PathBuf,
+    kind: Kind,
+    force: bool,
+    keep: bool,
+}
+
+impl Destination {
+    /// A destination for a file of this kind. With `force`, any regular file there is replaced.
+    pub fn new(path: impl Into<PathBuf>, kind: Kind, force: bool) -> Self {
+        let keep = kind.is_kept();
+        Self { path: path.into(), kind, force, keep }
+    }
+
+    /// The same, with a copy `NAME.bak` of the file that is replaced, or without.
+    pub fn keeping_the_old(mut self, keep: bool) -> Self {
+        self.keep = keep;
+        self
+    }
+
+    /// The path, as the user gave it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Refuses, before any work, a place that cannot be written to or that holds a file of somebody else. Removes the
+    /// temporary files that killed processes left for this destination.
+    ///
+    /// # Errors
+    /// As named.
+    pub fn check(&self) -> Result<(), Failure> {
+        let target = match self.target()? {
+            Target::File(target) => target,
+            Target::Stream(_) | Target::Stdout => return Ok(()),
+        };
+        self.check_old(&target)?;
+        leftovers::clean(&target);
+        temporary::create(&target).map(drop).map_err(Failure::refused(&self.path))
+    }
+
+    /// Begins a new file there. The old one stays until [`NewFile::commit`].
+    ///
+    /// # Errors
+    /// As [`Destination::check`].
+    pub fn create(&self) -> Result<NewFile<'_>, Failure> {
+        NewFile::begin(self, self.target()?)
+    }
+
+    /// Writes a whole file there; gives the copy of the file that was replaced, if one is kept.
+    ///
+    /// # Errors
+    /// As [`Destination::check`], and what fails while writing.
+    pub fn write(&self, content: &[u8]) -> Result<Option<PathBuf>, Failure> {
+        let mut file = self.create()?;
+        file.write_all(content).map_err(Failure::refused(&self.path))?;
+        file.commit()
+    }
+
+    fn target(&self) -> Result<Target, Failure> {
+        Target::of(&self.path).map_err(Failure::refused(&self.path))
+    }
+
+    /// Refuses to replace what is at the target, if anything; tells if there is a file.
+    pub(crate) fn check_old(&self, target: &Path) -> Result<bool, Failure> {
+        match fs::metadata(target) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(Failure::refused(&self.path)(error)),
+            Ok(_) => {}
+        }
+        // A file that the user may not write to is not replaced behind the user's back.
+        OpenOptions::new().append(true).open(target).map_err(Failure::refused(&self.path))?;
+        if self.force {
+            return Ok(true);
+        }
+        if !self.kind.recognises(target).map_err(Failure::refused(&self.path))? {
+            return Err(Failure::NotOurs { path: self.path.clone(), expected: self.kind.words() });
+        }
+        if self.keep {
+            backup::check(target, &self.kind)?;
+        }
+        Ok(true)
+    }
+
+    /// True if a copy is kept of what is at the target: an empty file, or one that is replaced by force, is not worth it.
+    pub(crate) fn keeps_the_old(&self, target: &Path) -> io::Result<bool> {
+        Ok(self.keep && fs::metadata(target)?.len() > 0 && self.kind.recognises(target)?)
+    }
+}

@@ -1,0 +1,166 @@
+//! Kinds of files that Hysid writes, and how it knows its own again.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Name and version of the program, as its pages and drawings carry them.
+pub const GENERATOR: &str = concat!("Hysid ", env!("CARGO_PKG_VERSION"));
+
+/// Begins every page. The version follows.
+pub const PAGE_MARK: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+                             <meta name=\"generator\" content=\"Hysid ";
+
+/// Pages of version 0.1.0 carry no mark: they begin like this, and the style sheet follows the title.
+const OLD_PAGE: [&str; 2] = [
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+     <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+     <meta name=\"color-scheme\" content=\"light dark\">\n<title>",
+    "</title>\n<style>\n:root { color-scheme: light dark; --page: #ffffff; --text: #1b1f24;",
+];
+
+/// Drawings begin like this, and carry either the mark or, in version 0.1.0, the style sheet.
+const DRAWING: &str = "<svg class=\"plot\" role=\"img\" aria-label=\"";
+const DRAWING_MARKS: [&str; 2] = [" data-generator=\"Hysid ", "><style>svg.plot { --ink: #1b1f24; --axis: "];
+
+/// Names of columns in titles and labels may be long.
+const LONGEST_BEGINNING: u64 = 1 << 16;
+
+/// A kind of file, by which Hysid knows its own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Kind {
+    /// A model file. One that is replaced is kept as `NAME.bak`.
+    Model,
+    /// A checkpoint of a fit.
+    Checkpoint,
+    /// A page of HTML.
+    Page,
+    /// A drawing, as SVG.
+    Drawing,
+    /// A text that begins like this, such as a table with this header line.
+    Beginning(Vec<u8>),
+    /// A text that begins with the first of these and contains the second soon after.
+    Marked(&'static str, String),
+    /// A file with exactly this content.
+    Content(Vec<u8>),
+}
+
+impl Kind {
+    /// What it is, after "is no".
+    pub(crate) fn words(&self) -> &'static str {
+        match self {
+            Self::Model => "model of Hysid",
+            Self::Checkpoint => "checkpoint of Hysid",
+            Self::Page => "page of Hysid",
+            Self::Drawing => "drawing of Hysid",
+            Self::Beginning(_) => "table of this command",
+            Self::Marked(..) => "result of this command",
+            Self::Content(_) => "copy of what this command writes",
+        }
+    }
+
+    /// True if a replaced file is kept.
+    pub(crate) fn is_kept(&self) -> bool {
+        *self == Self::Model
+    }
+
+    /// True for a file that Hysid may replace: one of its own, or one without content.
+    pub(crate) fn recognises(&self, path: &Path) -> io::Result<bool> {
+        let mut file = File::open(path)?;
+        let length = file.metadata()?.len();
+        if length == 0 {
+            return Ok(true);
+        }
+        if let Self::Content(content) = self {
+            return Ok(length == content.len() as u64 && has_content(&mut file, content)?);
+        }
+        let mut beginning = Vec::new();
+        file.take(LONGEST_BEGINNING).read_to_end(&mut beginning)?;
+        Ok(self.is_begun_by(&beginning))
+    }
+
+    fn is_begun_by(&self, text: &[u8]) -> bool {
+        match self {
+            Self::Model => is_model(text),
+            Self::Checkpoint => text.starts_with(b"hysid checkpoint "),
+            Self::Page => {
+                text.starts_with(PAGE_MARK.as_bytes())
+                    || text.starts_with(OLD_PAGE[0].as_bytes()) && contains(text, OLD_PAGE[1])
+            }
+            Self::Drawing => {
+                text.starts_with(DRAWING.as_bytes()) && DRAWING_MARKS.iter().any(|mark| contains(text, mark))
+            }
+            Self::Beginning(beginning) => text.starts_with(beginning),
+            Self::Marked(beginning, mark) => text.starts_with(beginning.as_bytes()) && contains(text, mark),
+            Self::Content(content) => text == content,
+        }
+    }
+}
+
+/// A JSON object whose first field names the format, as of every version's model files.
+fn is_model(text: &[u8]) -> bool {
+    let tokens = [&b"{"[..], b"\"format\"", b":", b"\"hysid-model\""];
+    let mut rest = text;
+    tokens.iter().all(|token| {
+        rest = rest.trim_ascii_start();
+        rest.strip_prefix(*token).map(|after| rest = after).is_some()
+    })
+}
+
+fn contains(text: &[u8], mark: &str) -> bool {
+    text.windows(mark.len()).any(|window| window == mark.as_bytes())
+}
+
+/// Compares without holding both in memory.
+fn has_content(file: &mut impl Read, content: &[u8]) -> io::Result<bool> {
+    let mut block = vec![0; 1 << 16];
+    let mut rest = content;
+    loop {
+        let read = file.read(&mut block)?;
+        match rest.split_at_checked(read) {
+            Some((expected, after)) if expected == &block[..read] => rest = after,
+            _ => return Ok(false),
+        }
+        if read == 0 {
+            return Ok(rest.is_empty());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_are_known_by_their_first_field_however_they_are_laid_out() {
+        for text in ["{\n  \"format\": \"hysid-model\",", " {\"format\":\"hysid-model\"}"] {
+            assert!(Kind::Model.is_begun_by(text.as_bytes()), "{text}");
+        }
+        for text in
+            ["{}", "{\"a\": \"hysid-model\"}", "{\"format\": \"other\"}", "\"format\": \"hysid-model\""]
+        {
+            assert!(!Kind::Model.is_begun_by(text.as_bytes()), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_page_that_quotes_the_mark_is_not_ours() {
+        let ours = format!("{PAGE_MARK}0.1.0\">");
+        assert!(Kind::Page.is_begun_by(ours.as_bytes()));
+        assert!(!Kind::Page.is_begun_by(format!("<html><pre>{ours}").as_bytes()));
+        let other = format!("{}notes</title>", OLD_PAGE[0]);
+        assert!(!Kind::Page.is_begun_by(other.as_bytes()));
+        assert!(Kind::Page.is_begun_by(format!("{}t{}", OLD_PAGE[0], OLD_PAGE[1]).as_bytes()));
+    }
+
+    #[test]
+    fn content_is_compared_to_the_last_byte() {
+        let content = vec![7; 200_000];
+        let same = |other: &[u8]| has_content(&mut &other[..], &content).unwrap();
+        assert!(same(&content));
+        assert!(!same(&content[1..]));
+        let mut changed = content.clone();
+        changed[199_999] = 8;
+        assert!(!same(&changed));
+    }
+}

@@ -1,0 +1,27 @@
+//! How the program `hysid` and its Python package write files.
+//!
+//! - **Atomic.** A file is written beside its target, synced and renamed: the target is complete or as it was.
+//! - **Only over its own files.** A file that Hysid did not write is not replaced, unless that is asked for. A model
+//!   that is replaced is kept as `NAME.bak`.
+//! - **As the user arranged it.** Links are followed, owner and permissions of the old file are kept, and devices and
+//!   pipes are written through.
+//!
+//! A [`Destination`] is a path together with the [`Kind`] of file that goes there.
+
+mod backup;
+mod destination;
+mod failure;
+mod kind;
+mod leftovers;
+mod lock;
+mod new_file;
+mod rescue;
+mod target;
+mod temporary;
+
+pub use destination::Destination;
+pub use failure::{Failure, reason};
+pub use kind::{GENERATOR, Kind, PAGE_MARK};
+pub use lock::Lock;
+pub use new_file::NewFile;
+pub use rescue::rescue;

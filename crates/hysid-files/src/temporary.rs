@@ -1,0 +1,97 @@
+//! Temporary files beside a target. Their names tell the target, and a lock tells that their process lives.
+
+use std::ffi::OsString;
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+/// Random letters in a name.
+pub(crate) const RANDOM_LETTERS: usize = 8;
+
+/// Ends every name.
+pub(crate) const ENDING: &str = ".hysid-partial";
+
+/// Letters of the target's name that are kept: file systems allow 255 bytes in all.
+const MOST_LETTERS: usize = 50;
+
+/// Attempts to keep a file that another process takes for a leftover.
+const ATTEMPTS: usize = 16;
+
+/// Begins the names of all temporary files of a target.
+pub(crate) fn beginning(target: &Path) -> String {
+    let name = target.file_name().unwrap_or_default().to_string_lossy();
+    format!(".{}.", name.chars().take(MOST_LETTERS).collect::<String>())
+}
+
+/// The folder of a target.
+pub(crate) fn folder_of(target: &Path) -> &Path {
+    match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// The target's path with an ending behind its name.
+pub(crate) fn with_ending(target: &Path, ending: &str) -> PathBuf {
+    let mut name = OsString::from(target);
+    name.push(ending);
+    name.into()
+}
+
+/// A builder of temporary files of a target.
+pub(crate) fn builder<'a>(beginning: &'a str) -> tempfile::Builder<'a, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(beginning).suffix(ENDING).rand_bytes(RANDOM_LETTERS);
+    builder
+}
+
+/// Creates a temporary file beside a target, under a name that was not there, and locks it. A file that replaces
+/// nobody's gets the permissions that the user's mask leaves; any other is private until it has those of the old file.
+pub(crate) fn create(target: &Path) -> io::Result<NamedTempFile> {
+    let beginning = beginning(target);
+    let mut builder = builder(&beginning);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = if target.exists() { 0o600 } else { 0o666 };
+        builder.permissions(std::fs::Permissions::from_mode(mode));
+    }
+    for _ in 0..ATTEMPTS {
+        let file = builder.tempfile_in(folder_of(target)).map_err(plain)?;
+        match file.as_file().try_lock() {
+            // Without locks on this file system, leftovers are not cleaned either.
+            Ok(()) | Err(TryLockError::Error(_)) if is_linked(file.as_file(), file.path()) => {
+                return Ok(file);
+            }
+            _ => {}
+        }
+    }
+    Err(io::Error::other("temporary files vanish as soon as they are made"))
+}
+
+/// The error without the name of the temporary file, which tempfile adds.
+pub(crate) fn plain(error: io::Error) -> io::Error {
+    match error.raw_os_error() {
+        Some(number) => io::Error::from_raw_os_error(number),
+        None => error.kind().into(),
+    }
+}
+
+/// True if the open file is still the one of this name.
+#[cfg(unix)]
+pub(crate) fn is_linked(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let place = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
+    match (file.metadata(), std::fs::symlink_metadata(path)) {
+        (Ok(open), Ok(named)) => place(open) == place(named),
+        _ => false,
+    }
+}
+
+/// True if the open file is still the one of this name: elsewhere than on Unix an open file keeps its name.
+#[cfg(not(unix))]
+pub(crate) fn is_linked(_: &File, path: &Path) -> bool {
+    path.exists()
+}

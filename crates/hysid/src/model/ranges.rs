@@ -1,0 +1,64 @@
+//! Inputs and rates beyond what a model was trained on.
+
+use crate::model::Model;
+use crate::warning::Warning;
+
+/// What the rows so far are compared with.
+#[derive(Debug, Clone)]
+pub(super) struct Ranges {
+    inputs: Vec<Reach>,
+    rate: Option<Reach>,
+}
+
+/// How far the values of one column go.
+#[derive(Debug, Clone)]
+struct Reach {
+    name: String,
+    trained: (f64, f64),
+    seen: (f64, f64),
+    rows: usize,
+    outside: usize,
+}
+
+impl Ranges {
+    pub fn of(model: &Model) -> Self {
+        let inputs = model.names.inputs.iter().zip(&model.trained.inputs);
+        let rate = model.rate.and(model.trained.rate);
+        let rate = rate.map(|trained| Reach::new(format!("the rate of {}", model.names.inputs[0]), trained));
+        Self { inputs: inputs.map(|(name, &trained)| Reach::new(name.clone(), trained)).collect(), rate }
+    }
+
+    /// Takes rows: all inputs, and the rate of the first.
+    pub fn take(&mut self, inputs: &[&[f64]], rate: Option<&[f64]>) {
+        self.inputs.iter_mut().zip(inputs).for_each(|(reach, values)| reach.take(values));
+        if let Some((reach, values)) = self.rate.as_mut().zip(rate) {
+            reach.take(values);
+        }
+    }
+
+    /// Warns of what is outside.
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.inputs.iter().chain(&self.rate).filter_map(Reach::warning).collect()
+    }
+}
+
+impl Reach {
+    fn new(name: String, trained: (f64, f64)) -> Self {
+        Self { name, trained, seen: (f64::INFINITY, f64::NEG_INFINITY), rows: 0, outside: 0 }
+    }
+
+    fn take(&mut self, values: &[f64]) {
+        // A rounding beyond the range is not outside it.
+        let slack = 1e-9 * (self.trained.1 - self.trained.0);
+        let (low, high) = (self.trained.0 - slack, self.trained.1 + slack);
+        self.rows += values.len();
+        self.outside += values.iter().filter(|&&value| value < low || value > high).count();
+        self.seen = values.iter().fold(self.seen, |(low, high), &value| (low.min(value), high.max(value)));
+    }
+
+    fn warning(&self) -> Option<Warning> {
+        let share_percent = 100.0 * self.outside as f64 / self.rows as f64;
+        let (name, trained, seen) = (self.name.clone(), self.trained, self.seen);
+        (self.outside > 0).then_some(Warning::OutsideTrainedRange { name, share_percent, trained, seen })
+    }
+}

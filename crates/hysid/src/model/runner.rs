@@ -1,0 +1,359 @@
+//! A model on its way over a record, some rows at a time: what every free run of a model goes through.
+//!
+//! Rows are taken in chunks, with the rates of their first input and the time steps before them. However a record is
+//! cut, the outputs are the same to the last bit, since each row's rate and step follow from the rows around it.
+
+use crate::classical::{Classical, ClassicalState, Law, Sample};
+use crate::error::{DataProblem, Result};
+use crate::free_run::{CHUNK, FreeRun};
+use crate::model::band::disagreement;
+use crate::model::ensemble::{Council, Excursion};
+use crate::model::ranges::Ranges;
+use crate::model::{Body, Ensemble, Model};
+use crate::preprocessing::{Past, Preprocessing};
+use crate::rate::RateMethod;
+use crate::record::Excitation;
+
+/// How sure an output is.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Spread {
+    /// How much the members of an ensemble disagree; 0 for a single model.
+    pub disagreement: f64,
+    /// Degree of having been outside the trained range, 0 to 1.
+    pub outside: f64,
+}
+
+/// A model on its way over a record.
+#[derive(Debug, Clone)]
+pub(super) struct Runner<'m> {
+    body: Parts<'m>,
+    excursion: Excursion,
+    range: (f64, f64),
+    /// Rates of the rows of a chunk, by each method that the model or a member has.
+    rates: Vec<(RateMethod, Vec<f64>)>,
+    steps: Vec<f64>,
+    /// What the trained ranges are compared with, if that is wanted: its rate is that of this method.
+    ranges: Option<(Ranges, Option<RateMethod>)>,
+}
+
+#[derive(Debug, Clone)]
+enum Parts<'m> {
+    Single(Box<Single<'m>>),
+    Ensemble(Box<Members<'m>>),
+}
+
+/// A single model: a network or a law, and how it sees its input.
+#[derive(Debug, Clone)]
+struct Single<'m> {
+    mechanism: Mechanism<'m>,
+    /// `None` for a model that sees its input as it is.
+    preprocessing: Option<&'m Preprocessing>,
+    rate: Option<RateMethod>,
+    past: Past,
+    /// Columns of a chunk as the model sees them.
+    seen: Vec<Vec<f64>>,
+    seen_rate: Vec<f64>,
+}
+
+#[derive(Debug, Clone)]
+enum Mechanism<'m> {
+    Network(Box<FreeRun<'m>>),
+    Law(&'m Classical, ClassicalState, Vec<Sample>),
+}
+
+/// The members of an ensemble, and room for their outputs.
+#[derive(Debug, Clone)]
+struct Members<'m> {
+    ensemble: &'m Ensemble,
+    members: Vec<Single<'m>>,
+    outputs: Vec<Vec<f64>>,
+    council: Council,
+}
+
+/// Some rows of a record: inputs in the user's units, rates by method, and the time since the row before.
+struct Chunk<'a> {
+    name: &'a str,
+    inputs: &'a [&'a [f64]],
+    rates: &'a [(RateMethod, Vec<f64>)],
+    steps: &'a [f64],
+}
+
+impl<'m> Runner<'m> {
+    /// A run of a model, from the virgin state.
+    pub fn of_model(model: &'m Model) -> Self {
+        let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
+        let range = match &model.body {
+            Body::Ensemble(ensemble) => ensemble.range(),
+            Body::Network { .. } | Body::Law(_) => model.trained.inputs[0],
+        };
+        Self { range, excursion: Excursion::beyond(range), ..run }
+    }
+
+    /// A run of what simulates alone.
+    pub fn of_body(
+        body: &'m Body,
+        preprocessing: Option<&'m Preprocessing>,
+        rate: Option<RateMethod>,
+    ) -> Self {
+        let (body, range) = match body {
+            Body::Ensemble(ensemble) => (Parts::Ensemble(Box::new(Members::of(ensemble))), ensemble.range()),
+            body => {
+                let everything = (f64::NEG_INFINITY, f64::INFINITY);
+                (Parts::Single(Box::new(Single::of(body, preprocessing, rate))), everything)
+            }
+        };
+        let mut methods: Vec<RateMethod> = body.singles().iter().filter_map(|single| single.rate).collect();
+        methods.extend(rate);
+        methods.sort_unstable_by_key(|method| *method as u8);
+        methods.dedup();
+        Self {
+            body,
+            excursion: Excursion::beyond(range),
+            range,
+            rates: methods.into_iter().map(|method| (method, Vec::new())).collect(),
+            steps: Vec::new(),
+            ranges: None,
+        }
+    }
+
+    /// The same, which compares the rows with the ranges that the model was trained on.
+    pub fn watching(mut self, model: &Model) -> Self {
+        self.ranges = Some((Ranges::of(model), model.rate));
+        self
+    }
+
+    /// The ranges of the rows so far, if they are compared with those trained on.
+    pub fn ranges(&self) -> Option<&Ranges> {
+        self.ranges.as_ref().map(|(ranges, _)| ranges)
+    }
+
+    /// Rows before and behind a row from which its rate and its time step follow, at most.
+    pub fn rows_around(&self) -> (usize, usize) {
+        let around = self.rates.iter().map(|(method, _)| method.rows_around());
+        around.fold((1, 0), |most, around| (most.0.max(around.0), most.1.max(around.1)))
+    }
+
+    /// Back to the virgin state, before another record.
+    pub fn reset(&mut self) {
+        self.body.singles_mut().iter_mut().for_each(Single::reset);
+        self.excursion = Excursion::beyond(self.range);
+    }
+
+    /// The outputs of a whole record, from the virgin state.
+    ///
+    /// # Errors
+    /// Another number of inputs than the model has, a rate that cannot be computed.
+    pub fn record(&mut self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
+        let mut outputs = vec![0.0; excitation.len()];
+        self.reset();
+        self.rows(excitation, 0, &mut outputs, None)?;
+        Ok(outputs)
+    }
+
+    /// The outputs of the next rows: those of the excitation from `first` on. The rows around them that their rates
+    /// follow from are there too, unless the record ends.
+    ///
+    /// # Errors
+    /// As [`Runner::record`].
+    pub fn rows(
+        &mut self,
+        excitation: &Excitation<'_>,
+        first: usize,
+        outputs: &mut [f64],
+        mut spreads: Option<&mut [Spread]>,
+    ) -> Result<()> {
+        let (expected, found) = (self.body.inputs(), excitation.inputs().len());
+        if expected != found {
+            return Err(excitation.defect(None, None, DataProblem::Inputs { expected, found }));
+        }
+        for (index, outputs) in outputs.chunks_mut(CHUNK).enumerate() {
+            let rows = index * CHUNK..index * CHUNK + outputs.len();
+            let spreads = spreads.as_deref_mut().map(|spreads| &mut spreads[rows.clone()]);
+            self.chunk(excitation, first + rows.start, outputs, spreads)?;
+        }
+        Ok(())
+    }
+
+    fn chunk(
+        &mut self,
+        excitation: &Excitation<'_>,
+        first: usize,
+        outputs: &mut [f64],
+        spreads: Option<&mut [Spread]>,
+    ) -> Result<()> {
+        let rows = first..first + outputs.len();
+        for (method, rates) in &mut self.rates {
+            rates.resize(rows.len(), 0.0);
+            method.fill(excitation, first, rates)?;
+        }
+        self.steps.clear();
+        self.steps.extend(rows.clone().map(|row| match excitation.time() {
+            Some(time) if row > 0 => time[row] - time[row - 1],
+            _ => 0.0,
+        }));
+        let inputs: Vec<&[f64]> = excitation.inputs().iter().map(|input| &input[rows.clone()]).collect();
+        let chunk =
+            Chunk { name: excitation.name(), inputs: &inputs, rates: &self.rates, steps: &self.steps };
+        if let Some((ranges, method)) = &mut self.ranges {
+            ranges.take(&inputs, method.map(|method| chunk.rate(method)));
+        }
+        match &mut self.body {
+            Parts::Single(single) => {
+                single.run(&chunk, outputs)?;
+                for (spread, &x) in spreads.into_iter().flatten().zip(inputs[0]) {
+                    *spread = Spread { disagreement: 0.0, outside: self.excursion.take(x) };
+                }
+                Ok(())
+            }
+            Parts::Ensemble(members) => members.run(&chunk, &mut self.excursion, outputs, spreads),
+        }
+    }
+}
+
+impl<'m> Parts<'m> {
+    fn singles(&self) -> &[Single<'m>] {
+        match self {
+            Self::Single(single) => std::slice::from_ref(single),
+            Self::Ensemble(members) => &members.members,
+        }
+    }
+
+    fn singles_mut(&mut self) -> &mut [Single<'m>] {
+        match self {
+            Self::Single(single) => std::slice::from_mut(single),
+            Self::Ensemble(members) => &mut members.members,
+        }
+    }
+
+    /// Inputs of a record; those of all members are as many.
+    fn inputs(&self) -> usize {
+        self.singles()[0].inputs()
+    }
+}
+
+impl Chunk<'_> {
+    /// The rates by this method, which is one of the model's.
+    fn rate(&self, method: RateMethod) -> &[f64] {
+        let known = self.rates.iter().find(|(known, _)| *known == method);
+        known.map_or(&[], |(_, rates)| rates)
+    }
+}
+
+impl<'m> Single<'m> {
+    /// A part without members.
+    fn of(body: &'m Body, preprocessing: Option<&'m Preprocessing>, rate: Option<RateMethod>) -> Self {
+        let mechanism = match body {
+            Body::Network { network, scaling } => {
+                let rate = rate.map(|_| RateMethod::Given);
+                Mechanism::Network(Box::new(FreeRun::new(network, scaling, rate)))
+            }
+            Body::Law(law) => Mechanism::Law(law, law.virgin(), Vec::new()),
+            Body::Ensemble(_) => unreachable!("members are networks or laws"),
+        };
+        let preprocessing = preprocessing.filter(|preprocessing| !preprocessing.is_none());
+        let (seen, seen_rate) = (Vec::new(), Vec::new());
+        Self { mechanism, preprocessing, rate, past: Past::default(), seen, seen_rate }
+    }
+
+    fn inputs(&self) -> usize {
+        let added = self.preprocessing.map_or(0, Preprocessing::added_inputs);
+        match &self.mechanism {
+            Mechanism::Network(network) => network.inputs() - added,
+            Mechanism::Law(..) => 1,
+        }
+    }
+
+    fn reset(&mut self) {
+        self.past = Past::default();
+        match &mut self.mechanism {
+            Mechanism::Network(network) => network.reset(),
+            Mechanism::Law(law, state, _) => *state = law.virgin(),
+        }
+    }
+
+    fn run(&mut self, chunk: &Chunk<'_>, outputs: &mut [f64]) -> Result<()> {
+        let rate = self.rate.map(|method| chunk.rate(method));
+        let Some(preprocessing) = self.preprocessing else {
+            return self.mechanism.run(chunk, chunk.inputs, rate, outputs);
+        };
+        see(preprocessing, chunk.inputs, &mut self.past, &mut self.seen);
+        let rate = rate.map(|rate| {
+            self.seen_rate.clear();
+            self.seen_rate.extend(rate.iter().map(|&rate| preprocessing.rate(rate)));
+            self.seen_rate.as_slice()
+        });
+        let seen: Vec<&[f64]> = self.seen.iter().map(Vec::as_slice).collect();
+        self.mechanism.run(chunk, &seen, rate, outputs)
+    }
+}
+
+/// Inputs as a model sees them, column by column.
+fn see(preprocessing: &Preprocessing, inputs: &[&[f64]], past: &mut Past, seen: &mut Vec<Vec<f64>>) {
+    seen.resize(inputs.len() + preprocessing.added_inputs(), Vec::new());
+    seen.iter_mut().for_each(Vec::clear);
+    let (mut sample, mut sample_seen) = (vec![0.0; inputs.len()], Vec::new());
+    for row in 0..inputs[0].len() {
+        sample.iter_mut().zip(inputs).for_each(|(value, input)| *value = input[row]);
+        preprocessing.sample(&sample, past, &mut sample_seen);
+        seen.iter_mut().zip(&sample_seen).for_each(|(column, &value)| column.push(value));
+    }
+}
+
+impl Mechanism<'_> {
+    /// Runs on with the inputs and the rate as the model sees them.
+    fn run(
+        &mut self,
+        chunk: &Chunk<'_>,
+        inputs: &[&[f64]],
+        rate: Option<&[f64]>,
+        outputs: &mut [f64],
+    ) -> Result<()> {
+        match self {
+            Self::Network(network) => {
+                let excitation = Excitation::unchecked(chunk.name, None, inputs.to_vec(), rate);
+                network.rows(&excitation, 0, chunk.steps, outputs)
+            }
+            Self::Law(law, state, samples) => {
+                let rates = rate.into_iter().flatten().copied().chain(std::iter::repeat(0.0));
+                let rows = inputs[0].iter().zip(rates).zip(chunk.steps);
+                samples.clear();
+                samples.extend(rows.map(|((&x, rate), &step)| Sample { x, rate, step }));
+                law.run_on(state, samples, outputs);
+                Ok(())
+            }
+        }
+    }
+}
+
+impl<'m> Members<'m> {
+    fn of(ensemble: &'m Ensemble) -> Self {
+        let member = |member: &'m Model| Single::of(&member.body, Some(&member.preprocessing), member.rate);
+        let members: Vec<Single<'m>> = ensemble.members().iter().map(member).collect();
+        let outputs = vec![Vec::new(); members.len()];
+        Self { ensemble, members, outputs, council: Council::new(ensemble.group()) }
+    }
+
+    fn run(
+        &mut self,
+        chunk: &Chunk<'_>,
+        excursion: &mut Excursion,
+        outputs: &mut [f64],
+        spreads: Option<&mut [Spread]>,
+    ) -> Result<()> {
+        for (member, of_member) in self.members.iter_mut().zip(&mut self.outputs) {
+            of_member.resize(outputs.len(), 0.0);
+            member.run(chunk, of_member)?;
+        }
+        let (group, of_members, council) = (self.ensemble.group(), &self.outputs, &mut self.council);
+        let mut spreads = spreads.into_iter().flatten();
+        for (row, (output, &x)) in outputs.iter_mut().zip(chunk.inputs[0]).enumerate() {
+            let outside = excursion.take(x);
+            *output = council.output(group, outside, |member| of_members[member][row]);
+            if let Some(spread) = spreads.next() {
+                let all = council.everybody(group, outside, |member| of_members[member][row]);
+                *spread = Spread { disagreement: disagreement(all), outside };
+            }
+        }
+        Ok(())
+    }
+}

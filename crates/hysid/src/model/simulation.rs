@@ -1,0 +1,170 @@
+//! A free run over records that come block by block: memory does not grow with the record.
+
+use std::mem;
+
+use crate::error::{Channel, DataProblem, Error, Result};
+use crate::model::runner::{Runner, Spread};
+use crate::model::{Band, Model, Prediction};
+use crate::record::Excitation;
+use crate::warning::Warning;
+
+/// A free run that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
+/// [`Model::predict`] to the last bit, however the record is cut.
+///
+/// Where the rate of a row follows from the rows behind it, its output comes with a later block.
+#[derive(Debug, Clone)]
+pub struct Simulation<'m> {
+    model: &'m Model,
+    runner: Runner<'m>,
+    band: Option<(&'m Band, f64)>,
+    record: String,
+    window: Window,
+}
+
+/// The rows that are still needed: some that are simulated, and those behind them that are not.
+#[derive(Debug, Clone, Default)]
+struct Window {
+    time: Option<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+    rate: Option<Vec<f64>>,
+    /// Rows of the record before the window.
+    before: usize,
+    /// Rows of the window that are simulated.
+    simulated: usize,
+}
+
+impl<'m> Simulation<'m> {
+    pub(super) fn new(model: &'m Model, band: Option<(&'m Band, f64)>) -> Self {
+        let runner = Runner::of_model(model).watching(model);
+        Self { model, runner, band, record: String::new(), window: Window::default() }
+    }
+
+    /// Begins a record of this name, from the virgin state. What was left of another is dropped.
+    pub fn begin(&mut self, record: impl Into<String>) {
+        self.runner.reset();
+        self.record = record.into();
+        self.window = Window::default();
+    }
+
+    /// Takes the next rows of the record. Gives the outputs of those rows, after all before, whose rates are known; the
+    /// edges of the band are empty without one.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`], with the row in the record; time that does not advance from block to block.
+    pub fn take(&mut self, rows: &Excitation<'_>) -> Result<Prediction> {
+        self.model.check_time(rows)?;
+        self.window.append(rows)?;
+        let (_, behind) = self.runner.rows_around();
+        self.simulate(self.window.len().saturating_sub(behind))
+    }
+
+    /// Ends the record: gives the outputs of the rows that are left.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn finish(&mut self) -> Result<Prediction> {
+        self.simulate(self.window.len())
+    }
+
+    /// Warns of inputs and rates, of all records so far, beyond what the model was trained on.
+    pub fn range_warnings(&self) -> Vec<Warning> {
+        self.runner.ranges().map_or_else(Vec::new, |ranges| ranges.warnings())
+    }
+
+    /// Simulates the rows of the window up to `end`.
+    fn simulate(&mut self, end: usize) -> Result<Prediction> {
+        let first = self.window.simulated;
+        let rows = end.saturating_sub(first);
+        let mut output = vec![0.0; rows];
+        let mut spreads = vec![Spread::default(); if self.band.is_some() { rows } else { 0 }];
+        if rows > 0 {
+            let excitation = self.window.excitation(&self.record);
+            let spreads = self.band.is_some().then_some(spreads.as_mut_slice());
+            let done = self.runner.rows(&excitation, first, &mut output, spreads);
+            done.map_err(|error| behind(error, self.window.before))?;
+            self.window.simulated = end;
+            self.window.drop_all_but(self.runner.rows_around().0);
+        }
+        Ok(Prediction::of(self.band, output, &spreads))
+    }
+}
+
+impl Prediction {
+    /// Outputs with their band, if there is one.
+    pub(super) fn of(band: Option<(&Band, f64)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
+        let half = |spread: &Spread| {
+            band.map(|(band, probability)| band.half_width(probability, spread.disagreement, spread.outside))
+        };
+        let halves: Vec<f64> = spreads.iter().filter_map(half).collect();
+        Self {
+            low: output.iter().zip(&halves).map(|(output, half)| output - half).collect(),
+            high: output.iter().zip(&halves).map(|(output, half)| output + half).collect(),
+            output,
+        }
+    }
+}
+
+/// An error of the rows behind others.
+fn behind(error: Error, rows: usize) -> Error {
+    match error {
+        Error::Data(mut defect) => {
+            defect.row = defect.row.map(|row| row + rows);
+            Error::Data(defect)
+        }
+        other => other,
+    }
+}
+
+impl Window {
+    fn len(&self) -> usize {
+        self.inputs.first().map_or(0, Vec::len)
+    }
+
+    fn append(&mut self, rows: &Excitation<'_>) -> Result<()> {
+        let row = self.before + self.len();
+        let is_first = row == 0;
+        if is_first {
+            self.inputs = vec![Vec::new(); rows.inputs().len()];
+            self.time = rows.time().map(|_| Vec::new());
+            self.rate = rows.given_rate().map(|_| Vec::new());
+        }
+        let (expected, found) = (self.inputs.len(), rows.inputs().len());
+        if expected != found {
+            return Err(rows.defect(None, None, DataProblem::Inputs { expected, found }));
+        }
+        if self.time.is_some() != rows.time().is_some() {
+            return Err(rows.defect(None, Some(Channel::Time), DataProblem::NoTime));
+        }
+        if self.rate.is_some() != rows.given_rate().is_some() {
+            return Err(rows.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate));
+        }
+        if let Some((time, more)) = self.time.as_mut().zip(rows.time()) {
+            if let (Some(&before), Some(&now)) = (time.last(), more.first())
+                && now <= before
+            {
+                let problem = DataProblem::TimeNotIncreasing { before, now };
+                return Err(rows.defect(Some(row), Some(Channel::Time), problem));
+            }
+            time.extend_from_slice(more);
+        }
+        self.inputs.iter_mut().zip(rows.inputs()).for_each(|(input, more)| input.extend_from_slice(more));
+        if let Some((rate, more)) = self.rate.as_mut().zip(rows.given_rate()) {
+            rate.extend_from_slice(more);
+        }
+        Ok(())
+    }
+
+    fn excitation<'a>(&'a self, name: &'a str) -> Excitation<'a> {
+        let inputs = self.inputs.iter().map(Vec::as_slice).collect();
+        Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref())
+    }
+
+    /// Drops all rows that are simulated but so many, the last ones.
+    fn drop_all_but(&mut self, kept: usize) {
+        let dropped = self.simulated.saturating_sub(kept);
+        let columns = self.inputs.iter_mut().chain(&mut self.time).chain(&mut self.rate);
+        columns.for_each(|column| mem::drop(column.drain(..dropped)));
+        self.before += dropped;
+        self.simulated -= dropped;
+    }
+}
