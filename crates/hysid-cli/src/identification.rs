@@ -15,6 +15,7 @@ use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
 use crate::data::Data;
+use crate::errors_table::AFTER_WARM_UP;
 use crate::lines::{WIDTH, wrapped};
 use crate::messages::{Usage, note, summarised, warning};
 use crate::progress::Follower;
@@ -78,9 +79,7 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
     let mut warnings = summarised(&summary.warnings(&data.set));
-    if request.rate().is_some() && !request.model().uses_rate() {
-        warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
-    }
+    warnings.extend(request.cautions(&data.set));
     warnings.iter().for_each(warning);
     Ok(Said { understood, warnings })
 }
@@ -160,12 +159,13 @@ impl Identified {
     pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
         let provenance = self.model.provenance();
         let mut sets = vec![("train", &provenance.train)];
+        sets.extend(provenance.train_after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
         sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
         sets.extend(unseen.map(|errors| ("unseen test", errors)));
         let mut text = errors_table::errors_table(&sets);
         if let Some(selection) = &provenance.selection {
             text += &format!(
-                "(validation: data held out in {} folds, before all was trained on everything)\n",
+                "(validation: all rows held out in {} folds, predicted by models trained without them)\n",
                 selection.folds.len()
             );
             text.push('\n');
@@ -173,10 +173,11 @@ impl Identified {
                 text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
-            text += "(validation: data held out, predicted by models that were trained without them)\n";
+            text += "(validation: all rows held out, predicted by models trained without them)\n";
         }
         text += &format!(
-            "\n{} with {} parameters; {}, {}; {:.1} s\n",
+            "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
+            self.model.notes().iter().map(|note| labelled("note", note)).collect::<String>(),
             self.model.name().name(),
             self.model.parameters(),
             chosen(provenance),

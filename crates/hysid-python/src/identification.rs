@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use hysid::identification::options::{ChosenOptions, RateChoice};
 use hysid::identification::{self, ModelName};
-use hysid::training::{self, Observer};
+use hysid::training::{self, FitOptions, Observer};
 use hysid::validation::cross_validate;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
@@ -44,19 +44,32 @@ impl Request {
         Ok(Self { chosen, request })
     }
 
+    /// A model with its defaults in all variants of its law, for these data.
+    #[staticmethod]
+    fn variants(options: &str, rate: &str, data: &Dataset) -> PyResult<Vec<Self>> {
+        let Self { chosen, request } = Self::new(options, rate, data)?;
+        let method = if request.model().uses_rate() { request.rate() } else { None };
+        let seed = chosen.seed.unwrap_or(FitOptions::default().seed);
+        let all = identification::Request::variants(chosen.model(), method, seed);
+        Ok(all.into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
+    }
+
+    /// The model and its variant in a few words.
+    fn label(&self) -> String {
+        self.request.label()
+    }
+
     /// The name of the model.
     fn model(&self) -> &'static str {
         self.chosen.model().name()
     }
 
-    /// Options that the model has no use for, in words.
-    fn warnings(&self) -> Vec<String> {
+    /// Options that the model has no use for, and data that it is not made for, in words.
+    fn warnings(&self, data: &Dataset) -> Vec<String> {
         let trained_by = self.chosen.trained_by();
         let useless = |option| format!("{trained_by} has no use for {option}");
         let mut warnings: Vec<String> = self.chosen.useless().into_iter().map(useless).collect();
-        if self.request.rate().is_some() && !self.chosen.model().uses_rate() {
-            warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", self.model()));
-        }
+        warnings.extend(self.request.cautions(&data.set));
         warnings
     }
 }

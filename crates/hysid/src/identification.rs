@@ -1,6 +1,8 @@
 //! Identification of any model by its name: a network of the family, or one of its rivals.
 
+mod cautions;
 pub mod options;
+pub(crate) mod variants;
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -12,7 +14,7 @@ use crate::automatic::{self, AutoOptions, Automatic};
 use crate::classical::identification::{self as classical, ClassicalOptions, Rival};
 use crate::classical::search::SearchProgress;
 use crate::error::{Error, Result};
-use crate::model::{Body, Model, Provenance};
+use crate::model::{Body, Found, Model};
 use crate::network::Family;
 use crate::preprocessing::{Origin, Seen};
 use crate::rate::RateMethod;
@@ -309,21 +311,14 @@ fn finished(
     runs: Vec<Run>,
 ) -> Result<Fit> {
     let request = Request::Classical(options.clone());
-    let train = body.errors(seen.rate, &seen.data)?;
-    let provenance = Provenance {
+    let found = Found {
         options: request,
-        samples: data.scored(),
-        records: data.records().len(),
         chosen_start: 0,
         termination,
-        train,
         validation: None,
         penalties: None,
         runs,
         selection: None,
     };
-    Ok(Fit {
-        model: Model::new(body, seen.preprocessing.clone(), options.rate, data, provenance)?,
-        evaluations,
-    })
+    Ok(Fit { model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?, evaluations })
 }

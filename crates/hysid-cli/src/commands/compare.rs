@@ -34,15 +34,12 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
     let models: Vec<ModelName> =
         if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
-    let requests: Result<Vec<Request>> = models
-        .iter()
-        .map(|&model| {
-            let rate = rate_method(&arguments.columns.rate, &roles, model)
-                .with_context(|| tables[0].file.clone())?;
-            Ok(Request::of(model, rate, arguments.seed))
-        })
-        .collect();
-    let requests = requests?;
+    let mut requests = Vec::new();
+    for &model in &models {
+        let rate =
+            rate_method(&arguments.columns.rate, &roles, model).with_context(|| tables[0].file.clone())?;
+        requests.extend(Request::variants(model, rate, arguments.seed));
+    }
     let train = Data::new(tables, roles)?;
 
     interrupt::listen("stopping; what is finished is compared")?;

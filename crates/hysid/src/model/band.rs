@@ -78,6 +78,11 @@ pub(crate) fn disagreement(votes: &mut Votes) -> f64 {
 /// Fewest rows from which factors are found.
 const FEWEST_ROWS: usize = 20;
 
+/// The level of so many rows that a further row stays below with this probability: theory.md (11.7).
+fn of_rows(level: f64, rows: usize) -> f64 {
+    (level * (1.0 + 1.0 / rows as f64)).min(1.0)
+}
+
 impl Band {
     /// Calibrates on rows held out; `None` if they are too few.
     pub(crate) fn calibrate(rows: &[HeldOutRow]) -> Option<Self> {
@@ -96,7 +101,7 @@ impl Band {
             let mut scores = Votes::default();
             rows.iter()
                 .for_each(|row| scores.cast(row.error.abs() / floor.hypot(row.disagreement), row.weight));
-            LEVELS.map(|level| scores.quantile(level)).to_vec()
+            LEVELS.map(|level| scores.quantile(of_rows(level, rows.len()))).to_vec()
         };
         let (mut of_outside, of_inside) = (factors(&outside), factors(&inside));
         if outside.len() < FEWEST_ROWS {
