@@ -69,8 +69,6 @@ pub enum Body {
 }
 
 impl Body {
-    /// Errors of free runs over all records that have an output, with the inputs seen as they are.
-
     /// Parameters that were found from the data.
     fn parameters(&self) -> usize {
         match self {
