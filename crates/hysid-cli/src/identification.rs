@@ -165,7 +165,7 @@ impl Identified {
         let mut text = errors_table::errors_table(&sets);
         if let Some(selection) = &provenance.selection {
             text += &format!(
-                "(validation: all rows held out in {} folds, predicted by models trained without them)\n",
+                "(validation: rows held out in {} folds, by models trained without them)\n",
                 selection.folds.len()
             );
             text.push('\n');
@@ -173,7 +173,7 @@ impl Identified {
                 text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
-            text += "(validation: all rows held out, predicted by models trained without them)\n";
+            text += "(validation: rows held out, by models trained without them)\n";
         }
         text += &format!(
             "{}\n{} with {} parameters; {}, {}; {:.1} s\n",

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use hysid::identification::options::{ChosenOptions, RateChoice};
 use hysid::identification::{self, ModelName};
-use hysid::training::{self, FitOptions, Observer};
+use hysid::training::{self, Observer};
 use hysid::validation::cross_validate;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
@@ -48,10 +48,7 @@ impl Request {
     #[staticmethod]
     fn variants(options: &str, rate: &str, data: &Dataset) -> PyResult<Vec<Self>> {
         let Self { chosen, request } = Self::new(options, rate, data)?;
-        let method = if request.model().uses_rate() { request.rate() } else { None };
-        let seed = chosen.seed.unwrap_or(FitOptions::default().seed);
-        let all = identification::Request::variants(chosen.model(), method, seed);
-        Ok(all.into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
+        Ok(request.variants().into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
     }
 
     /// The model and its variant in a few words.

@@ -152,7 +152,7 @@ impl Request {
                 named([
                     ("deterioration", options.deteriorates()),
                     ("rate", options.rate.is_some()),
-                    ("relaxation", options.sizes.relaxation > 0),
+                    ("relaxation", options.model == Family::XpnnPlus && options.sizes.relaxation > 0),
                 ]),
             ),
             Self::Classical(options) => {

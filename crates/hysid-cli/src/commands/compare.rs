@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use hysid::identification::{ModelName, Request};
+use hysid::identification::ModelName;
+use hysid::identification::options::ChosenOptions;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Compare;
 use crate::columns::Roles;
-use crate::commands::fit::rate_method;
+use crate::commands::fit::request;
 use crate::comparison::{self, Data as Compared};
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
@@ -36,9 +37,11 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
     let mut requests = Vec::new();
     for &model in &models {
-        let rate =
-            rate_method(&arguments.columns.rate, &roles, model).with_context(|| tables[0].file.clone())?;
-        requests.extend(Request::variants(model, rate, arguments.seed));
+        let chosen =
+            ChosenOptions { model: Some(model), seed: Some(arguments.seed), ..ChosenOptions::default() };
+        let request =
+            request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?;
+        requests.extend(request.variants());
     }
     let train = Data::new(tables, roles)?;
 

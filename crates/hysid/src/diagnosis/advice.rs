@@ -231,6 +231,11 @@ mod tests {
         advice.model.map(ModelName::name)
     }
 
+    /// How many statements are assumptions.
+    fn assumed(advice: &Advice) -> usize {
+        advice.statement.iter().filter(|text| text.starts_with("not testable here: ")).count()
+    }
+
     #[test]
     fn laws_that_wear_out_or_see_the_rate_are_named() {
         let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
@@ -257,7 +262,7 @@ mod tests {
         ] {
             let advice = advise(&findings(verdicts), None);
             assert_eq!(name(&advice), expected, "{verdicts:?}");
-            assert_eq!(advice.statement.len(), 1, "nothing is assumed: {:?}", advice.statement);
+            assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         }
     }
 
@@ -273,7 +278,7 @@ mod tests {
             &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),
             None,
         );
-        assert_eq!(advice.statement.len(), 1, "{:?}", advice.statement);
+        assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         assert_eq!(advice.needs_memory_of_time, NotTestable);
     }
 

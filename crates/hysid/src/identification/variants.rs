@@ -1,18 +1,16 @@
 //! The variants of a law: the same equations with and without a term that not every specimen needs.
 
 use crate::classical::identification::{ClassicalOptions, Rival};
-use crate::identification::{ModelName, Request};
-use crate::rate::RateMethod;
+use crate::identification::Request;
 
 impl Request {
-    /// A model with its defaults in all variants of its law, the simplest first: Bouc-Wen with and without
-    /// degradation, Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its
-    /// thresholds, and laws that can leave out the rate with and without it. A network has one variant.
-    pub fn variants(model: ModelName, rate: Option<RateMethod>, seed: u64) -> Vec<Self> {
-        let request = Self::of(model, rate, seed);
-        match request {
-            Self::Classical(options) => variants(&options).into_iter().map(Self::Classical).collect(),
-            Self::Network(_) | Self::Auto(_) => vec![request],
+    /// The same in all variants of its law, the simplest first: Bouc-Wen with and without degradation,
+    /// Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its thresholds, and
+    /// laws that can leave out the rate with and without it. A network has one variant.
+    pub fn variants(&self) -> Vec<Self> {
+        match self {
+            Self::Classical(options) => variants(options).into_iter().map(Self::Classical).collect(),
+            Self::Network(_) | Self::Auto(_) => vec![self.clone()],
         }
     }
 }
@@ -54,9 +52,11 @@ pub(crate) fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identification::ModelName;
+    use crate::rate::RateMethod;
 
     fn labels(model: ModelName, rate: Option<RateMethod>) -> Vec<String> {
-        Request::variants(model, rate, 1).iter().map(Request::label).collect()
+        Request::of(model, rate, 1).variants().iter().map(Request::label).collect()
     }
 
     #[test]
