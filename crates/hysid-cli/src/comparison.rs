@@ -56,9 +56,9 @@ pub struct Fitted {
 }
 
 impl Row {
-    /// The model and its variant.
+    /// The model, and its variant if it has more than one.
     pub fn label(&self) -> String {
-        self.request.label()
+        self.request.variant_label()
     }
 }
 

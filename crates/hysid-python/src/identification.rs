@@ -51,9 +51,9 @@ impl Request {
         Ok(request.variants().into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
     }
 
-    /// The model and its variant in a few words.
+    /// The name of the model, and of the variant of its law if it has more than one.
     fn label(&self) -> String {
-        self.request.label()
+        self.request.variant_label()
     }
 
     /// The name of the model.

@@ -4,6 +4,11 @@ use crate::classical::identification::{ClassicalOptions, Rival};
 use crate::identification::Request;
 
 impl Request {
+    /// The name of the model, and of the variant of its law if it has more than one.
+    pub fn variant_label(&self) -> String {
+        if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
+    }
+
     /// The same in all variants of its law, the simplest first: Bouc-Wen with and without degradation,
     /// Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its thresholds, and
     /// laws that can leave out the rate with and without it. A network has one variant.
@@ -56,7 +61,7 @@ mod tests {
     use crate::rate::RateMethod;
 
     fn labels(model: ModelName, rate: Option<RateMethod>) -> Vec<String> {
-        Request::of(model, rate, 1).variants().iter().map(Request::label).collect()
+        Request::of(model, rate, 1).variants().iter().map(Request::variant_label).collect()
     }
 
     #[test]
