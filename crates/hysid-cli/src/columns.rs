@@ -12,7 +12,7 @@ use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::table::{Head, Table};
 use crate::terminal::{clipped, listed};
-use hysid::unit;
+use hysid::unit::{self, Conversion};
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -85,15 +85,20 @@ impl Roles {
     /// `scored` tells if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnOptions, scored: bool) -> Result<Self> {
         let names = model.names();
-        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| {
+            match given {
             Some(name) => require(table, name, option).map(|()| name.clone()),
             None if table.column(trained).is_some() => Ok(trained.to_string()),
-            None => Err(anyhow!(
-                "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
-                table.file,
-                clipped(trained),
-                listed(&table.header)
-            )),
+            None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
+            None => in_another_unit(table, trained).cloned().ok_or_else(|| {
+                anyhow!(
+                    "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
+                    table.file,
+                    clipped(trained),
+                    listed(&table.header)
+                )
+            }),
+        }
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {
@@ -177,6 +182,16 @@ fn require(table: &Head, name: &str, option: &str) -> Result<()> {
         listed(&table.header)
     );
     Ok(())
+}
+
+/// The one column of the same quantity in another unit that can be converted, such as `x_m` for `x_mm`.
+fn in_another_unit<'t>(table: &'t Head, trained: &str) -> Option<&'t String> {
+    let suits = |name: &&String| {
+        unit::split(name).0 == unit::split(trained).0
+            && matches!(Conversion::between(name, trained), Conversion::Factor(_))
+    };
+    let mut suitable = table.header.iter().filter(suits);
+    suitable.next().filter(|_| suitable.next().is_none())
 }
 
 /// The column that `--rate` names for a model with a given rate; a model's method cannot be changed.

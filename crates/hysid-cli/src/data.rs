@@ -9,7 +9,7 @@ use anyhow::{Result, anyhow};
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::record::{Dataset, Record};
 
-use crate::cell::CellReader;
+use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
 use crate::messages::Usage;
 use crate::record_names::RecordNames;
@@ -218,12 +218,17 @@ impl Columns {
 /// The numbers of a column; a blank output is NaN.
 fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
-    let number = |(row, line): (usize, &u64)| {
-        number_in(cells, table.cell(row, place), *line, is_output, row == 0).map_err(|problem| {
-            anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
-        })
+    let at = |line: u64, problem: &str| {
+        anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
     };
-    table.lines.iter().enumerate().map(number).collect()
+    let mut thousands = ThousandsWatch::default();
+    let number = |(row, &line): (usize, &u64)| {
+        let cell = table.cell(row, place);
+        thousands.take(cell, line);
+        number_in(cells, cell, line, is_output, row == 0).map_err(|problem| at(line, &problem))
+    };
+    let numbers = table.lines.iter().enumerate().map(number).collect::<Result<_>>()?;
+    thousands.problem().map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
 }
 
 /// The number in a cell, NaN for a blank output; or what is wrong with it and what helps.

@@ -12,9 +12,31 @@ const TIME_NAMES: [&str; 2] = ["t", "time"];
 
 /// Further names of time, without blanks and underscores, in small letters. The values must confirm them.
 const FURTHER_TIME_NAMES: [&str; 25] = [
-    "timestamp", "elapsed", "elapsedtime", "timeelapsed", "testtime", "runtime", "clock", "date", "datetime",
-    "sec", "secs", "second", "seconds", "zeit", "zeitstempel", "messzeit", "temps", "tiempo", "tempo", "tijd",
-    "czas", "tid", "время", "时间", "時間",
+    "timestamp",
+    "elapsed",
+    "elapsedtime",
+    "timeelapsed",
+    "testtime",
+    "runtime",
+    "clock",
+    "date",
+    "datetime",
+    "sec",
+    "secs",
+    "second",
+    "seconds",
+    "zeit",
+    "zeitstempel",
+    "messzeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tijd",
+    "czas",
+    "tid",
+    "время",
+    "时间",
+    "時間",
 ];
 
 /// How the numbers of a column become those of another unit.
@@ -122,8 +144,12 @@ fn from_words(text: &str) -> Option<String> {
         Some((length, time)) if is_length(length) && is_in_unit_of_time(Some(time)) => {
             Some(format!("{length}/{time}"))
         }
-        Some((force, arm)) if ["N", "kN"].contains(&force) && is_length(arm) => Some(format!("{force} {arm}")),
-        Some((unit, time)) if is_known(unit) && is_in_unit_of_time(Some(time)) => Some(format!("{unit} {time}")),
+        Some((force, arm)) if ["N", "kN"].contains(&force) && is_length(arm) => {
+            Some(format!("{force} {arm}"))
+        }
+        Some((unit, time)) if is_known(unit) && is_in_unit_of_time(Some(time)) => {
+            Some(format!("{unit} {time}"))
+        }
         Some(_) => None,
     }
 }

@@ -73,9 +73,8 @@ pub(super) fn may_end_a_name(text: &str) -> bool {
 }
 
 /// Symbols that are words too, or of which only a bracket tells that they are units.
-const NOT_IN_NAMES: [&str; 14] = [
-    "in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "seconds", "minutes", "hours", "microstrain",
-];
+const NOT_IN_NAMES: [&str; 14] =
+    ["in", "ft", "%", "‰", "°", "°C", "\"", "'", "d", "second", "seconds", "minutes", "hours", "microstrain"];
 
 fn symbol(text: &str) -> Option<Quantity> {
     let found = |(names, factor, dimension): &(&str, f64, Dimension)| {
