@@ -1,6 +1,9 @@
 //! Which column is what: found from the names, from options, or from a model.
 
+mod guess;
+
 use std::collections::HashMap;
+use std::ops::Range;
 
 use anyhow::{Result, anyhow, bail, ensure};
 use hysid::identification::options::RateChoice;
@@ -8,6 +11,7 @@ use hysid::model::Model;
 use hysid::rate::RateMethod;
 use hysid::record::ColumnNames;
 
+use self::guess::Guess;
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::table::{Head, Table};
@@ -27,6 +31,10 @@ pub struct Roles {
     pub rate: Option<String>,
     /// The output.
     pub output: String,
+    /// What no option decided, in words; `None` if nothing.
+    pub guessed: Option<&'static str>,
+    /// Columns that have no role although no option says so, each with the reason.
+    pub set_aside: Vec<(String, &'static str)>,
 }
 
 impl Roles {
@@ -64,14 +72,32 @@ impl Roles {
         };
         let record = claim(&options.record, &is_record);
         let time = claim(&options.time, &unit::is_time);
-        let output = options.output.clone().or_else(|| free.pop().cloned());
+        let mut guess = Guess {
+            table,
+            records: rows_of_records(table, record.as_deref()),
+            free,
+            time,
+            output: options.output.clone(),
+            has_inputs: !options.input.is_empty(),
+            set_aside: Vec::new(),
+        };
+        guess.complete()?;
+        let Guess { free, time, output, set_aside, .. } = guess;
         let inputs: Vec<String> = if options.input.is_empty() {
             free.into_iter().cloned().collect()
         } else {
             options.input.clone()
         };
+        let guessed = match (options.input.is_empty(), options.output.is_none()) {
+            (true, true) => Some("input and output, from names and values (--input and --output decide)"),
+            (true, false) => Some("input, from names and values (--input decides)"),
+            (false, true) => Some("output, as the last column (--output decides)"),
+            (false, false) => None,
+        };
         match output {
-            Some(output) if !inputs.is_empty() => Ok(Self { record, time, inputs, rate, output }),
+            Some(output) if !inputs.is_empty() => {
+                Ok(Self { record, time, inputs, rate, output, guessed, set_aside })
+            }
             output => bail!(
                 "{}: no column is left for the input beside output \"{}\" (columns: {})",
                 table.file,
@@ -139,7 +165,7 @@ impl Roles {
             Some(name) => require(table, name, "--record").map(|()| Some(name.clone()))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self { record, time, inputs, rate, output })
+        Ok(Self { record, time, inputs, rate, output, guessed: None, set_aside: Vec::new() })
     }
 
     /// The names as the library keeps them.
@@ -167,6 +193,17 @@ impl Roles {
         }
         Ok(())
     }
+}
+
+/// Rows of each record of a table, where its name changes.
+fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
+    let Some(place) = record.and_then(|name| table.column(name)) else {
+        return std::iter::once(0..table.len()).collect();
+    };
+    let name = |row: usize| table.cell(row, place).trim();
+    let begins = (1..table.len()).filter(|&row| name(row) != name(row - 1));
+    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.len()]).collect();
+    begins.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
 fn is_record(name: &str) -> bool {

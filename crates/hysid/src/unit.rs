@@ -2,6 +2,7 @@
 
 mod quantity;
 
+use crate::column::Part;
 use quantity::Quantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
@@ -38,6 +39,11 @@ const FURTHER_TIME_NAMES: [&str; 25] = [
     "时间",
     "時間",
 ];
+
+/// The part that a quantity with this unit mostly has in hysteresis, if it has one.
+pub(crate) fn part(unit: &str) -> Option<Part> {
+    Quantity::of(unit)?.part()
+}
 
 /// How the numbers of a column become those of another unit.
 #[derive(Debug, Clone, Copy, PartialEq)]

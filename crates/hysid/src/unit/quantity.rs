@@ -1,5 +1,7 @@
 //! Units as multiples of base units, so that numbers can be converted from one to another.
 
+use crate::column::{Domain, Part};
+
 /// Exponents of length, mass, time, electric current, temperature difference and angle.
 type Dimension = [i8; 6];
 
@@ -18,6 +20,8 @@ const PRESSURE: Dimension = [-1, 1, -2, 0, 0, 0];
 const POWER: Dimension = [2, 1, -3, 0, 0, 0];
 const VOLTAGE: Dimension = [2, 1, -3, -1, 0, 0];
 const CHARGE: Dimension = [0, 0, 1, 1, 0, 0];
+/// Charge of an area.
+const POLARIZATION: Dimension = [-2, 0, 1, 1, 0, 0];
 const RESISTANCE: Dimension = [2, 1, -3, -2, 0, 0];
 const FLUX: Dimension = [2, 1, -2, -1, 0, 0];
 const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
@@ -38,6 +42,21 @@ impl Quantity {
         let mut parts = unit.split('/').map(product);
         let above = parts.next()??;
         parts.try_fold(above, |whole, below| Some(whole.times(below?, -1)))
+    }
+
+    /// The part that a quantity with this unit mostly has in hysteresis, if it has one.
+    pub fn part(&self) -> Option<Part> {
+        use Domain::{Electricity, Magnetism, Mechanics};
+        let part = match self.dimension {
+            LENGTH | ANGLE => Part::Drives(Mechanics),
+            FORCE | MOMENT | PRESSURE => Part::Follows(Mechanics),
+            FIELD => Part::Drives(Magnetism),
+            FLUX | FLUX_DENSITY => Part::Follows(Magnetism),
+            VOLTAGE => Part::Drives(Electricity),
+            CHARGE | POLARIZATION => Part::Follows(Electricity),
+            _ => return None,
+        };
+        Some(part)
     }
 
     fn times(self, other: Self, power: i8) -> Self {
