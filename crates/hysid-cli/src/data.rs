@@ -140,7 +140,8 @@ fn column(channel: Channel, roles: &Roles) -> Option<&str> {
     }
 }
 
-/// A name for each table: its file's stem, or the whole path where two stems are the same.
+/// A name for each table: its file's stem, the whole path where two stems are the same, and a number behind it where a
+/// file is given twice.
 fn stems(tables: &[Table]) -> Vec<String> {
     let stem = |table: &Table| {
         let path = Path::new(&table.file);
@@ -152,7 +153,13 @@ fn stems(tables: &[Table]) -> Vec<String> {
     let name = |(stem, table): (&String, &Table)| {
         if count[stem.as_str()] == 1 { stem.clone() } else { table.file.clone() }
     };
-    all.iter().zip(tables).map(name).collect()
+    let mut given: HashMap<String, usize> = HashMap::new();
+    let numbered = |name: String| {
+        let count = given.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 { name } else { format!("{name} ({count})") }
+    };
+    all.iter().zip(tables).map(name).map(numbered).collect()
 }
 
 /// The records of a table: runs of rows with the same name in the record column.

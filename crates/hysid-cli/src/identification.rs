@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use hysid::diagnosis::before_a_fit;
 use hysid::identification::Request;
 use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::{Model, Prediction, Provenance};
@@ -77,12 +78,21 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
     interrupt::listen(to_ctrl_c)?;
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
-    let mut warnings = summarised(&summary.warnings(&data.set));
+    let mut warnings = data_warnings(data, &summary);
+    warnings.extend(request.size_warning(&data.set)?.map(|warning| warning.to_string()));
     if request.rate().is_some() && !request.model().uses_rate() {
         warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
     }
     warnings.iter().for_each(warning);
     Ok(Said { understood, warnings })
+}
+
+/// What to be aware of in data that a model is to be fitted to.
+pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
+    // Data that cannot be looked at cannot be fitted to either: the fit says why.
+    let doubtful = before_a_fit(&data.set).unwrap_or_default();
+    let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+    summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }
 
 /// So many threads; one for each processor if not said.
@@ -94,7 +104,7 @@ pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
 /// Identifies a model, following the training on stderr.
 pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let request = work.request;
-    let said = say_beforehand(data, request, "stopping to save the best model so far")?;
+    let mut said = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);
@@ -104,6 +114,11 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
+    // Of a network, it is said beforehand.
+    if let Some(size) = fitted.model.size_warning().filter(|_| !matches!(request, Request::Network(_))) {
+        warning(&size);
+        said.warnings.push(size.to_string());
+    }
     Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, said })
 }
 

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use anyhow::{Result, anyhow, bail};
 use hysid::model::{Model, Prediction, Simulation};
-use hysid::record::Record;
+use hysid::record::{Fingerprint, Likeness, Record};
 use hysid::warning::Warning;
 
 use crate::cell::{CellReader, ThousandsWatch};
@@ -85,7 +85,7 @@ pub fn run(
     }
     run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
-    Ok(end.is_continue().then(|| run.simulation.range_warnings()))
+    Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
 }
 
 /// A run on its way.
@@ -99,7 +99,12 @@ struct TableRun<'r, 'm> {
     numbers: CellReader,
     /// One for each column that is read: time, rate, output, inputs.
     thousands: Vec<(usize, ThousandsWatch)>,
+    model: &'m Model,
     simulation: Simulation<'m>,
+    /// Of the rows of the present record.
+    fingerprint: Fingerprint,
+    /// Records so far that the model was trained on.
+    known: Vec<Warning>,
     is_begun: bool,
     /// Rows of the present record that are simulated.
     simulated: usize,
@@ -167,7 +172,10 @@ impl<'r, 'm> TableRun<'r, 'm> {
             places,
             names: RecordNames::default(),
             numbers: CellReader::new(head.delimiter),
+            model,
             simulation,
+            fingerprint: Fingerprint::default(),
+            known: Vec::new(),
             is_begun: false,
             simulated: 0,
             waiting: Waiting { width: head.header.len(), ..Waiting::default() },
@@ -224,6 +232,10 @@ impl<'r, 'm> TableRun<'r, 'm> {
             Some(place) => number(place, &self.roles.output, true, factors.output)?,
             None => f64::NAN,
         };
+        if self.wanted.measured {
+            let inputs = self.block.inputs.iter().filter_map(|input| input.last().copied());
+            self.fingerprint.add(inputs, output);
+        }
         self.block.output.push(output);
         self.block.rows += 1;
         self.waiting.push(row, self.wanted, output);
@@ -242,6 +254,10 @@ impl<'r, 'm> TableRun<'r, 'm> {
             }
         }
         if ends_record {
+            if self.model.was_trained_on(&mem::take(&mut self.fingerprint)) {
+                let record = self.names.present().unwrap_or(&self.file).to_string();
+                self.known.push(Warning::TrainedOn { record, likeness: Likeness::Equal });
+            }
             let prediction = self.simulation.finish();
             return self.hand_on(prediction, true, take);
         }

@@ -22,6 +22,7 @@ use crate::training::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::training::{
     self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
 };
+use crate::warning::Warning;
 
 /// A model by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -133,6 +134,16 @@ impl Request {
             Self::Classical(options) => ModelName::Rival(options.model),
             Self::Auto(options) => ModelName::Auto(options.model),
         }
+    }
+
+    /// Warns of a network with more parameters than rows with an output. Of other models the fitted one tells.
+    ///
+    /// # Errors
+    /// Sizes that no network can have.
+    pub fn size_warning(&self, data: &Dataset) -> Result<Option<Warning>> {
+        let Self::Network(options) = self else { return Ok(None) };
+        let (parameters, rows) = (options.architecture(data)?.parameters(), data.scored());
+        Ok((parameters > rows).then_some(Warning::MoreParametersThanRows { parameters, rows }))
     }
 
     /// The model and its variant in a few words, such as `bouc-wen (degradation, rate)`.

@@ -13,7 +13,7 @@ use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::data::explained;
 use crate::errors_table::errors_table;
-use crate::messages::{json_results, results, warning};
+use crate::messages::{json_results, results, summarised, warning};
 use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
 use crate::units::Factors;
@@ -46,7 +46,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         let defect = DataError { record: String::new(), row: None, channel, problem };
         return Err(explained(&rows.head.file, None, defect.into(), &roles));
     };
-    warnings.context("the run was ended early")?.iter().for_each(warning);
+    summarised(&warnings.context("the run was ended early")?).iter().for_each(warning);
     let band = arguments.band.map(|probability| BandCoverage::of(covered, probability));
     match arguments.json {
         true => json_results(&Printed { errors: &errors, band })?,
