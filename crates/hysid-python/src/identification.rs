@@ -26,6 +26,8 @@ const PAUSE: Duration = Duration::from_millis(50);
 pub struct Request {
     chosen: ChosenOptions,
     request: identification::Request,
+    /// Warns of a network with more parameters than rows.
+    size: Option<String>,
 }
 
 #[pymethods]
@@ -41,7 +43,8 @@ impl Request {
         if let Some(hindrance) = chosen.model().hindrance(&data.set, rate) {
             return Err(refused(format!("{} {hindrance}", chosen.model().name())));
         }
-        Ok(Self { chosen, request })
+        let size = request.size_warning(&data.set).map_err(refused)?;
+        Ok(Self { chosen, request, size: size.map(|warning| warning.to_string()) })
     }
 
     /// The name of the model.
@@ -57,7 +60,16 @@ impl Request {
         if self.request.rate().is_some() && !self.chosen.model().uses_rate() {
             warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", self.model()));
         }
+        warnings.extend(self.size.clone());
         warnings
+    }
+
+    /// What to know of the model that came of it, and was not known before.
+    fn warnings_after(&self, model: &Model) -> Vec<String> {
+        match self.request {
+            identification::Request::Network(_) => Vec::new(),
+            _ => model.size_warning().into_iter().collect(),
+        }
     }
 }
 

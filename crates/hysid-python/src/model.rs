@@ -24,6 +24,11 @@ impl Model {
     pub fn new(model: model::Model) -> Self {
         Self { model: Arc::new(model) }
     }
+
+    /// Warns of more parameters than rows that they were found from.
+    pub fn size_warning(&self) -> Option<String> {
+        self.model.size_warning().map(|warning| warning.to_string())
+    }
 }
 
 #[pymethods]

@@ -272,10 +272,10 @@ mod tests {
         let names: Vec<&str> = several.iter().map(|fold| fold.name.as_str()).collect();
         assert_eq!(names, ["a, part, copy", "b"]);
         // One measurement, however often it is given, is cut in time.
-        assert_eq!(
-            folds(&data(vec![copy, part]), 5),
-            folds(&data(vec![Record::new("copy", a.inputs().to_vec(), a.output().to_vec()).unwrap()]), 5)
-        );
+        let one = folds(&data(vec![part, copy]), 5);
+        assert_eq!(one.len(), 5);
+        let is_of_copy = |set: &Dataset| set.records().len() == 1 && set.records()[0].name() == "copy";
+        assert!(one.iter().all(|fold| is_of_copy(&fold.train) && is_of_copy(&fold.held_out)));
         let (kept, held) = data(vec![a.clone(), a.clone()]).split_for_validation(0.3).unwrap();
         assert_eq!((kept.scored(), held.scored()), (140, 60));
     }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from hysid import _hysid
 from hysid._data import columns
 from hysid._fitting import identified
-from hysid._warning import HysidWarning
+from hysid._warning import HysidWarning, warn
 from hysid.model import Errors, Model
 
 if TYPE_CHECKING:
@@ -176,6 +176,8 @@ def compare(
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
     unseen = None if test is None else columns(*_parts(test))
+    data = arranged.dataset()
+    warn(data.warnings() + ([] if unseen is None else unseen.dataset().copies_of(data)))
     names = _hysid.model_names() if models is None else list(models)
     for name in names:
         if name not in ("auto", *_hysid.model_names(), "epnn"):
