@@ -22,6 +22,9 @@ const FEWEST: usize = 10;
 /// Share of the scored rows of the shorter record that must be scored in the longer one too.
 const SHARED: f64 = 0.9;
 
+/// How many times longer one unit of time is than another.
+const UNITS_OF_TIME: [f64; 5] = [1.0, 60.0, 3600.0, 1e3, 1e6];
+
 /// Of more records than this only equal ones are found: all pairs would take too long.
 const MOST_COMPARED: usize = 300;
 
@@ -175,7 +178,21 @@ impl<'r> Compared<'r> {
             sums.iter().zip(&self.limits).zip(counts).all(|((sum, limit), count)| *sum <= limit * count);
         let is_shared = shared >= FEWEST && shared as f64 >= SHARED * self.scored.len() as f64;
         let is_equal = sums.iter().all(|sum| *sum == 0.0);
-        (is_near && is_shared).then_some(if is_equal { Likeness::Equal } else { Likeness::NearlyEqual })
+        (is_near && is_shared && (is_equal || self.is_as_fast(shift))).then_some(if is_equal {
+            Likeness::Equal
+        } else {
+            Likeness::NearlyEqual
+        })
+    }
+
+    /// False for a path that was run at another speed, which is another measurement although its outputs may hardly
+    /// differ; time may be in another unit.
+    fn is_as_fast(&self, shift: usize) -> bool {
+        let last = self.short.len() - 1;
+        let (Some(short), Some(long)) = (&self.short.time, &self.long.time) else { return true };
+        let ratio = (short[last] - short[0]) / (long[last + shift] - long[shift]);
+        let is_near = |unit: &f64| (ratio / unit - 1.0).abs() < 0.01 || (ratio * unit - 1.0).abs() < 0.01;
+        UNITS_OF_TIME.iter().any(is_near)
     }
 }
 
@@ -230,6 +247,13 @@ mod tests {
         let (clean, repeated) = (record(400, 1.0, 0.02, 2), record(400, 1.0, 0.02, 3));
         assert_eq!(likeness(&clean, &repeated), None, "a second measurement of the same path");
         assert_eq!(likeness(&record(400, 1.02, 0.0, 1), &one), None);
+        // The same path at twice the speed is another measurement, in another unit it is not.
+        let at = |record: &Record, step: f64| {
+            record.clone().with_time((0..400).map(|k| step * f64::from(k)).collect())
+        };
+        assert_eq!(likeness(&at(&copy, 0.5).unwrap(), &timed), None);
+        assert_eq!(likeness(&at(&copy, 1e-3).unwrap(), &timed), Some(Likeness::NearlyEqual));
+        assert_eq!(likeness(&at(&one, 0.5).unwrap(), &timed), Some(Likeness::Equal));
         // What is blank in the longer record is not seen there.
         let blank = one.clone().scored_where(|row| row >= 320);
         assert_eq!(likeness(&part, &blank), None);
