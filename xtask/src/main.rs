@@ -3,6 +3,7 @@
 mod bench;
 mod cases;
 mod check;
+mod dependencies;
 mod files;
 mod generate_cases;
 mod program;
@@ -21,7 +22,7 @@ const USAGE: &str = "\
 Usage: cargo xtask COMMAND
 
 Commands:
-  check          formatting, lints, documentation, tidiness
+  check          formatting, lints, documentation, licences of dependencies, tidiness
   test           every test of the workspace, and of the Python package in an environment of its own
   python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`

@@ -498,7 +498,7 @@ pub struct Compare {
     /// Table of measured data that no model sees; without it, errors are those of the training
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
-    /// Models to compare, such as auto,xpnn,preisach [default: auto and all others]
+    /// Models to compare, such as auto,xpnn,preisach, each in all its variants [default: auto and all others]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = model)]
     pub models: Vec<ModelName>,
     /// The page with table and loops [default: first TRAIN with `-compared.html`, in this folder]
@@ -510,9 +510,9 @@ pub struct Compare {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Time for each model, after which its search ends with what it has
-    #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = seconds)]
-    pub time_limit: f64,
+    /// Time for each model, after which its search ends with what it has [default: 20, and none for auto]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<f64>,
     /// Seed of all randomness
     #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed, value_parser = whole::<u64>)]
     pub seed: u64,

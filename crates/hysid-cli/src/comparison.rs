@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use hysid::identification::{ModelName, Request, identify};
+use hysid::identification::{Request, identify};
 use hysid::metrics::Errors;
 use hysid::model::Model;
 use hysid::training::Termination;
@@ -35,8 +35,8 @@ pub struct Data<'a> {
 
 /// A model and what became of it.
 pub struct Row {
-    /// Which model.
-    pub model: ModelName,
+    /// What was asked for.
+    pub request: Request,
     /// The model, or why there is none.
     pub outcome: Result<Fitted, String>,
 }
@@ -55,15 +55,30 @@ pub struct Fitted {
     pub simulate_ns_per_sample: f64,
 }
 
+impl Row {
+    /// The model and its variant.
+    pub fn label(&self) -> String {
+        self.request.label()
+    }
+}
+
 impl Fitted {
+    /// True if the time limit or Ctrl-C ended the fit.
+    fn is_stopped(&self) -> bool {
+        self.model.provenance().termination == Termination::Stopped
+    }
+
     /// Error on unseen data; on the training data if there are no others.
     fn judged(&self) -> &Errors {
         self.test.as_ref().unwrap_or(&self.train)
     }
 }
 
-/// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time limit; the lowest error on
-/// unseen data comes first.
+/// Seconds for a model that is named; `auto` has no limit of its own, so that its row is what `fit` gives.
+const TIME_LIMIT: f64 = 20.0;
+
+/// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time
+/// limit; the lowest error on unseen data comes first.
 pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec<Row>> {
     let workers = match arguments.threads {
         Some(threads) => threads.into(),
@@ -105,16 +120,19 @@ fn error(row: &Row) -> f64 {
     fitted.and_then(|fitted| fitted.judged().nrmse_std_percent).unwrap_or(f64::INFINITY)
 }
 
-fn row(data: &Data, request: &Request, time_limit: f64) -> Row {
-    let model = request.model();
+fn row(data: &Data, request: &Request, time_limit: Option<f64>) -> Row {
+    let of = |outcome| Row { request: request.clone(), outcome };
     if interrupt::requested() {
-        return Row { model, outcome: Err("interrupted".into()) };
+        return of(Err("interrupted".into()));
     }
-    if let Some(hindrance) = model.hindrance(&data.train.set, request.rate()) {
-        return Row { model, outcome: Err(hindrance) };
+    if let Some(hindrance) = request.model().hindrance(&data.train.set, request.rate()) {
+        return of(Err(hindrance));
     }
-    let outcome = fitted(data, request, time_limit).map_err(|error| format!("{error:#}"));
-    Row { model, outcome }
+    let limit = match request {
+        Request::Auto(_) => time_limit.unwrap_or(f64::INFINITY),
+        Request::Network(_) | Request::Classical(_) => time_limit.unwrap_or(TIME_LIMIT),
+    };
+    of(fitted(data, request, limit).map_err(|error| format!("{error:#}")))
 }
 
 fn fitted(data: &Data, request: &Request, time_limit: f64) -> Result<Fitted> {
@@ -136,13 +154,10 @@ fn fitted(data: &Data, request: &Request, time_limit: f64) -> Result<Fitted> {
 }
 
 fn say(row: &Row, done: usize, all: usize) {
-    let name = row.model.name();
+    let name = row.label();
     match &row.outcome {
         Ok(fitted) => {
-            let stopped = match fitted.model.provenance().termination {
-                Termination::Stopped => " (stopped)",
-                _ => "",
-            };
+            let stopped = if fitted.is_stopped() { " (stopped)" } else { "" };
             let error = percent(fitted.judged());
             note(format_args!(
                 "{done:>2}/{all} {name:<33} {error:>9} % {:7.1} s{stopped}",
@@ -163,34 +178,56 @@ fn cells(fitted: &Fitted) -> [String; 5] {
         fitted.test.as_ref().map_or_else(String::new, percent),
         percent(&fitted.train),
         fitted.model.parameters().to_string(),
-        format!("{:.2}", Significant(fitted.fit_seconds)),
+        format!("{:.2}{}", Significant(fitted.fit_seconds), if fitted.is_stopped() { STOPPED } else { "" }),
         format!("{:.2}", Significant(fitted.simulate_ns_per_sample)),
     ]
+}
+
+/// Marks a fit that was stopped.
+const STOPPED: &str = "*";
+
+/// What the mark means; empty if no fit was stopped.
+fn stopped_note(rows: &[Row]) -> String {
+    let is_stopped = |row: &Row| row.outcome.as_ref().is_ok_and(Fitted::is_stopped);
+    if !rows.iter().any(is_stopped) {
+        return String::new();
+    }
+    format!("{STOPPED} stopped before its end: the best model so far (more time: --time-limit SECONDS)")
 }
 
 const HEADINGS: [&str; 6] = ["model", "unseen %", "train %", "parameters", "fit s", "ns/sample"];
 
 /// The comparison as plain text in 80 columns.
 pub fn table(rows: &[Row], tested: bool) -> String {
+    /// Width of the names.
+    const NAME: usize = 33;
     let line = |cells: [&str; 6]| {
         let [model, test, train, parameters, fit, simulate] = cells;
         let test = if tested { format!("{test:>9}") } else { String::new() };
-        format!("{model:<33}{test}{train:>8}{parameters:>11}{fit:>7}{simulate:>10}\n")
+        // A long name has a line of its own.
+        let model = if model.chars().count() < NAME { model.to_string() } else { format!("{model}\n") };
+        let name =
+            if model.ends_with('\n') { format!("{model}{:NAME$}", "") } else { format!("{model:<NAME$}") };
+        format!("{name}{test}{train:>8}{parameters:>11}{fit:>7}{simulate:>10}\n")
     };
     let mut text = line(HEADINGS);
     for row in rows {
         match &row.outcome {
             Ok(fitted) => {
                 let [test, train, parameters, fit, simulate] = cells(fitted);
-                text += &line([row.model.name(), &test, &train, &parameters, &fit, &simulate]);
+                text += &line([&row.label(), &test, &train, &parameters, &fit, &simulate]);
             }
-            Err(why) => text += &format!("{:<33} {}\n", row.model.name(), terminal::line(why)),
+            Err(why) => text += &format!("{:<NAME$} {}\n", row.label(), terminal::line(why)),
         }
     }
     let data =
         if tested { "data that no model has seen" } else { "the training data: name others with --test" };
+    let stopped = match stopped_note(rows) {
+        note if note.is_empty() => note,
+        note => note + "\n",
+    };
     text + &format!(
-        "\nErrors are NRMSE in % of the output's standard deviation, of free runs;\nsorted by that on {data}.\nFits ran on one thread each.\n"
+        "\nErrors are NRMSE in % of the output's standard deviation, of free runs;\nsorted by that on {data}.\nFits ran on one thread each.\n{stopped}"
     )
 }
 
@@ -200,6 +237,8 @@ pub fn table(rows: &[Row], tested: bool) -> String {
 pub enum Printed<'a> {
     Fitted {
         model: &'static str,
+        /// The model and its variant, such as "bouc-wen (degradation)".
+        label: String,
         /// What was chosen, or what a network is made of; `null` for a law.
         structure: Option<String>,
         parameters: usize,
@@ -211,6 +250,7 @@ pub enum Printed<'a> {
     },
     Failed {
         model: &'static str,
+        label: String,
         error: &'a str,
     },
 }
@@ -229,7 +269,8 @@ pub fn printed(rows: &[Row]) -> Vec<Printed<'_>> {
     rows.iter()
         .map(|row| match &row.outcome {
             Ok(fitted) => Printed::Fitted {
-                model: row.model.name(),
+                model: row.request.model().name(),
+                label: row.label(),
                 structure: structure(&fitted.model),
                 parameters: fitted.model.parameters(),
                 train: &fitted.train,
@@ -238,7 +279,7 @@ pub fn printed(rows: &[Row]) -> Vec<Printed<'_>> {
                 simulate_ns_per_sample: fitted.simulate_ns_per_sample,
                 termination: fitted.model.provenance().termination,
             },
-            Err(error) => Printed::Failed { model: row.model.name(), error },
+            Err(error) => Printed::Failed { model: row.request.model().name(), label: row.label(), error },
         })
         .collect()
 }

@@ -9,6 +9,9 @@ use hysid::unit;
 
 use crate::terminal::clipped;
 
+/// Heading of errors without the rows of a warm-up.
+pub const AFTER_WARM_UP: &str = "after warm-up";
+
 /// What stands in a row of the table.
 type Measure = fn(&Errors) -> String;
 
@@ -28,13 +31,13 @@ pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
     let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
     let mut text = " ".repeat(width);
     for (name, _) in sets {
-        let _ = write!(text, "  {name:>12}");
+        let _ = write!(text, "  {name:>13}");
     }
     text.push('\n');
     for (label, measure) in &rows {
         let _ = write!(text, "{label:<width$}");
         for (_, errors) in sets {
-            let _ = write!(text, "  {:>12}", measure(errors));
+            let _ = write!(text, "  {:>13}", measure(errors));
         }
         text.push('\n');
     }

@@ -16,6 +16,7 @@ use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
 use crate::data::Data;
+use crate::errors_table::AFTER_WARM_UP;
 use crate::lines::{WIDTH, wrapped};
 use crate::messages::{Usage, note, summarised, warning};
 use crate::progress::Follower;
@@ -79,10 +80,7 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
     let mut warnings = data_warnings(data, &summary);
-    warnings.extend(request.size_warning(&data.set)?.map(|warning| warning.to_string()));
-    if request.rate().is_some() && !request.model().uses_rate() {
-        warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", request.model().name()));
-    }
+    warnings.extend(request.cautions(&data.set));
     warnings.iter().for_each(warning);
     Ok(Said { understood, warnings })
 }
@@ -104,7 +102,7 @@ pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
 /// Identifies a model, following the training on stderr.
 pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let request = work.request;
-    let mut said = say_beforehand(data, request, "stopping to save the best model so far")?;
+    let said = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);
@@ -114,11 +112,6 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
-    // Of a network, it is said beforehand.
-    if let Some(size) = fitted.model.size_warning().filter(|_| !matches!(request, Request::Network(_))) {
-        warning(&size);
-        said.warnings.push(size.to_string());
-    }
     Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, said })
 }
 
@@ -175,12 +168,13 @@ impl Identified {
     pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
         let provenance = self.model.provenance();
         let mut sets = vec![("train", &provenance.train)];
+        sets.extend(provenance.train_after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
         sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
         sets.extend(unseen.map(|errors| ("unseen test", errors)));
         let mut text = errors_table::errors_table(&sets);
         if let Some(selection) = &provenance.selection {
             text += &format!(
-                "(validation: data held out in {} folds, before all was trained on everything)\n",
+                "(validation: rows held out in {} folds, by models trained without them)\n",
                 selection.folds.len()
             );
             text.push('\n');
@@ -188,10 +182,11 @@ impl Identified {
                 text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
-            text += "(validation: data held out, predicted by models that were trained without them)\n";
+            text += "(validation: rows held out, by models trained without them)\n";
         }
         text += &format!(
-            "\n{} with {} parameters; {}, {}; {:.1} s\n",
+            "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
+            self.model.notes().iter().map(|note| labelled("note", note)).collect::<String>(),
             self.model.name().name(),
             self.model.parameters(),
             chosen(provenance),

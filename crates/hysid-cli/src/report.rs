@@ -54,6 +54,7 @@ pub struct ReportSet<'a> {
 pub fn page(report: &Report) -> String {
     let sections = [
         errors::section(report),
+        provenance::notes(report),
         ensemble::section(report),
         band::section(report),
         report.sets.iter().map(figures::loops_section).collect(),

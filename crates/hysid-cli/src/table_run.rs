@@ -37,6 +37,8 @@ pub struct Simulated<'r> {
     pub prediction: &'r Prediction,
     /// Their measured outputs, NaN where they are blank; empty if these are not wanted.
     pub measured: &'r [f64],
+    /// Rows of their record before them.
+    pub before: usize,
     /// Their record ends with them.
     pub ends_record: bool,
     /// How the numbers of the table are written, as far as it is read.
@@ -275,6 +277,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         let flow = take(&Simulated {
             measured: if self.wanted.measured { &self.waiting.measured[..rows] } else { &[] },
             prediction: &prediction,
+            before: self.simulated,
             ends_record,
             numbers: &self.numbers,
             waiting: &self.waiting,

@@ -24,7 +24,7 @@ fn model_files() {
     bench.put("flipped.json", format!("{}{flipped}{}", &model[..digit], &model[digit + 1..]));
     bench.put("cut.json", &model[..model.len() / 2]);
     bench.put("empty.json", "");
-    bench.put("later.json", model.replacen("\"version\": 3", "\"version\": 99", 1));
+    bench.put("later.json", model.replacen("\"version\": 4", "\"version\": 99", 1));
     bench.put("edited.json", model.replace("\"x\"", "\"u\""));
     bench.put("other.json", "{\"format\": \"other\"}");
     bench.put("binary.json", b"{\xff}");
@@ -54,7 +54,7 @@ fn model_files() {
             (
                 "evaluate later.json good.csv",
                 1,
-                "later.json: the model file has format version 99, this program reads up to 3: use a newer hysid",
+                "later.json: the model file has format version 99, this program reads up to 4: use a newer hysid",
             ),
             (
                 "evaluate other.json good.csv",

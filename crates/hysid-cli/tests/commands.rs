@@ -82,6 +82,7 @@ fn json_has_the_promised_keys() {
         "selection",
         "train",
         "validation",
+        "notes",
         "seconds",
         "evaluations",
         "termination",

@@ -54,7 +54,11 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     assert!(!page.contains("The neurons") && !page.contains("Convergence"), "these are of single models");
     let told = bench.run(&format!("fit good.csv -o e.json {QUICK}"));
     assert_narrow(&told.stdout);
-    for words in ["\nchosen the weighted median of 3 networks", "\nwhy    on data held out ", "auto with "] {
+    for words in [
+        "\nchosen the weighted median of 3 networks",
+        "\nwhy    cross-validated error, geometric mean of 5 folds",
+        "auto with ",
+    ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);
     }
 }

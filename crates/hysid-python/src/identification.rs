@@ -26,8 +26,6 @@ const PAUSE: Duration = Duration::from_millis(50);
 pub struct Request {
     chosen: ChosenOptions,
     request: identification::Request,
-    /// Warns of a network with more parameters than rows.
-    size: Option<String>,
 }
 
 #[pymethods]
@@ -43,8 +41,19 @@ impl Request {
         if let Some(hindrance) = chosen.model().hindrance(&data.set, rate) {
             return Err(refused(format!("{} {hindrance}", chosen.model().name())));
         }
-        let size = request.size_warning(&data.set).map_err(refused)?;
-        Ok(Self { chosen, request, size: size.map(|warning| warning.to_string()) })
+        Ok(Self { chosen, request })
+    }
+
+    /// A model with its defaults in all variants of its law, for these data.
+    #[staticmethod]
+    fn variants(options: &str, rate: &str, data: &Dataset) -> PyResult<Vec<Self>> {
+        let Self { chosen, request } = Self::new(options, rate, data)?;
+        Ok(request.variants().into_iter().map(|request| Self { chosen: chosen.clone(), request }).collect())
+    }
+
+    /// The model and its variant in a few words.
+    fn label(&self) -> String {
+        self.request.label()
     }
 
     /// The name of the model.
@@ -52,24 +61,13 @@ impl Request {
         self.chosen.model().name()
     }
 
-    /// Options that the model has no use for, in words.
-    fn warnings(&self) -> Vec<String> {
+    /// Options that the model has no use for, and data that it is not made for, in words.
+    fn warnings(&self, data: &Dataset) -> Vec<String> {
         let trained_by = self.chosen.trained_by();
         let useless = |option| format!("{trained_by} has no use for {option}");
         let mut warnings: Vec<String> = self.chosen.useless().into_iter().map(useless).collect();
-        if self.request.rate().is_some() && !self.chosen.model().uses_rate() {
-            warnings.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", self.model()));
-        }
-        warnings.extend(self.size.clone());
+        warnings.extend(self.request.cautions(&data.set));
         warnings
-    }
-
-    /// What to know of the model that came of it, and was not known before.
-    fn warnings_after(&self, model: &Model) -> Vec<String> {
-        match self.request {
-            identification::Request::Network(_) => Vec::new(),
-            _ => model.size_warning().into_iter().collect(),
-        }
     }
 }
 

@@ -24,11 +24,6 @@ impl Model {
     pub fn new(model: model::Model) -> Self {
         Self { model: Arc::new(model) }
     }
-
-    /// Warns of more parameters than rows that they were found from.
-    pub fn size_warning(&self) -> Option<String> {
-        self.model.size_warning().map(|warning| warning.to_string())
-    }
 }
 
 #[pymethods]
@@ -98,11 +93,26 @@ impl Model {
         self.model.provenance().selection.as_ref().map(Selection::summary)
     }
 
-    /// Errors of free runs over all records, as JSON.
-    fn evaluate(&self, py: Python<'_>, data: &Dataset) -> PyResult<String> {
+    /// Errors of free runs over all records, as JSON; without the rows of a warm-up if that is wanted.
+    fn evaluate(&self, py: Python<'_>, data: &Dataset, after_warm_up: bool) -> PyResult<String> {
         let set = Arc::clone(&data.set);
-        let errors = py.detach(|| self.model.evaluate(&set)).map_err(refused)?;
+        let evaluate = || match after_warm_up && self.model.warm_up() > 0 {
+            true => self.model.evaluate_after_warm_up(&set),
+            false => self.model.evaluate(&set).map(Some),
+        };
+        let errors = py.detach(evaluate).map_err(refused)?;
+        let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
         serde_json::to_string(&errors).map_err(refused)
+    }
+
+    /// Rows at the beginning of each record that were not trained on.
+    fn warm_up(&self) -> usize {
+        self.model.warm_up()
+    }
+
+    /// What to know before relying on the model.
+    fn notes(&self) -> Vec<String> {
+        self.model.notes()
     }
 
     /// Warns of data beyond what the model was trained on.

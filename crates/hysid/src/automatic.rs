@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::identification::Request;
 use crate::metrics::Errors;
-use crate::model::{Band, Body, HeldOutRow, Model, Provenance};
+use crate::model::{Band, Body, Found, HeldOutRow, Model, Provenance};
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
@@ -248,7 +248,7 @@ impl Chosen<'_, '_, '_> {
     /// The model with the lowest training error of those that were fitted to everything before the observer asked
     /// to stop.
     fn without_validation(&self, alone: Model) -> Model {
-        let error = |model: &&Model| model.provenance().train.rmse;
+        let error = |model: &&Model| model.provenance().trained_error().rmse;
         let members = self.trials.iter().flat_map(|trial| &trial.members);
         let lowest = members.chain([&alone]).min_by(|a, b| error(a).total_cmp(&error(b)));
         lowest.cloned().unwrap_or(alone)
@@ -302,11 +302,8 @@ impl Chosen<'_, '_, '_> {
         selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
         selection.single = Some(found.how);
         let provenance = provenance_of(&found.model, Some(selection), validation, bench.work);
-        // A distilled model was taught more than the data.
-        let (samples, records) = (self.data.scored(), self.data.records().len());
-        let train = found.model.evaluate(self.data)?;
-        let provenance = Provenance { train, samples, records, ..provenance };
         let band = self.band(&single::rows_held_out(&found.predicted, bench.folds));
+        // A distilled model was taught more than the data.
         found.model.with_provenance(provenance).with_band(band).trained_on(self.data).map(Some)
     }
 }
@@ -320,19 +317,16 @@ fn ensemble(
     selection: Option<Selection>,
     work: &Work,
 ) -> Result<Model> {
-    let provenance = Provenance {
+    let found = Found {
         options: Request::Auto(options.clone()),
-        samples: data.scored(),
-        records: data.records().len(),
         chosen_start: 0,
         termination: if work.is_stopped() { Termination::Stopped } else { Termination::Converged },
-        train: body.errors(None, data)?,
         validation,
         penalties: None,
         runs: Vec::new(),
         selection,
     };
-    Model::new(body, Preprocessing::default(), options.rate, data, provenance)
+    Model::new(body, Preprocessing::default(), options.rate, data, found)
 }
 
 /// How a single model came about.

@@ -1,11 +1,10 @@
 //! A network run over records in the user's units, from the virgin state and without ever looking at
 //! the measured output.
 
-use crate::error::{Channel, DataProblem, Result};
-use crate::metrics::{ErrorSums, Errors};
+use crate::error::{DataProblem, Result};
 use crate::network::{Network, Simulator};
 use crate::rate::RateMethod;
-use crate::record::{Dataset, Excitation};
+use crate::record::Excitation;
 use crate::scaling::Scaling;
 
 /// Rows scaled at a time: they stay in the first-level cache.
@@ -70,15 +69,5 @@ impl<'a> FreeRun<'a> {
             self.rows(excitation, first, &steps[..steps_here], y)?;
         }
         Ok(y)
-    }
-
-    /// Errors over all records that have an output.
-    pub fn errors(&mut self, data: &Dataset) -> Result<Errors> {
-        let mut sums = ErrorSums::default();
-        for record in data.records().iter().filter(|record| record.scored() > 0) {
-            sums.add(record.output(), &self.response(&record.excitation())?);
-        }
-        sums.errors(&data.names().output)
-            .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
     }
 }

@@ -1,6 +1,8 @@
 //! Identification of any model by its name: a network of the family, or one of its rivals.
 
+mod cautions;
 pub mod options;
+pub(crate) mod variants;
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -12,7 +14,7 @@ use crate::automatic::{self, AutoOptions, Automatic};
 use crate::classical::identification::{self as classical, ClassicalOptions, Rival};
 use crate::classical::search::SearchProgress;
 use crate::error::{Error, Result};
-use crate::model::{Body, Model, Provenance};
+use crate::model::{Body, Found, Model};
 use crate::network::Family;
 use crate::preprocessing::{Origin, Seen};
 use crate::rate::RateMethod;
@@ -22,7 +24,6 @@ use crate::training::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::training::{
     self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
 };
-use crate::warning::Warning;
 
 /// A model by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -136,16 +137,6 @@ impl Request {
         }
     }
 
-    /// Warns of a network with more parameters than rows with an output. Of other models the fitted one tells.
-    ///
-    /// # Errors
-    /// Sizes that no network can have.
-    pub fn size_warning(&self, data: &Dataset) -> Result<Option<Warning>> {
-        let Self::Network(options) = self else { return Ok(None) };
-        let (parameters, rows) = (options.architecture(data)?.parameters(), data.scored());
-        Ok((parameters > rows).then_some(Warning::MoreParametersThanRows { parameters, rows }))
-    }
-
     /// The model and its variant in a few words, such as `bouc-wen (degradation, rate)`.
     pub fn label(&self) -> String {
         let variant = self.variant();
@@ -161,7 +152,7 @@ impl Request {
                 named([
                     ("deterioration", options.deteriorates()),
                     ("rate", options.rate.is_some()),
-                    ("relaxation", options.sizes.relaxation > 0),
+                    ("relaxation", options.model == Family::XpnnPlus && options.sizes.relaxation > 0),
                 ]),
             ),
             Self::Classical(options) => {
@@ -320,21 +311,14 @@ fn finished(
     runs: Vec<Run>,
 ) -> Result<Fit> {
     let request = Request::Classical(options.clone());
-    let train = body.errors(seen.rate, &seen.data)?;
-    let provenance = Provenance {
+    let found = Found {
         options: request,
-        samples: data.scored(),
-        records: data.records().len(),
         chosen_start: 0,
         termination,
-        train,
         validation: None,
         penalties: None,
         runs,
         selection: None,
     };
-    Ok(Fit {
-        model: Model::new(body, seen.preprocessing.clone(), options.rate, data, provenance)?,
-        evaluations,
-    })
+    Ok(Fit { model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?, evaluations })
 }

@@ -4,6 +4,7 @@
 mod band;
 mod ensemble;
 mod file;
+mod notes;
 mod ranges;
 mod runner;
 mod simulation;
@@ -68,11 +69,6 @@ pub enum Body {
 }
 
 impl Body {
-    /// Errors of free runs over all records that have an output, with the inputs seen as they are.
-    pub(crate) fn errors(&self, rate: Option<RateMethod>, data: &Dataset) -> Result<Errors> {
-        errors(Runner::of_body(self, None, rate), data)
-    }
-
     /// Parameters that were found from the data.
     fn parameters(&self) -> usize {
         match self {
@@ -110,6 +106,24 @@ fn remembered(data: &Dataset) -> Vec<String> {
     data.records().iter().filter_map(|record| record.fingerprint().text()).collect()
 }
 
+/// Rows at the beginning of each record that a body was not trained on.
+fn warm_up(body: &Body, options: &Request) -> usize {
+    match (options, body) {
+        (Request::Network(options), _) => options.shaping.warm_up,
+        (Request::Classical(options), _) => options.shaping.warm_up,
+        (Request::Auto(_), Body::Ensemble(ensemble)) => {
+            ensemble.members().iter().map(Model::warm_up).max().unwrap_or_default()
+        }
+        (Request::Auto(_), Body::Network { .. } | Body::Law(_)) => 0,
+    }
+}
+
+/// The rows behind so many of each record; `None` for no rows, and where none with an output is left.
+fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
+    let behind = (rows > 0).then(|| data.clone().warmed_up(rows))?;
+    (behind.scored() > 0).then_some(behind)
+}
+
 /// Smallest and largest values seen in training, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -142,8 +156,12 @@ pub struct Provenance {
     pub chosen_start: usize,
     /// Why the last training run ended.
     pub termination: Termination,
-    /// Errors of the model on all data it was trained on, free run.
+    /// Errors of the model on all data it was trained on: what [`Model::evaluate`] gives for them. The rows of
+    /// a warm-up count here.
     pub train: Errors,
+    /// The same without the rows of the warm-up, which the model was not trained on; `None` without a warm-up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub train_after_warm_up: Option<Errors>,
     /// Errors on data held out, of models that were identified in the same way without them; `None` if none
     /// were held out.
     pub validation: Option<Errors>,
@@ -157,6 +175,53 @@ pub struct Provenance {
     pub selection: Option<Selection>,
 }
 
+impl Provenance {
+    /// Errors on the rows that the model was trained on.
+    pub(crate) fn trained_error(&self) -> &Errors {
+        self.train_after_warm_up.as_ref().unwrap_or(&self.train)
+    }
+}
+
+/// How a model was found; what its data add to it makes the [`Provenance`].
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    pub options: Request,
+    pub chosen_start: usize,
+    pub termination: Termination,
+    pub validation: Option<Errors>,
+    pub penalties: Option<Regularisation>,
+    pub runs: Vec<Run>,
+    pub selection: Option<Selection>,
+}
+
+impl Found {
+    /// What the data add.
+    fn on(self, data: &Dataset, train: Errors, train_after_warm_up: Option<Errors>) -> Provenance {
+        let Self { options, chosen_start, termination, validation, penalties, runs, selection } = self;
+        Provenance {
+            options,
+            samples: data.scored(),
+            records: data.records().len(),
+            chosen_start,
+            termination,
+            train,
+            train_after_warm_up,
+            validation,
+            penalties,
+            runs,
+            selection,
+        }
+    }
+}
+
+impl From<Provenance> for Found {
+    fn from(known: Provenance) -> Self {
+        let Provenance { options, chosen_start, termination, validation, penalties, runs, selection, .. } =
+            known;
+        Self { options, chosen_start, termination, validation, penalties, runs, selection }
+    }
+}
+
 impl Model {
     /// A model of these data, whose body was trained on them after the preprocessing.
     pub(crate) fn new(
@@ -164,14 +229,20 @@ impl Model {
         preprocessing: Preprocessing,
         rate: Option<RateMethod>,
         data: &Dataset,
-        provenance: Provenance,
+        found: Found,
     ) -> Result<Self> {
         let uses_rate = match &body {
             Body::Network { network, .. } => network.architecture().rate,
-            Body::Law(_) => provenance.options.model().uses_rate(),
+            Body::Law(_) => found.options.model().uses_rate(),
             Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
+        let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), data)?;
+        let train_after_warm_up = match behind(data, warm_up(&body, &found.options)) {
+            Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
+            None => None,
+        };
+        let provenance = found.on(data, train, train_after_warm_up);
         let mut model = Self {
             body,
             preprocessing,
@@ -363,7 +434,7 @@ impl Model {
     /// With the ranges of these data, where it was trained on more than them.
     pub(crate) fn trained_on(self, data: &Dataset) -> Result<Self> {
         let Self { body, preprocessing, rate, band, provenance, .. } = self;
-        Ok(Self::new(body, preprocessing, rate, data, provenance)?.with_band(band))
+        Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
     pub(crate) fn with_band(mut self, band: Option<Band>) -> Self {
@@ -382,14 +453,7 @@ impl Model {
 
     /// Rows at the beginning of each record that drove the memory in training and were not trained on.
     pub fn warm_up(&self) -> usize {
-        match &self.provenance.options {
-            Request::Network(options) => options.shaping.warm_up,
-            Request::Classical(options) => options.shaping.warm_up,
-            Request::Auto(_) => {
-                let members = self.ensemble().map_or(&[][..], Ensemble::members);
-                members.iter().map(Model::warm_up).max().unwrap_or_default()
-            }
-        }
+        warm_up(&self.body, &self.provenance.options)
     }
 
     /// As [`Model::evaluate`], of the rows behind the warm-up alone; `None` for a model without a warm-up, and
@@ -398,11 +462,7 @@ impl Model {
     /// # Errors
     /// As [`Model::evaluate`].
     pub fn evaluate_after_warm_up(&self, data: &Dataset) -> Result<Option<Errors>> {
-        let behind = match self.warm_up() {
-            0 => return Ok(None),
-            rows => data.clone().warmed_up(rows),
-        };
-        if behind.scored() == 0 { Ok(None) } else { self.evaluate(&behind).map(Some) }
+        behind(data, self.warm_up()).map(|behind| self.evaluate(&behind)).transpose()
     }
 
     fn check_time(&self, excitation: &Excitation<'_>) -> Result<()> {
@@ -437,14 +497,6 @@ impl Model {
         let warning =
             |record: &Record| Warning::TrainedOn { record: record.name().into(), likeness: Likeness::Equal };
         known.map(warning).collect()
-    }
-
-    /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member.
-    pub fn size_warning(&self) -> Option<Warning> {
-        let members = self.ensemble().map_or(&[][..], Ensemble::members);
-        let largest = members.iter().map(Model::parameters).max();
-        let (parameters, rows) = (largest.unwrap_or_else(|| self.parameters()), self.provenance.samples);
-        (parameters > rows).then_some(Warning::MoreParametersThanRows { parameters, rows })
     }
 
     /// Warns of inputs and rates beyond what the model was trained on.

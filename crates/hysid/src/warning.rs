@@ -72,6 +72,13 @@ pub enum Warning {
     },
 }
 
+impl Warning {
+    /// Of more parameters than rows to find them from.
+    pub(crate) fn of_size(parameters: usize, rows: usize) -> Option<Self> {
+        (parameters > rows).then_some(Self::MoreParametersThanRows { parameters, rows })
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

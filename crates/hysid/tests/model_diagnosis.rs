@@ -99,7 +99,7 @@ fn no_output_leaves_its_bound() {
     for name in ModelName::all() {
         let model = fitted(name);
         let bound = ModelDiagnosis::of(&model).unwrap().memory.bound;
-        let (low, high) = bound.in_trained_ranges;
+        let (low, high) = bound.in_trained_ranges.unwrap();
         assert!(low <= bound.reached.0 && high >= bound.reached.1, "{}: {bound:?}", name.name());
         let (from, to) = model.trained_ranges().inputs[0];
         let fastest = model.trained_ranges().rate.map_or(1.0, |(low, high)| high.min(-low));

@@ -42,7 +42,8 @@ pub fn parse(text: &str) -> Result<Vec<Answer>, String> {
 }
 
 fn answer(object: &Value) -> Result<Answer, String> {
-    let model = object["model"].as_str().ok_or("the answer has an object without a model")?;
+    let name = object["label"].as_str().or(object["model"].as_str());
+    let model = name.ok_or("the answer has an object without a model")?;
     let nrmse = |set: &str| object[set]["nrmse_std_percent"].as_f64();
     let figures = match &object["error"] {
         Value::Null => Ok(Figures {

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use hysid::identification::{ModelName, Request};
+use hysid::identification::ModelName;
+use hysid::identification::options::ChosenOptions;
 use hysid::summary::Summary;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Compare;
 use crate::columns::Roles;
-use crate::commands::fit::rate_method;
+use crate::commands::fit::request;
 use crate::comparison::{self, Data as Compared};
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
@@ -36,15 +37,14 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
     let models: Vec<ModelName> =
         if arguments.models.is_empty() { every_model() } else { arguments.models.clone() };
-    let requests: Result<Vec<Request>> = models
-        .iter()
-        .map(|&model| {
-            let rate = rate_method(&arguments.columns.rate, &roles, model)
-                .with_context(|| tables[0].file.clone())?;
-            Ok(Request::of(model, rate, arguments.seed))
-        })
-        .collect();
-    let requests = requests?;
+    let mut requests = Vec::new();
+    for &model in &models {
+        let chosen =
+            ChosenOptions { model: Some(model), seed: Some(arguments.seed), ..ChosenOptions::default() };
+        let request =
+            request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?;
+        requests.extend(request.variants());
+    }
     let train = Data::new(tables, roles)?;
 
     data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);

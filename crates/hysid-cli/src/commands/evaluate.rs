@@ -12,7 +12,7 @@ use crate::band_coverage::BandCoverage;
 use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::data::explained;
-use crate::errors_table::errors_table;
+use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::messages::{json_results, results, summarised, warning};
 use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
@@ -26,14 +26,18 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
 
-    let (mut sums, mut covered) = (ErrorSums::default(), (0, 0));
+    let warm_up = model.warm_up();
+    let (mut sums, mut sums_behind, mut covered) = (ErrorSums::default(), ErrorSums::default(), (0, 0));
     let mut take = |simulated: &Simulated<'_>| {
         let (prediction, measured) = (simulated.prediction, simulated.measured);
         sums.add_rows(measured, &prediction.output);
+        let skipped = warm_up.saturating_sub(simulated.before).min(measured.len());
+        sums_behind.add_rows(&measured[skipped..], &prediction.output[skipped..]);
         let (inside, scored) = prediction.covered(measured);
         covered = (covered.0 + inside, covered.1 + scored);
         if simulated.ends_record {
             sums.end_record();
+            sums_behind.end_record();
         }
         Ok(ControlFlow::Continue(()))
     };
@@ -48,11 +52,17 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     };
     summarised(&warnings.context("the run was ended early")?).iter().for_each(warning);
     let band = arguments.band.map(|probability| BandCoverage::of(covered, probability));
+    let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(output)).flatten();
     match arguments.json {
-        true => json_results(&Printed { errors: &errors, band })?,
+        true => json_results(&Printed { errors: &errors, after_warm_up, band })?,
         false => {
-            let table = errors_table(&[("free run", &errors)]);
-            results(&(table + &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()))))?;
+            let mut sets = vec![("free run", &errors)];
+            sets.extend(after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
+            let mut text = errors_table(&sets);
+            if after_warm_up.is_some() {
+                text += &format!("({AFTER_WARM_UP}: without the first {warm_up} rows of each record)\n");
+            }
+            results(&(text + &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()))))?;
         }
     }
     Ok(Outcome::Done)
@@ -63,6 +73,9 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
 struct Printed<'a> {
     #[serde(flatten)]
     errors: &'a Errors,
+    /// Errors without the rows of a warm-up, for a model that has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    after_warm_up: Option<Errors>,
     #[serde(skip_serializing_if = "Option::is_none")]
     band: Option<BandCoverage>,
 }

@@ -176,7 +176,12 @@ struct Printed<'a> {
     /// What was tried and how it did; `null` where there was no choice.
     selection: Option<&'a Selection>,
     train: &'a Errors,
+    /// Without the rows of a warm-up; left out for a model without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    train_after_warm_up: Option<&'a Errors>,
     validation: Option<&'a Errors>,
+    /// What to know before relying on the model.
+    notes: Vec<String>,
     seconds: f64,
     evaluations: usize,
     termination: Termination,
@@ -220,6 +225,8 @@ impl<'a> Printed<'a> {
                 .map(|ensemble| ensemble.members().iter().map(PrintedMember::of).collect()),
             selection: provenance.selection.as_ref(),
             train: &provenance.train,
+            train_after_warm_up: provenance.train_after_warm_up.as_ref(),
+            notes: model.notes(),
             validation: provenance.validation.as_ref(),
             seconds: identified.seconds,
             evaluations: identified.evaluations,

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use hysid::record::Dataset;
 
-use super::{Fitted, HEADINGS, Row, cells};
+use super::{Fitted, HEADINGS, Row, cells, stopped_note};
 use crate::page::{figure, note, section, table, verdict, whole};
 use crate::plot::{Axis, Chart, Colour, Curve, Label};
 use crate::report::{ReportSet, small_loops};
@@ -16,8 +16,12 @@ const OVERLAID: usize = 3;
 
 /// The whole page.
 pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) -> Result<String> {
-    let fitted: Vec<(&str, &Fitted)> =
-        rows.iter().filter_map(|row| Some((row.model.name(), row.outcome.as_ref().ok()?))).collect();
+    let labels: Vec<String> = rows.iter().map(Row::label).collect();
+    let fitted: Vec<(&str, &Fitted)> = rows
+        .iter()
+        .zip(&labels)
+        .filter_map(|(row, label)| Some((label.as_str(), row.outcome.as_ref().ok()?)))
+        .collect();
     let shown = test.unwrap_or(train);
     let data = if test.is_some() { "unseen data" } else { "the training data" };
     let mut content = fitted.first().map_or_else(String::new, |(name, best)| {
@@ -27,9 +31,10 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
     content += &section(
         "Errors",
         &(rows_table(rows)
-            + &note(
-                "NRMSE in percent of the output’s standard deviation, of free runs. Fits ran on one thread each, several at a time.",
-            )),
+            + &note(&format!(
+                "NRMSE in percent of the output’s standard deviation, of free runs. Fits ran on one thread each, several at a time. {}",
+                stopped_note(rows)
+            ))),
     );
     if !fitted.is_empty() {
         content += &section("Error against size", &figure(&size_chart(&fitted, data), true));
@@ -53,7 +58,7 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
 
 fn rows_table(rows: &[Row]) -> String {
     let cells_of = |row: &Row| {
-        let mut line = vec![row.model.name().to_string()];
+        let mut line = vec![row.label()];
         match &row.outcome {
             Ok(fitted) => line.extend(cells(fitted)),
             Err(why) => line.push(why.clone()),

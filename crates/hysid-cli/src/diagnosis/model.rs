@@ -285,12 +285,22 @@ impl<'a> DiagnosedModel<'a> {
             Some(all) => format!("{} whatever the input", span(all)),
             None => "outside of them it may grow with the input for ever".into(),
         };
-        let bounded = format!(
-            "within the trained ranges {output} stays within {}; {ever} ({}). Reached was {}",
-            span(bound.in_trained_ranges),
-            basis_name(bound.basis),
-            span(bound.reached)
-        );
+        let reached = span(bound.reached);
+        let basis = basis_name(bound.basis);
+        let bounded = match bound.in_trained_ranges {
+            None => format!(
+                "no bound: {output} may grow with the path of the input for ever ({basis}). Reached was {reached}"
+            ),
+            Some(range) if width(range) > USELESS * width(bound.reached) => format!(
+                "within the trained ranges {output} is bounded, but the bound is {:.0} times as wide as what was reached, \
+                 which is too wide to be of use ({basis}). Reached was {reached}",
+                Significant(width(range) / width(bound.reached))
+            ),
+            Some(range) => format!(
+                "within the trained ranges {output} stays within {}; {ever} ({basis}). Reached was {reached}",
+                span(range)
+            ),
+        };
         let claim = |claim: &Claim| {
             let holds = if claim.holds { "yes" } else { "no" };
             format!("{holds} ({}): {}", basis_name(claim.basis), claim.statement)
@@ -302,6 +312,13 @@ impl<'a> DiagnosedModel<'a> {
             ("return-point memory", claim(&memory.return_point_memory)),
         ]
     }
+}
+
+/// A bound so many times as wide as the outputs that were reached says nothing.
+const USELESS: f64 = 5.0;
+
+fn width((low, high): (f64, f64)) -> f64 {
+    high - low
 }
 
 /// The object that `--json` prints of a model.

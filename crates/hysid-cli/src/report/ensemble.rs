@@ -21,7 +21,7 @@ pub fn section(report: &Report) -> String {
         selection.candidates.iter().partition(|one| counts(one));
     let content = match report.model.ensemble() {
         Some(ensemble) => voices(report, selection, ensemble, counting),
-        None => teachers(counting),
+        None => single(selection, counting),
     };
     let heading = if report.model.ensemble().is_some() { "The ensemble" } else { "How it was chosen" };
     section_of(heading, &(definitions(&lines) + &content + &left_out(&others) + &held_out(selection)))
@@ -90,22 +90,31 @@ fn voices(
     table(&headings.map(String::from), &rows) + &note(&words)
 }
 
-/// What a single model that stands for many has learnt from.
-fn teachers(mut candidates: Vec<&CandidateResult>) -> String {
+/// What a single model was chosen among, or distilled from.
+fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> String {
     candidates.sort_by(|a, b| b.share.inside.total_cmp(&a.share.inside));
     let row = |one: &&CandidateResult| {
         vec![one.name.clone(), one.kind.clone(), shares(one), errors(one.error_percent)]
     };
     let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
     let headings = ["candidate", "kind", "share (%)", "error alone (% of std)"].map(String::from);
-    let words = "The single model has learnt from the data and, on paths that were not measured, from what these \
-                 candidates answer together; they are not part of it. A share is what a candidate counts there. \
-                 Errors are of free runs on data held out, geometric means over what was held out. Where two numbers \
-                 stand, the first is of rows where the first input has not left the range that was fitted to, the \
-                 second of those after it has.";
-    paragraph("One model was asked for, so the candidate that does best alone stands for all:")
-        + &table(&headings, &rows)
-        + &note(words)
+    let is_distilled = selection.single.as_ref().is_none_or(|single| single.distilled);
+    let (first, words) = match is_distilled {
+        true => (
+            "One model was asked for. It was trained on the data and on what an ensemble of these candidates \
+             predicts on paths that were not measured:",
+            "The candidates are not part of the model. A share is what a candidate counts in the ensemble.",
+        ),
+        false => (
+            "One model was asked for. It was fitted to the data alone, because that predicts data held out better \
+             than a model distilled from an ensemble of these candidates:",
+            "A share is what a candidate counts in the ensemble.",
+        ),
+    };
+    let errors = "Errors are of free runs on data held out, geometric means over what was held out. Where two numbers \
+                  stand, the first is of rows where the first input has not left the range that was fitted to, the \
+                  second of those after it has.";
+    paragraph(first) + &table(&headings, &rows) + &note(&format!("{words} {errors}"))
 }
 
 /// What was tried in vain.

@@ -65,6 +65,9 @@ pub fn section(report: &Report) -> String {
     if let Some(validation) = &provenance.validation {
         rows.insert(1, row("validation", validation));
     }
+    if let Some(behind) = &provenance.train_after_warm_up {
+        rows.insert(1, row("training, after warm-up", behind));
+    }
     let unit = unit::of(&report.model.names().output);
     let headings = [
         "data".into(),

@@ -28,6 +28,16 @@ pub fn warnings(report: &Report) -> String {
     section_of("Warnings", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
 }
 
+/// What to know before relying on the model; empty if there is nothing.
+pub fn notes(report: &Report) -> String {
+    let notes = report.model.notes();
+    if notes.is_empty() {
+        return String::new();
+    }
+    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
+    section_of("Notes", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
+}
+
 /// Options and provenance.
 pub fn section(report: &Report) -> String {
     let provenance = report.model.provenance();
@@ -45,6 +55,9 @@ pub fn section(report: &Report) -> String {
     };
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
     let preprocessing = report.model.preprocessing();
+    for (input, origin) in report.model.names().inputs.iter().zip(&preprocessing.origins) {
+        say(&format!("{input} is measured from"), number(*origin, 6));
+    }
     if preprocessing.companding.is_some() {
         say("Input as it is seen", seen_label(report));
     }

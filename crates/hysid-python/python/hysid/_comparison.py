@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
 from hysid._data import columns
-from hysid._fitting import identified
+from hysid._fitting import as_json, fitted
 from hysid._warning import HysidWarning, warn
 from hysid.model import Errors, Model
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hysid._data import Columns, Values
+
+# Seconds for a model other than auto.
+_TIME_LIMIT = 20.0
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class Compared:
     Attributes
     ----------
     name : str
-        Which model.
+        Which model and variant, such as ``"bouc-wen (degradation)"``.
     model : Model or None
         The fitted model.
     train, test : Errors or None
@@ -134,11 +137,11 @@ def compare(
     *,
     test: Any = None,
     models: Sequence[str] | None = None,
-    time_limit: float = 20.0,
+    time_limit: float | None = None,
     seed: int | None = None,
     threads: int | None = None,
 ) -> Comparison:
-    """Fit every model to the same data, and judge them on data that none has seen.
+    """Fit every model, in all its variants, to the same data, and judge them on data that none has seen.
 
     Parameters
     ----------
@@ -149,8 +152,9 @@ def compare(
         those of the training.
     models : sequence of str, optional
         Names of the models, also ``"auto"``; all of `hysid.models` by default.
-    time_limit : float
-        Seconds for each model, after which its search ends with what it has.
+    time_limit : float, optional
+        Seconds for each model, after which its search ends with what it has; 20 by default, and none for
+        ``"auto"``.
     seed : int, optional
         Seed of all randomness.
     threads : int, optional
@@ -183,36 +187,44 @@ def compare(
         if name not in ("auto", *_hysid.model_names(), "epnn"):
             raise ValueError(f"model `{name}` is unknown: choose one of auto, {', '.join(_hysid.model_names())}")
 
-    def row(name: str) -> Compared:
-        return _compared(name, arranged, unseen, str(rate) if named else "given", seed, time_limit)
+    rows: list[Compared] = []
+    requests: list[_hysid.Request] = []
+    for name in names:
+        try:
+            options = as_json({"model": name, "seed": seed})
+            requests += _hysid.Request.variants(options, str(rate) if named else "given", data)
+        except ValueError as error:
+            rows.append(Compared(name, error=str(error)))
+
+    def row(request: _hysid.Request) -> Compared:
+        return _compared(data, request, unseen, time_limit)
 
     workers = threads or os.cpu_count() or 1
-    with ThreadPoolExecutor(min(workers, max(1, len(names)))) as pool, warnings.catch_warnings():
+    with ThreadPoolExecutor(min(workers, max(1, len(requests)))) as pool, warnings.catch_warnings():
         warnings.simplefilter("ignore", HysidWarning)
         try:
-            return Comparison(list(pool.map(row, names)))
+            return Comparison(rows + list(pool.map(row, requests)))
         except KeyboardInterrupt:
             pool.shutdown(cancel_futures=True)
             raise
 
 
 def _compared(
-    name: str,
-    arranged: Columns,
+    data: _hysid.Dataset,
+    request: _hysid.Request,
     unseen: Columns | None,
-    rate: str,
-    seed: int | None,
-    time_limit: float,
+    time_limit: float | None,
 ) -> Compared:
+    name = request.label()
+    limit = time_limit if time_limit is not None or name == "auto" else _TIME_LIMIT
     began = perf_counter()
     try:
-        options = {"model": name, "seed": seed}
-        model = identified(arranged, rate, options, time_limit=time_limit, threads=1)
+        model = fitted(data, request, time_limit=limit, threads=1)
         seconds = perf_counter() - began
-        test = None if unseen is None else model._evaluated(unseen)
+        test = None if unseen is None else model._evaluated(model._converted(unseen, same_units=False))
     except ValueError as error:
         return Compared(name, error=str(error))
-    return Compared(model.name, model, model.train, test, seconds)
+    return Compared(name, model, model.train, test, seconds)
 
 
 def _parts(test: Any) -> tuple[Any, ...]:

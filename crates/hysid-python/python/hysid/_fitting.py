@@ -77,6 +77,8 @@ def fit(
     stall: int | None = None,
     seed: int | None = None,
     validation: float | None = None,
+    ridge: float | None = None,
+    decay: float | None = None,
     operators: int | None = None,
     thresholds: ArrayLike | None = None,
     sign: str | None = None,
@@ -141,7 +143,12 @@ def fit(
     seed : int, optional
         Seed of all randomness.
     validation : float, optional
-        Share of the data held out to choose among the starts, between 0 and 1.
+        Share of the data held out, between 0 and 1, in the place of the folds of a cross-validation. What is
+        held out tells the error on new data; the model is trained on everything.
+    ridge, decay : float, optional
+        Penalties on the squared output weights of a network, and on the weights of its stops and tanh neurons,
+        1e-6 and 1e-7 by default. Where neither is given, they are left out if that lowers the error on data
+        held out. Of auto: chosen by cross-validation.
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops.
     thresholds : array, optional
@@ -198,6 +205,8 @@ def fit(
         stall=stall,
         seed=seed,
         validation=validation,
+        ridge=ridge,
+        decay=decay,
         operators=operators,
         thresholds=thresholds,
         sign=sign,
@@ -230,12 +239,23 @@ def identified(
 ) -> Model:
     """Fits, warns before and after, and gives the model."""
     data, request = requested(arranged, rate, options, threads)
+    return fitted(data, request, time_limit=time_limit, threads=threads, progress=progress)
+
+
+def fitted(
+    data: _hysid.Dataset,
+    request: _hysid.Request,
+    *,
+    time_limit: float | None,
+    threads: int | None,
+    progress: Callable[[Progress], object] | None = None,
+) -> Model:
+    """Fits, warns of what there is to know afterwards, and gives the model."""
     with told(progress) as tell:
         native, _, interrupted = _hysid.identify(data, request, threads, time_limit, tell)
-    warn(request.warnings_after(native))
-    if interrupted:
-        warn(["interrupted: this is the best model so far"])
-    return Model(native)
+    model = Model(native)
+    warn(model.notes + (["interrupted: this is the best model so far"] if interrupted else []))
+    return model
 
 
 def requested(
@@ -248,7 +268,7 @@ def requested(
         raise ValueError(f"threads {threads}: choose 1 to 1024")
     data = arranged.dataset()
     request = _hysid.Request(as_json(options), rate, data)
-    warn(request.warnings() + data.warnings())
+    warn(request.warnings(data) + data.warnings())
     return data, request
 
 

@@ -286,6 +286,22 @@ class Model:
         return None if errors is None else Errors(**errors)
 
     @property
+    def train_after_warm_up(self) -> Errors | None:
+        """As `train`, without the rows of the warm-up; None for a model without one."""
+        errors = self.description["training"].get("train_after_warm_up")
+        return None if errors is None else Errors(**errors)
+
+    @property
+    def warm_up(self) -> int:
+        """Rows at the beginning of each record that drove the memory and were not trained on."""
+        return self._native.warm_up()
+
+    @property
+    def notes(self) -> list[str]:
+        """What to know before relying on the model, in sentences; empty if there is nothing."""
+        return self._native.notes()
+
+    @property
     def termination(self) -> str:
         """Why the last training run ended."""
         return str(self.description["training"]["termination"])
@@ -410,6 +426,7 @@ class Model:
         records: ArrayLike | None = None,
         *,
         same_units: bool = False,
+        after_warm_up: bool = False,
     ) -> Errors:
         """Judge a free run against the measured output.
 
@@ -423,6 +440,8 @@ class Model:
             As of `simulate`.
         same_units : bool
             As of `simulate`.
+        after_warm_up : bool
+            Leave out the rows of the model's warm-up at the beginning of each record.
 
         Returns
         -------
@@ -434,7 +453,8 @@ class Model:
         ValueError
             Inputs that the model cannot take, or no measured output at all.
         """
-        return self._evaluated(self._converted(columns(x, y, time, rate, records), same_units))
+        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        return self._evaluated(arranged, after_warm_up=after_warm_up)
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
         """Columns in the units of the training, as far as names tell units; says what is converted."""
@@ -463,9 +483,9 @@ class Model:
         warn(notes)
         return result
 
-    def _evaluated(self, arranged: Columns) -> Errors:
+    def _evaluated(self, arranged: Columns, *, after_warm_up: bool = False) -> Errors:
         data = arranged.dataset()
-        errors = Errors(**json.loads(self._native.evaluate(data)))
+        errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up)))
         if arranged.output is not None and arranged.output.name is None:
             errors = replace(errors, output=self.output)
         warn(self._native.range_warnings(data))

@@ -40,7 +40,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         name a model, which takes seconds.
     companding, rate_companding, history, warm_up, training, starts, epochs, population, stall : optional
         As of `hysid.fit`.
-    validation, operators, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
+    validation, ridge, decay, operators, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
         As of `hysid.fit`.
     degradation, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
@@ -91,6 +91,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         population: int | None = None,
         stall: int | None = None,
         validation: float | None = None,
+        ridge: float | None = None,
+        decay: float | None = None,
         operators: int | None = None,
         thresholds: Any = None,
         sign: str | None = None,
@@ -122,6 +124,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.population = population
         self.stall = stall
         self.validation = validation
+        self.ridge = ridge
+        self.decay = decay
         self.operators = operators
         self.thresholds = thresholds
         self.sign = sign

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 
 use crate::automatic::AutoOptions;
 use crate::classical::identification::{ClassicalOptions, Rival};
+use crate::identification::variants::variants;
 use crate::identification::{ModelName, Request};
 use crate::network::{Family, Sizes};
 use crate::preprocessing::Shaping;
@@ -296,29 +297,14 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
 
 /// The laws that are searched, each in all its variants.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let starts = Some(STARTS_OF_A_SEARCH);
-    let searched = |model| ClassicalOptions { starts, ..of_law(options, model) };
-    let bouc_wen = |rate, degradation| ClassicalOptions { rate, degradation, ..searched(Rival::BoucWen) };
-    let mut laws = vec![searched(Rival::GeneralizedPrandtlIshlinskii)];
-    laws.extend([false, true].map(|degradation| bouc_wen(None, degradation)));
-    laws.extend(
-        [false, true].map(|differential_form| ClassicalOptions {
-            differential_form,
-            ..searched(Rival::JilesAtherton)
-        }),
-    );
-    laws.push(searched(Rival::NeuroMadelung));
-    let rate = options.rate;
-    if rate.is_some() {
-        laws.extend([false, true].map(|degradation| bouc_wen(rate, degradation)));
-        laws.extend([false, true].map(|logarithmic_thresholds| ClassicalOptions {
-            rate,
-            logarithmic_thresholds,
-            ..searched(Rival::RateDependentPrandtlIshlinskii)
-        }));
-        laws.push(ClassicalOptions { rate, ..searched(Rival::NeuroMadelung) });
-    }
-    laws
+    let searched = Rival::ALL.into_iter().filter(|model| model.is_searched());
+    let with_rate = |model: Rival| ClassicalOptions {
+        rate: options.rate.filter(|_| model.uses_rate()),
+        starts: Some(STARTS_OF_A_SEARCH),
+        ..of_law(options, model)
+    };
+    let wanted = searched.filter(|model| !model.needs_rate() || options.rate.is_some());
+    wanted.flat_map(|model| variants(&with_rate(model))).collect()
 }
 
 fn of_network(

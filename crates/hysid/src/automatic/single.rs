@@ -86,7 +86,8 @@ impl Makers<'_, '_, '_> {
             1
         };
         fit_members(self.trials, &wanted, self.bench.data, self.bench.work);
-        let error = |model: &&Model| model.provenance().train.nrmse_std_percent.unwrap_or(f64::INFINITY);
+        let error =
+            |model: &&Model| model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY);
         let members = self.trials[place].members.iter();
         members.min_by(|a, b| error(a).total_cmp(&error(b))).cloned()
     }
@@ -107,7 +108,7 @@ impl Makers<'_, '_, '_> {
                 Preprocessing::default(),
                 self.options.rate,
                 training,
-                ensemble.provenance().clone(),
+                ensemble.provenance().clone().into(),
             )?;
             let Some(model) =
                 distilled(&of_fold, candidate, starts.min(STARTS_ON_FOLDS), training, self.bench.work)?

@@ -129,7 +129,7 @@ impl Stages<'_, '_, '_> {
         let few = self.bench.data.thinned(ROWS_IN_HASTE);
         let error = |law: &Candidate| {
             let model = self.bench.work.fit(&law.in_haste(), &few, 0).ok().flatten()?;
-            model.provenance().train.nrmse_std_percent
+            model.provenance().trained_error().nrmse_std_percent
         };
         let errors: Vec<Option<f64>> = laws.par_iter().map(error).collect();
         let is_worth = |law: &Candidate, error: &Option<f64>| {

@@ -53,7 +53,7 @@ pub(super) struct OnFold {
 impl OnFold {
     /// Error on what it was fitted to, in percent of the standard deviation.
     pub fn training_error(&self) -> f64 {
-        self.model.provenance().train.nrmse_std_percent.unwrap_or(f64::INFINITY)
+        self.model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY)
     }
 }
 

@@ -73,6 +73,7 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
         Some(model) => format!("the simplest model that holds what was found is {}: {reason}", model.name()),
         None => reason.to_string(),
     }];
+    statement.extend(law(&found).map(String::from));
     if let Some(delay) = delay {
         let shift = Significant(delay.time.abs());
         statement.push(format!(
@@ -151,6 +152,24 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     )
 }
 
+/// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
+/// tells.
+fn law(found: &Found) -> Option<&'static str> {
+    if found.is_a_function() {
+        return None;
+    }
+    if found.deterioration == Verdict::Yes {
+        return Some(
+            "with fewer parameters, if its shape fits: bouc-wen with the option degradation (stiffness and strength that \
+             degrade, pinching); compare fits every law in all its variants",
+        );
+    }
+    (found.rate_dependence == Verdict::Yes).then_some(
+        "with fewer parameters, if its shape fits: rate-dependent-prandtl-ishlinskii, or bouc-wen with the rate; \
+         compare fits every law in all its variants",
+    )
+}
+
 /// What was not testable and is taken for granted.
 fn assumptions(found: &Found) -> Vec<String> {
     let mut assumed = Vec::new();
@@ -212,6 +231,19 @@ mod tests {
         advice.model.map(ModelName::name)
     }
 
+    /// How many statements are assumptions.
+    fn assumed(advice: &Advice) -> usize {
+        advice.statement.iter().filter(|text| text.starts_with("not testable here: ")).count()
+    }
+
+    #[test]
+    fn laws_that_wear_out_or_see_the_rate_are_named() {
+        let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
+        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("bouc-wen with the option degradation"));
+        assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
+        assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("compare"));
+    }
+
     #[test]
     fn the_model_follows_from_the_findings() {
         for (verdicts, expected) in [
@@ -230,7 +262,7 @@ mod tests {
         ] {
             let advice = advise(&findings(verdicts), None);
             assert_eq!(name(&advice), expected, "{verdicts:?}");
-            assert_eq!(advice.statement.len(), 1, "nothing is assumed: {:?}", advice.statement);
+            assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         }
     }
 
@@ -246,7 +278,7 @@ mod tests {
             &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),
             None,
         );
-        assert_eq!(advice.statement.len(), 1, "{:?}", advice.statement);
+        assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
         assert_eq!(advice.needs_memory_of_time, NotTestable);
     }
 

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::free_run::FreeRun;
 use crate::identification::{ModelName, Request};
 use crate::metrics::Errors;
-use crate::model::{Body, Model, Provenance};
+use crate::model::{Body, Found, Model};
 use crate::network::{Architecture, Network};
 use crate::preprocessing::{Origin, Preprocessing, Seen};
 use crate::rate::RateMethod;
@@ -183,21 +183,18 @@ impl<'a> Fitting<'a> {
             self.state.folds.iter().flat_map(TrainingRun::runs).chain(winner.runs()).cloned().collect();
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
         let Self { measured, asked, whole, stopped, .. } = self;
-        let Part { data, preprocessing, scaling, options } = whole;
-        let provenance = Provenance {
-            samples: data.scored(),
-            records: data.records().len(),
+        let Part { preprocessing, scaling, .. } = whole;
+        let found = Found {
             chosen_start: winner.start(),
             termination: if stopped { Termination::Stopped } else { winner.termination() },
             runs,
-            train: FreeRun::new(&network, &scaling, options.rate).errors(data)?,
             validation: validation.errors,
             penalties: Some(penalties),
             selection: None,
             options: Request::Network(asked.clone()),
         };
         let body = Body::Network { network, scaling };
-        let model = Model::new(body, preprocessing, asked.rate, measured, provenance)?;
+        let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
         Ok(Fit { model, evaluations })
     }
 

@@ -46,8 +46,9 @@ pub struct Claim {
 /// Bounds of the output, in its unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
-    /// Outputs that are possible while inputs and rate stay within the trained ranges.
-    pub in_trained_ranges: (f64, f64),
+    /// Outputs that are possible while inputs and rate stay within the trained ranges; `None` if the output grows
+    /// with the path for ever.
+    pub in_trained_ranges: Option<(f64, f64)>,
     /// Outputs that are possible whatever the input; `None` if the output grows with the input for ever.
     pub whatever_the_input: Option<(f64, f64)>,
     /// Outputs that were reached on the way through the trained range.
@@ -114,7 +115,7 @@ fn bound(probe: &Probe) -> Result<Bound> {
         }
     }
     Ok(Bound {
-        in_trained_ranges: (trained.0, trained.1),
+        in_trained_ranges: (trained.0.is_finite() && trained.1.is_finite()).then_some((trained.0, trained.1)),
         whatever_the_input: whatever_the_input(probe.model).map(|all| (all.0, all.1)),
         reached,
         basis: Basis::Weights,

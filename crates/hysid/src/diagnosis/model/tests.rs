@@ -8,8 +8,7 @@ use crate::classical::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
 };
 use crate::identification::Request;
-use crate::metrics::Errors;
-use crate::model::{Body, Provenance};
+use crate::model::{Body, Found};
 use crate::network::{Architecture, Family, Network, Sizes};
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
@@ -27,30 +26,16 @@ fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
     let time = (0..x.len()).map(|k| k as f64 * X / RATE).collect();
     let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
     let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
-    let train = Errors {
-        output: "y".into(),
-        samples: 0,
-        records: 0,
-        mse: 0.0,
-        rmse: 0.0,
-        nrmse_std_percent: None,
-        nrmse_range_percent: None,
-        fit_percent: None,
-        max_abs_error: 0.0,
-    };
-    let provenance = Provenance {
+    let found = Found {
         options: request,
-        samples: 0,
-        records: 1,
         chosen_start: 0,
         termination: Termination::Converged,
-        train,
         validation: None,
         penalties: None,
         runs: Vec::new(),
         selection: None,
     };
-    Model::new(body, Preprocessing::default(), rate, &data, provenance).unwrap()
+    Model::new(body, Preprocessing::default(), rate, &data, found).unwrap()
 }
 
 fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Model {

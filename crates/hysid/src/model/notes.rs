@@ -1,0 +1,70 @@
+//! What a user should know of a fitted model beside its errors.
+
+use crate::automatic::{Selection, WarmUp};
+use crate::metrics::Errors;
+use crate::model::{Ensemble, Model};
+use crate::warning::{Significant, Warning};
+
+impl Model {
+    /// What a user should know before relying on the model, in sentences: rows that it was not trained on, and
+    /// data that could not tell candidates apart. Empty if there is nothing.
+    pub fn notes(&self) -> Vec<String> {
+        let size = self.size_warning().map(|warning| warning.to_string());
+        self.warm_up_note().into_iter().chain(self.one_loop_note()).chain(size).collect()
+    }
+
+    /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member. Of a
+    /// single network it is told before the fit.
+    fn size_warning(&self) -> Option<Warning> {
+        if self.network().is_some() {
+            return None;
+        }
+        let members = self.ensemble().map_or(&[][..], Ensemble::members);
+        let largest = members.iter().map(Model::parameters).max();
+        Warning::of_size(largest.unwrap_or_else(|| self.parameters()), self.provenance().samples)
+    }
+
+    fn warm_up_note(&self) -> Option<String> {
+        let provenance = self.provenance();
+        let behind = provenance.train_after_warm_up.as_ref()?;
+        let selected = provenance.selection.as_ref().and_then(|selection| selection.warm_up);
+        Some(format!(
+            "warm-up: the first {} rows of each record drive the memory and were not trained on{}; with them the training \
+             error is {}, without them {}",
+            self.warm_up(),
+            selected.map_or_else(String::new, why),
+            percent(&provenance.train),
+            percent(behind)
+        ))
+    }
+
+    fn one_loop_note(&self) -> Option<String> {
+        let one_loop = |selection: &Selection| selection.one_loop;
+        self.provenance().selection.as_ref().is_some_and(one_loop).then(|| {
+            format!(
+                "one loop: all reversals of {} lie at the ends of its range, so the data do not show what smaller loops \
+                 look like; the models were also weighed by how their kinds predicted smaller loops in generated cases, \
+                 and the band is wider (to know, measure loops of three amplitudes or more)",
+                self.names().inputs[0]
+            )
+        })
+    }
+}
+
+/// Why rows were left out, if cross-validation decided it.
+fn why(warm_up: WarmUp) -> String {
+    let (Some(without), Some(with)) = (warm_up.without_percent, warm_up.with_percent) else {
+        return String::new();
+    };
+    format!(
+        ", because a quick model predicts the rows behind them to {:.3} % of std when not trained on them, and to {:.3} % \
+         when trained on them",
+        Significant(without),
+        Significant(with)
+    )
+}
+
+fn percent(errors: &Errors) -> String {
+    let percent = errors.nrmse_std_percent;
+    percent.map_or_else(|| "not defined".into(), |percent| format!("{:.3} % of std", Significant(percent)))
+}
