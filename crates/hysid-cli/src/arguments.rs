@@ -120,6 +120,15 @@ pub struct ColumnOptions {
     pub rate: RateOption,
 }
 
+/// How the units of a table and of a model are taken.
+#[derive(Debug, Clone, Args)]
+pub struct UnitOptions {
+    /// Take the numbers as they are, whatever units the names of table and model tell. Otherwise known units are
+    /// converted to those of the model, and others that differ are refused
+    #[arg(long, help_heading = "Columns")]
+    pub same_units: bool,
+}
+
 /// What `--rate` asks for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RateOption {
@@ -452,6 +461,9 @@ pub struct Simulate {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
+    /// Which units are the same.
+    #[command(flatten)]
+    pub units: UnitOptions,
 }
 
 /// Arguments of `evaluate`.
@@ -469,6 +481,9 @@ pub struct Evaluate {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
+    /// Which units are the same.
+    #[command(flatten)]
+    pub units: UnitOptions,
     /// Print the result as one JSON object
     #[arg(long)]
     pub json: bool,

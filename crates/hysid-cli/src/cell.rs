@@ -1,8 +1,11 @@
 //! Numbers in the cells of a table, with decimal points or decimal commas.
 
+mod thousands;
+
 use std::fmt::Write;
 
 use crate::terminal::clipped;
+pub use thousands::ThousandsWatch;
 
 /// What stands before the decimals of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

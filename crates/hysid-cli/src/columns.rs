@@ -1,6 +1,9 @@
 //! Which column is what: found from the names, from options, or from a model.
 
+mod guess;
+
 use std::collections::HashMap;
+use std::ops::Range;
 
 use anyhow::{Result, anyhow, bail, ensure};
 use hysid::identification::options::RateChoice;
@@ -8,11 +11,12 @@ use hysid::model::Model;
 use hysid::rate::RateMethod;
 use hysid::record::ColumnNames;
 
+use self::guess::Guess;
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::table::{Head, Table};
 use crate::terminal::{clipped, listed};
-use hysid::unit;
+use hysid::unit::{self, Conversion};
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,6 +31,10 @@ pub struct Roles {
     pub rate: Option<String>,
     /// The output.
     pub output: String,
+    /// What no option decided, in words; `None` if nothing.
+    pub guessed: Option<&'static str>,
+    /// Columns that have no role although no option says so, each with the reason.
+    pub set_aside: Vec<(String, &'static str)>,
 }
 
 impl Roles {
@@ -64,14 +72,32 @@ impl Roles {
         };
         let record = claim(&options.record, &is_record);
         let time = claim(&options.time, &unit::is_time);
-        let output = options.output.clone().or_else(|| free.pop().cloned());
+        let mut guess = Guess {
+            table,
+            records: rows_of_records(table, record.as_deref()),
+            free,
+            time,
+            output: options.output.clone(),
+            has_inputs: !options.input.is_empty(),
+            set_aside: Vec::new(),
+        };
+        guess.complete()?;
+        let Guess { free, time, output, set_aside, .. } = guess;
         let inputs: Vec<String> = if options.input.is_empty() {
             free.into_iter().cloned().collect()
         } else {
             options.input.clone()
         };
+        let guessed = match (options.input.is_empty(), options.output.is_none()) {
+            (true, true) => Some("input and output, from names and values (--input and --output decide)"),
+            (true, false) => Some("input, from names and values (--input decides)"),
+            (false, true) => Some("output, as the last column (--output decides)"),
+            (false, false) => None,
+        };
         match output {
-            Some(output) if !inputs.is_empty() => Ok(Self { record, time, inputs, rate, output }),
+            Some(output) if !inputs.is_empty() => {
+                Ok(Self { record, time, inputs, rate, output, guessed, set_aside })
+            }
             output => bail!(
                 "{}: no column is left for the input beside output \"{}\" (columns: {})",
                 table.file,
@@ -85,15 +111,20 @@ impl Roles {
     /// `scored` tells if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnOptions, scored: bool) -> Result<Self> {
         let names = model.names();
-        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| {
+            match given {
             Some(name) => require(table, name, option).map(|()| name.clone()),
             None if table.column(trained).is_some() => Ok(trained.to_string()),
-            None => Err(anyhow!(
-                "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
-                table.file,
-                clipped(trained),
-                listed(&table.header)
-            )),
+            None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
+            None => in_another_unit(table, trained).cloned().ok_or_else(|| {
+                anyhow!(
+                    "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
+                    table.file,
+                    clipped(trained),
+                    listed(&table.header)
+                )
+            }),
+        }
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {
@@ -134,7 +165,7 @@ impl Roles {
             Some(name) => require(table, name, "--record").map(|()| Some(name.clone()))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
-        Ok(Self { record, time, inputs, rate, output })
+        Ok(Self { record, time, inputs, rate, output, guessed: None, set_aside: Vec::new() })
     }
 
     /// The names as the library keeps them.
@@ -164,6 +195,17 @@ impl Roles {
     }
 }
 
+/// Rows of each record of a table, where its name changes.
+fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
+    let Some(place) = record.and_then(|name| table.column(name)) else {
+        return std::iter::once(0..table.len()).collect();
+    };
+    let name = |row: usize| table.cell(row, place).trim();
+    let begins = (1..table.len()).filter(|&row| name(row) != name(row - 1));
+    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.len()]).collect();
+    begins.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
 fn is_record(name: &str) -> bool {
     ["record", "segment"].contains(&name.to_lowercase().as_str())
 }
@@ -177,6 +219,16 @@ fn require(table: &Head, name: &str, option: &str) -> Result<()> {
         listed(&table.header)
     );
     Ok(())
+}
+
+/// The one column of the same quantity in another unit that can be converted, such as `x_m` for `x_mm`.
+fn in_another_unit<'t>(table: &'t Head, trained: &str) -> Option<&'t String> {
+    let suits = |name: &&String| {
+        unit::split(name).0 == unit::split(trained).0
+            && matches!(Conversion::between(name, trained), Conversion::Factor(_))
+    };
+    let mut suitable = table.header.iter().filter(suits);
+    suitable.next().filter(|_| suitable.next().is_none())
 }
 
 /// The column that `--rate` names for a model with a given rate; a model's method cannot be changed.

@@ -9,7 +9,7 @@ use anyhow::{Result, anyhow};
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid::record::{Dataset, Record};
 
-use crate::cell::CellReader;
+use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
 use crate::messages::Usage;
 use crate::record_names::RecordNames;
@@ -140,7 +140,8 @@ fn column(channel: Channel, roles: &Roles) -> Option<&str> {
     }
 }
 
-/// A name for each table: its file's stem, or the whole path where two stems are the same.
+/// A name for each table: its file's stem, the whole path where two stems are the same, and a number behind it where a
+/// file is given twice.
 fn stems(tables: &[Table]) -> Vec<String> {
     let stem = |table: &Table| {
         let path = Path::new(&table.file);
@@ -152,7 +153,13 @@ fn stems(tables: &[Table]) -> Vec<String> {
     let name = |(stem, table): (&String, &Table)| {
         if count[stem.as_str()] == 1 { stem.clone() } else { table.file.clone() }
     };
-    all.iter().zip(tables).map(name).collect()
+    let mut given: HashMap<String, usize> = HashMap::new();
+    let numbered = |name: String| {
+        let count = given.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 { name } else { format!("{name} ({count})") }
+    };
+    all.iter().zip(tables).map(name).map(numbered).collect()
 }
 
 /// The records of a table: runs of rows with the same name in the record column.
@@ -218,12 +225,17 @@ impl Columns {
 /// The numbers of a column; a blank output is NaN.
 fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
-    let number = |(row, line): (usize, &u64)| {
-        number_in(cells, table.cell(row, place), *line, is_output, row == 0).map_err(|problem| {
-            anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
-        })
+    let at = |line: u64, problem: &str| {
+        anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
     };
-    table.lines.iter().enumerate().map(number).collect()
+    let mut thousands = ThousandsWatch::default();
+    let number = |(row, &line): (usize, &u64)| {
+        let cell = table.cell(row, place);
+        thousands.take(cell, line);
+        number_in(cells, cell, line, is_output, row == 0).map_err(|problem| at(line, &problem))
+    };
+    let numbers = table.lines.iter().enumerate().map(number).collect::<Result<_>>()?;
+    thousands.problem().map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
 }
 
 /// The number in a cell, NaN for a blank output; or what is wrong with it and what helps.

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use hysid::diagnosis::before_a_fit;
 use hysid::identification::Request;
 use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::{Model, Prediction, Provenance};
@@ -78,10 +79,18 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
     interrupt::listen(to_ctrl_c)?;
     let understood = understanding::understanding(data, &summary, request, &model);
     understanding::print(&understood);
-    let mut warnings = summarised(&summary.warnings(&data.set));
+    let mut warnings = data_warnings(data, &summary);
     warnings.extend(request.cautions(&data.set));
     warnings.iter().for_each(warning);
     Ok(Said { understood, warnings })
+}
+
+/// What to be aware of in data that a model is to be fitted to.
+pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
+    // Data that cannot be looked at cannot be fitted to either: the fit says why.
+    let doubtful = before_a_fit(&data.set).unwrap_or_default();
+    let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+    summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }
 
 /// So many threads; one for each processor if not said.

@@ -30,6 +30,7 @@ mod table_run;
 mod terminal;
 mod timing;
 mod understanding;
+mod units;
 
 use std::process::ExitCode;
 

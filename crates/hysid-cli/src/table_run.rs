@@ -6,15 +6,16 @@ use std::ops::ControlFlow;
 
 use anyhow::{Result, anyhow, bail};
 use hysid::model::{Model, Prediction, Simulation};
-use hysid::record::Record;
+use hysid::record::{Fingerprint, Likeness, Record};
 use hysid::warning::Warning;
 
-use crate::cell::CellReader;
+use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
 use crate::data::{explained, number_in, place_of};
 use crate::record_names::RecordNames;
 use crate::table::{Head, Row, Rows, no_rows};
 use crate::terminal::clipped;
+use crate::units::Factors;
 
 /// Rows that are simulated together.
 const BLOCK: usize = 4096;
@@ -63,10 +64,11 @@ pub fn run(
     model: &Model,
     rows: &mut Rows<impl Read>,
     roles: &Roles,
+    factors: &Factors,
     wanted: Wanted,
     take: &mut Take<'_>,
 ) -> Result<Option<Vec<Warning>>> {
-    let mut run = TableRun::new(model, &rows.head, roles, wanted)?;
+    let mut run = TableRun::new(model, &rows.head, roles, factors, wanted)?;
     while let Some(row) = rows.next_row()? {
         let begins = run.begins_record(&row)?;
         if begins || run.block.rows == BLOCK {
@@ -83,19 +85,28 @@ pub fn run(
     if !run.is_begun {
         bail!(no_rows(&run.file));
     }
+    run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
-    Ok(end.is_continue().then(|| run.simulation.range_warnings()))
+    Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
 }
 
 /// A run on its way.
 struct TableRun<'r, 'm> {
     file: String,
     roles: &'r Roles,
+    factors: &'r Factors,
     wanted: Wanted,
     places: Places,
     names: RecordNames,
     numbers: CellReader,
+    /// One for each column that is read: time, rate, output, inputs.
+    thousands: Vec<(usize, ThousandsWatch)>,
+    model: &'m Model,
     simulation: Simulation<'m>,
+    /// Of the rows of the present record.
+    fingerprint: Fingerprint,
+    /// Records so far that the model was trained on.
+    known: Vec<Warning>,
     is_begun: bool,
     /// Rows of the present record that are simulated.
     simulated: usize,
@@ -133,7 +144,13 @@ struct Waiting {
 }
 
 impl<'r, 'm> TableRun<'r, 'm> {
-    fn new(model: &'m Model, head: &Head, roles: &'r Roles, wanted: Wanted) -> Result<Self> {
+    fn new(
+        model: &'m Model,
+        head: &Head,
+        roles: &'r Roles,
+        factors: &'r Factors,
+        wanted: Wanted,
+    ) -> Result<Self> {
         let simulation = match wanted.band {
             Some(probability) => model.simulation_with_band(probability)?,
             None => model.simulation(),
@@ -146,15 +163,21 @@ impl<'r, 'm> TableRun<'r, 'm> {
             rate: roles.rate.as_ref().map(place).transpose()?,
             output: wanted.measured.then(|| place(&roles.output)).transpose()?,
         };
+        let read = places.time.iter().chain(&places.rate).chain(&places.output).chain(&places.inputs);
         Ok(Self {
+            thousands: read.map(|&place| (place, ThousandsWatch::default())).collect(),
             file: head.file.clone(),
             roles,
+            factors,
             wanted,
             block: Block::new(places.inputs.len()),
             places,
             names: RecordNames::default(),
             numbers: CellReader::new(head.delimiter),
+            model,
             simulation,
+            fingerprint: Fingerprint::default(),
+            known: Vec::new(),
             is_begun: false,
             simulated: 0,
             waiting: Waiting { width: head.header.len(), ..Waiting::default() },
@@ -169,6 +192,16 @@ impl<'r, 'm> TableRun<'r, 'm> {
         self.names.begins(row.cell(place), at)
     }
 
+    fn check_thousands(&self, head: &Head) -> Result<()> {
+        match self.thousands.iter().find_map(|(place, watch)| Some((place, watch.problem()?))) {
+            None => Ok(()),
+            Some((&place, (line, problem))) => {
+                let name = clipped(&head.header[place]);
+                bail!("{}, line {line}, column \"{name}\": {problem}", self.file)
+            }
+        }
+    }
+
     fn begin(&mut self) {
         self.is_begun = true;
         self.simulated = 0;
@@ -177,27 +210,34 @@ impl<'r, 'm> TableRun<'r, 'm> {
 
     /// Takes the numbers of a row.
     fn push(&mut self, row: &Row<'_>) -> Result<()> {
+        self.thousands.iter_mut().for_each(|(place, watch)| watch.take(row.cell(*place), row.line));
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
-        let mut number = |place: usize, name: &str, is_output: bool| {
-            number_in(&mut self.numbers, row.cell(place), row.line, is_output, is_first).map_err(|problem| {
+        let mut number = |place: usize, name: &str, is_output: bool, factor: Option<f64>| {
+            let number = number_in(&mut self.numbers, row.cell(place), row.line, is_output, is_first);
+            let number = number.map_err(|problem| {
                 anyhow!("{}, line {}, column \"{}\": {problem}", self.file, row.line, clipped(name))
-            })
+            })?;
+            anyhow::Ok(factor.map_or(number, |factor| factor * number))
         };
+        let factors = self.factors;
         if let Some((place, name)) = self.places.time.zip(self.roles.time.as_ref()) {
-            self.block.time.push(number(place, name, false)?);
+            self.block.time.push(number(place, name, false, factors.time)?);
         }
-        for ((input, &place), name) in
-            self.block.inputs.iter_mut().zip(&self.places.inputs).zip(&self.roles.inputs)
-        {
-            input.push(number(place, name, false)?);
+        let columns = self.places.inputs.iter().zip(&self.roles.inputs).zip(&factors.inputs);
+        for (input, ((&place, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
+            input.push(number(place, name, false, factor)?);
         }
         if let Some((place, name)) = self.places.rate.zip(self.roles.rate.as_ref()) {
-            self.block.rate.push(number(place, name, false)?);
+            self.block.rate.push(number(place, name, false, factors.rate)?);
         }
         let output = match self.places.output {
-            Some(place) => number(place, &self.roles.output, true)?,
+            Some(place) => number(place, &self.roles.output, true, factors.output)?,
             None => f64::NAN,
         };
+        if self.wanted.measured {
+            let inputs = self.block.inputs.iter().filter_map(|input| input.last().copied());
+            self.fingerprint.add(inputs, output);
+        }
         self.block.output.push(output);
         self.block.rows += 1;
         self.waiting.push(row, self.wanted, output);
@@ -216,6 +256,10 @@ impl<'r, 'm> TableRun<'r, 'm> {
             }
         }
         if ends_record {
+            if self.model.was_trained_on(&mem::take(&mut self.fingerprint)) {
+                let record = self.names.present().unwrap_or(&self.file).to_string();
+                self.known.push(Warning::TrainedOn { record, likeness: Likeness::Equal });
+            }
             let prediction = self.simulation.finish();
             return self.hand_on(prediction, true, take);
         }

@@ -59,6 +59,12 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
         say("", format!("and {more} more"));
     }
     say("output", ranged(&data.roles.output, summary.output));
+    for (name, reason) in data.roles.set_aside.iter().take(MOST_INPUTS) {
+        say("ignored", format!("{}: {reason}", clipped(name)));
+    }
+    if let Some(guessed) = data.roles.guessed {
+        say("guessed", guessed.into());
+    }
     let first = &data.roles.inputs[0];
     let turning = summary.turning_points();
     say(

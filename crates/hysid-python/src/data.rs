@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
+use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::record::{self, ColumnNames, Record};
 use hysid::summary::Summary;
+use hysid::unit::Conversion;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -59,7 +60,15 @@ impl Dataset {
     /// What to know before training on these data.
     fn warnings(&self) -> Vec<String> {
         let summary = Summary::of(&self.set);
-        summary.warnings(&self.set).iter().map(ToString::to_string).collect()
+        // Data that cannot be looked at cannot be fitted to either: the fit says why.
+        let doubtful = before_a_fit(&self.set).unwrap_or_default();
+        let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+        summary.warnings(&self.set).iter().map(ToString::to_string).chain(statements).collect()
+    }
+
+    /// Warns of records that were trained on too, or parts of them.
+    fn copies_of(&self, trained: &Dataset) -> Vec<String> {
+        self.set.copies_of(&trained.set).iter().map(ToString::to_string).collect()
     }
 }
 
@@ -77,6 +86,20 @@ fn record((name, time, inputs, rate, output): Parts<Column<'_>>) -> PyResult<Rec
 
 fn values(column: &Column<'_>) -> PyResult<Vec<f64>> {
     Ok(column.as_slice()?.to_vec())
+}
+
+/// What the numbers of a column are multiplied by to be in the unit of the column that a model was trained on, as far as
+/// their names tell; `None` for as they are.
+#[pyfunction]
+pub fn unit_factor(found: &str, trained: &str) -> PyResult<Option<f64>> {
+    match Conversion::between(found, trained) {
+        Conversion::Same => Ok(None),
+        Conversion::Factor(factor) => Ok(Some(factor)),
+        Conversion::Impossible => Err(refused(format!(
+            "\"{found}\" has another unit than the model's \"{trained}\", and no factor between them is known (convert the \
+             numbers, or take them as they are with same_units=True)"
+        ))),
+    }
 }
 
 /// Diagnoses data; gives the object that `hysid diagnose --json` prints of it.

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _hysid {
     #[pymodule_export]
-    use crate::data::{Dataset, diagnose};
+    use crate::data::{Dataset, diagnose, unit_factor};
     #[pymodule_export]
     use crate::elements::{deteriorating_stop, law, play, relaxation, relay, stop};
     #[pymodule_export]

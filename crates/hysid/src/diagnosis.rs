@@ -45,7 +45,7 @@ pub use advice::Advice;
 use branch::Survey;
 pub use cycles::Cycle;
 pub use delay::Delay;
-pub use doctor::{Complaint, ComplaintKind, Severity};
+pub use doctor::{Complaint, ComplaintKind, Severity, before_a_fit};
 pub use model::ModelDiagnosis;
 
 /// Fewest scored rows that say anything about hysteresis.

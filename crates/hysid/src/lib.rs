@@ -31,6 +31,7 @@
 
 pub mod automatic;
 pub mod classical;
+pub mod column;
 pub mod diagnosis;
 pub mod error;
 mod free_run;

@@ -23,7 +23,7 @@ use crate::metrics::{ErrorSums, Errors};
 use crate::network::Network;
 use crate::preprocessing::Preprocessing;
 use crate::rate::RateMethod;
-use crate::record::{ColumnNames, Dataset, Excitation, Record};
+use crate::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
 use crate::scaling::Scaling;
 use crate::training::history::Run;
 use crate::training::options::Regularisation;
@@ -98,6 +98,14 @@ fn errors(mut runner: Runner<'_>, data: &Dataset) -> Result<Errors> {
         .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
 }
 
+/// Fingerprints of the records, unless there are very many.
+fn remembered(data: &Dataset) -> Vec<String> {
+    if data.records().len() > MOST_REMEMBERED {
+        return Vec::new();
+    }
+    data.records().iter().filter_map(|record| record.fingerprint().text()).collect()
+}
+
 /// Rows at the beginning of each record that a body was not trained on.
 fn warm_up(body: &Body, options: &Request) -> usize {
     match (options, body) {
@@ -126,7 +134,13 @@ pub struct TrainedRanges {
     pub rate: Option<(f64, f64)>,
     /// Of the output.
     pub output: (f64, f64),
+    /// The records by their [`Fingerprint`]s, of at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<String>,
 }
+
+/// Of more records than this a model does not remember which they were.
+pub const MOST_REMEMBERED: usize = 1000;
 
 /// How a model came about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -238,6 +252,7 @@ impl Model {
                 inputs: (0..data.names().inputs.len()).map(|input| data.input_range(input)).collect(),
                 rate: None,
                 output: data.output_range(),
+                records: remembered(data),
             },
             band: None,
             provenance,
@@ -465,6 +480,23 @@ impl Model {
     /// As [`Model::stepper`], of a model that it keeps.
     pub fn into_stepper(self) -> Stepper<'static> {
         Stepper::new(Cow::Owned(self))
+    }
+
+    fn forget_records(&mut self) {
+        self.trained.records.clear();
+    }
+
+    /// True if a record with this fingerprint was trained on, as far as the model remembers.
+    pub fn was_trained_on(&self, record: &Fingerprint) -> bool {
+        record.text().is_some_and(|text| self.trained.records.contains(&text))
+    }
+
+    /// Warns of records that the model was trained on, to the last bit.
+    pub fn known_records(&self, data: &Dataset) -> Vec<Warning> {
+        let known = data.records().iter().filter(|record| self.was_trained_on(&record.fingerprint()));
+        let warning =
+            |record: &Record| Warning::TrainedOn { record: record.name().into(), likeness: Likeness::Equal };
+        known.map(warning).collect()
     }
 
     /// Warns of inputs and rates beyond what the model was trained on.

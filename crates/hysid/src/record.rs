@@ -3,11 +3,17 @@
 //!
 //! A blank output is NaN: such a row drives the memory and is neither trained on nor scored.
 
+mod copies;
 mod excitation;
+mod fingerprint;
 mod thinning;
 
 use crate::error::{Channel, DataProblem, Error, Result};
+use crate::warning::Warning;
+pub use copies::Likeness;
+pub(crate) use copies::{Copy, copies, likeness, measurements};
 pub use excitation::Excitation;
+pub use fingerprint::Fingerprint;
 pub(crate) use thinning::Thinning;
 
 /// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
@@ -117,6 +123,15 @@ impl Record {
         self.output.iter().filter(|y| !y.is_nan()).count()
     }
 
+    /// By what the record is known again.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let mut fingerprint = Fingerprint::default();
+        for (row, &output) in self.output.iter().enumerate() {
+            fingerprint.add(self.inputs.iter().map(|input| input[row]), output);
+        }
+        fingerprint
+    }
+
     /// Splits at a fraction of the rows that have an output: the head ends there; the tail is the
     /// whole record with the head's outputs blanked, so that its memory is carried over.
     ///
@@ -158,6 +173,9 @@ impl Record {
 fn columns(inputs: &[Vec<f64>]) -> Vec<&[f64]> {
     inputs.iter().map(Vec::as_slice).collect()
 }
+
+/// Of more pairs of records than this none is compared with the other.
+const MOST_COMPARED: usize = 100_000;
 
 /// Names of the columns, as the user wrote them.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -276,6 +294,23 @@ impl Dataset {
         self
     }
 
+    /// Warns of records that are copies, or parts, of others, or have copies or parts among them: those that were
+    /// trained on.
+    pub fn copies_of(&self, trained: &Dataset) -> Vec<Warning> {
+        if self.records.len().saturating_mul(trained.records.len()) > MOST_COMPARED {
+            return Vec::new();
+        }
+        let found = |record: &Record| {
+            let likeness = trained.records.iter().find_map(|other| {
+                let (short, long) =
+                    if record.len() <= other.len() { (record, other) } else { (other, record) };
+                likeness(short, long)
+            })?;
+            Some(Warning::TrainedOn { record: record.name.clone(), likeness })
+        };
+        self.records.iter().filter_map(found).collect()
+    }
+
     /// Those records that are chosen by their place, and the others.
     pub(crate) fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
         let pick = |chosen: bool| {
@@ -291,30 +326,30 @@ impl Dataset {
         Dataset { names: self.names.clone(), records: vec![record] }
     }
 
-    /// Splits for validation: from several records some are held out; a single record is cut at the
+    /// Splits for validation: from several measurements some are held out; a single one is cut at the
     /// fraction `1 - held_out`, with the memory carried over into its tail.
     ///
     /// The records held out are those in the middle when ordered by the range of the first input, so
     /// that what is judged lies between what is trained on. `None` if the data are too few to split.
     pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
-        if let [record] = self.records.as_slice() {
-            let (head, tail) = record.split_at_fraction(1.0 - held_out)?;
+        let mut order = measurements(&self.records);
+        if let [alone] = order.as_slice() {
+            let (head, tail) = self.records[alone[0]].split_at_fraction(1.0 - held_out)?;
             return Some((self.of_record(head), self.of_record(tail)));
         }
-        let mut order: Vec<usize> =
-            (0..self.records.len()).filter(|&i| self.records[i].scored() > 0).collect();
+        order.retain(|records| self.records[records[0]].scored() > 0);
         if order.len() < 2 {
             return None;
         }
-        let travel = |index: &usize| {
-            let (low, high) = range(self.records[*index].inputs[0].iter());
+        let travel = |records: &[usize]| {
+            let (low, high) = range(self.records[records[0]].inputs[0].iter());
             high - low
         };
         order.sort_by(|a, b| travel(a).total_cmp(&travel(b)));
         let count = ((held_out * order.len() as f64).round() as usize).clamp(1, order.len() - 1);
         let first = (order.len() - count) / 2;
         let chosen = &order[first..first + count];
-        let (held, kept) = self.partition(|index| chosen.contains(&index));
+        let (held, kept) = self.partition(|index| chosen.iter().flatten().any(|held| *held == index));
         Some((kept, held))
     }
 

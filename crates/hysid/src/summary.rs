@@ -1,6 +1,6 @@
 //! What a data set contains, before anything is fitted to it.
 
-use crate::record::{Dataset, Record};
+use crate::record::{Copy, Dataset, Record, copies};
 use crate::turning_points::turning_points;
 use crate::warning::Warning;
 
@@ -78,8 +78,17 @@ impl Summary {
                 warnings.push(Warning::FewTurningPoints { record: record.name.clone(), found });
             }
         }
-        for (summary, record) in self.records.iter().zip(data.records()) {
+        let records = data.records();
+        let copies = copies(records).into_iter().map(|Copy { copy, of, likeness }| {
+            let [copy, of] = [copy, of].map(|place| records[place].name().to_string());
+            Warning::SameMeasurement { copy, of, likeness }
+        });
+        warnings.extend(copies);
+        for (summary, record) in self.records.iter().zip(records) {
             let name = || summary.name.clone();
+            if is_without_order(&record.inputs()[0]) {
+                warnings.push(Warning::RowsOutOfOrder { record: name() });
+            }
             if let Some((shortest, _, longest)) = summary.time_steps
                 && longest > WILD_STEPS * shortest
             {
@@ -95,6 +104,22 @@ impl Summary {
         }
         warnings
     }
+}
+
+/// True for values that jump at random: neighbours are not correlated, and two of three rows are turning points.
+fn is_without_order(values: &[f64]) -> bool {
+    const FEWEST: usize = 50;
+    let rows = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / rows;
+    let variance: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    if values.len() < FEWEST || variance == 0.0 {
+        return false;
+    }
+    let neighbours: f64 = values.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
+    let turns = values.windows(3).filter(|three| (three[1] - three[0]) * (three[2] - three[1]) < 0.0).count();
+    // Five standard deviations of what chance gives: 1 / sqrt(n), and sqrt(8 n / 45) about 2 n / 3.
+    let is_uncorrelated = (neighbours / variance).abs() < 5.0 / rows.sqrt();
+    is_uncorrelated && (turns as f64 - 2.0 * rows / 3.0).abs() < 5.0 * (8.0 * rows / 45.0).sqrt()
 }
 
 fn time_steps(record: &Record) -> Option<(f64, f64, f64)> {
@@ -126,6 +151,24 @@ mod tests {
         assert_eq!(summary.records[0].time_steps.unwrap().2, 4.999);
         let warnings = summary.warnings(&data);
         assert_eq!(warnings.len(), 3, "{warnings:?}");
+    }
+
+    #[test]
+    fn rows_that_are_shuffled_are_noticed() {
+        let n = 300;
+        let at = |k: usize| (k as f64 * 0.1).sin();
+        let time = || (0..n).map(|k| k as f64).collect::<Vec<_>>();
+        let warned = |x: Vec<f64>| {
+            let data = data(time(), x.clone(), x);
+            let warnings = Summary::of(&data).warnings(&data);
+            warnings.iter().any(|warning| matches!(warning, Warning::RowsOutOfOrder { .. }))
+        };
+        let mut places: Vec<usize> = (0..n).collect();
+        places.sort_by_key(|&k| crate::random::mix(k as u64));
+        assert!(warned(places.iter().map(|&k| at(k)).collect()));
+        assert!(!warned((0..n).map(at).collect()));
+        // Few rows a period are no shuffle.
+        assert!(!warned((0..n).map(|k| at(21 * k)).collect()));
     }
 
     #[test]

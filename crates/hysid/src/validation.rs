@@ -1,6 +1,7 @@
 //! Honest validation: a model is fitted to a part of the data and judged, in free run, on the rest.
 //!
-//! From several records, some are held out in turn. A single record is cut in time: the model sees its
+//! From several records, some are held out in turn; records that are one measurement, given twice or cut out of a longer
+//! one, stay together, since a copy of what is trained on is not unseen. A single record is cut in time: the model sees its
 //! beginning and foretells what follows, with the memory carried over, because that is what it will be used
 //! for; blocks from its beginning and middle are held out too, which tell a model that merely follows this
 //! one path from one that knows the material.
@@ -13,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::identification::{Request, identify};
 use crate::metrics::Errors;
 use crate::model::Model;
-use crate::record::{Dataset, Record};
+use crate::record::{Dataset, Record, measurements};
 use crate::training::{FEWEST_ROWS, Observer, Progress};
 pub(crate) use pooled::PooledErrors;
 
@@ -53,25 +54,26 @@ const BLOCKS: [(f64, f64); 2] = [(0.0, 0.35), (0.35, 0.65)];
 /// The folds of a data set: of several records at most `most`, of a single one always five. None if the
 /// data are too few.
 pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
-    let folds = match data.records() {
-        [record] => of_record(data, record),
-        _ => of_records(data, most),
+    let folds = match measurements(data.records()).as_slice() {
+        [alone] => of_record(data, &data.records()[alone[0]]),
+        several => of_records(data, several, most),
     };
     let is_enough =
         |fold: &Fold| fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0;
     folds.into_iter().filter(is_enough).collect()
 }
 
-/// Records with an output are dealt out in their order.
-fn of_records(data: &Dataset, most: usize) -> Vec<Fold> {
-    let scored: Vec<usize> =
-        (0..data.records().len()).filter(|&index| data.records()[index].scored() > 0).collect();
+/// Measurements with an output are dealt out in their order; copies stay together.
+fn of_records(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Fold> {
+    let is_scored = |records: &&Vec<usize>| data.records()[records[0]].scored() > 0;
+    let scored: Vec<&Vec<usize>> = measurements.iter().filter(is_scored).collect();
     let count = scored.len().min(most);
     if count < 2 {
         return Vec::new();
     }
     let fold = |fold: usize| {
-        let held: Vec<usize> = scored.iter().copied().skip(fold).step_by(count).collect();
+        let held: Vec<usize> =
+            scored.iter().skip(fold).step_by(count).flat_map(|records| (*records).clone()).collect();
         let (held_out, train) = data.partition(|index| held.contains(&index));
         let names: Vec<&str> = held_out.records().iter().map(Record::name).collect();
         Fold { name: names.join(", "), train, held_out }
@@ -251,13 +253,31 @@ mod tests {
 
     #[test]
     fn every_record_is_held_out_once() {
-        let all = data((0..5).map(|k| record(&format!("r{k}"), 60, 1.0)).collect());
+        let all = data((0..5).map(|k| record(&format!("r{k}"), 60, 1.0 + 0.1 * f64::from(k))).collect());
         let folds = folds(&all, 2);
         let names: Vec<&str> = folds.iter().map(|fold| fold.name.as_str()).collect();
         assert_eq!(names, ["r0, r2, r4", "r1, r3"]);
         for fold in &folds {
             assert_eq!(fold.train.records().len() + fold.held_out.records().len(), 5);
         }
+    }
+
+    #[test]
+    fn copies_are_held_out_together() {
+        let (a, b) = (record("a", 200, 1.0), record("b", 200, 1.3));
+        let copy = Record::new("copy", a.inputs().to_vec(), a.output().to_vec()).unwrap();
+        let part =
+            Record::new("part", vec![a.inputs()[0][50..150].to_vec()], a.output()[50..150].to_vec()).unwrap();
+        let several = folds(&data(vec![a.clone(), part.clone(), b, copy.clone()]), 5);
+        let names: Vec<&str> = several.iter().map(|fold| fold.name.as_str()).collect();
+        assert_eq!(names, ["a, part, copy", "b"]);
+        // One measurement, however often it is given, is cut in time.
+        let one = folds(&data(vec![part, copy]), 5);
+        assert_eq!(one.len(), 5);
+        let is_of_copy = |set: &Dataset| set.records().len() == 1 && set.records()[0].name() == "copy";
+        assert!(one.iter().all(|fold| is_of_copy(&fold.train) && is_of_copy(&fold.held_out)));
+        let (kept, held) = data(vec![a.clone(), a.clone()]).split_for_validation(0.3).unwrap();
+        assert_eq!((kept.scored(), held.scored()), (140, 60));
     }
 
     /// What is held out of a single record is not among what is fitted to, and the way there is driven.

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::record::Likeness;
+
 /// A warning, with its likely cause and a remedy.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -40,6 +42,41 @@ pub enum Warning {
         /// The value.
         value: f64,
     },
+    /// Two records that are one measurement.
+    SameMeasurement {
+        /// The record that is a copy or a part.
+        copy: String,
+        /// The other.
+        of: String,
+        /// How like they are.
+        likeness: Likeness,
+    },
+    /// A record to test on that is one that was trained on.
+    TrainedOn {
+        /// The record.
+        record: String,
+        /// How it is like the record that was trained on.
+        likeness: Likeness,
+    },
+    /// A record whose input jumps at random from row to row, as where rows are not in the order of time.
+    RowsOutOfOrder {
+        /// The record.
+        record: String,
+    },
+    /// More parameters than rows to find them from.
+    MoreParametersThanRows {
+        /// Parameters of the model, or of the largest member of an ensemble.
+        parameters: usize,
+        /// Rows with an output.
+        rows: usize,
+    },
+}
+
+impl Warning {
+    /// Of more parameters than rows to find them from.
+    pub(crate) fn of_size(parameters: usize, rows: usize) -> Option<Self> {
+        (parameters > rows).then_some(Self::MoreParametersThanRows { parameters, rows })
+    }
 }
 
 impl fmt::Display for Warning {
@@ -72,6 +109,25 @@ impl fmt::Display for Warning {
                  (are records joined, or samples missing? name records in a column `record`, or use --rate none)",
                 Significant(*shortest),
                 Significant(*longest)
+            ),
+            Self::SameMeasurement { copy, of, likeness } => write!(
+                f,
+                "record \"{copy}\" is {likeness} record \"{of}\": they count as one measurement and are held out together \
+                 (leave one out: it weighs twice in the fit)"
+            ),
+            Self::TrainedOn { record, likeness } => write!(
+                f,
+                "record \"{record}\" is {likeness} what the model was trained on: its error says nothing about unseen data"
+            ),
+            Self::RowsOutOfOrder { record } => write!(
+                f,
+                "record \"{record}\": the input jumps at random from row to row: are the rows in the order of time? (a model \
+                 with memory needs them so; a shuffled split, such as ShuffleSplit, destroys it)"
+            ),
+            Self::MoreParametersThanRows { parameters, rows } => write!(
+                f,
+                "{parameters} parameters are found from {rows} rows: the model follows these rows and may be wrong everywhere \
+                 else (measure more, or choose a smaller model, such as fewer stops and hidden neurons)"
             ),
             Self::ConstantOutput { record, value } => write!(
                 f,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use hysid::identification::ModelName;
 use hysid::identification::options::ChosenOptions;
+use hysid::summary::Summary;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
@@ -14,8 +15,9 @@ use crate::commands::fit::request;
 use crate::comparison::{self, Data as Compared};
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
+use crate::identification::data_warnings;
 use crate::interrupt;
-use crate::messages::{json_results, note, results};
+use crate::messages::{json_results, note, results, summarised, warning};
 
 /// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {
@@ -45,6 +47,10 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     }
     let train = Data::new(tables, roles)?;
 
+    data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);
+    if let Some(test) = &test {
+        summarised(&test.set.copies_of(&train.set)).iter().for_each(warning);
+    }
     interrupt::listen("stopping; what is finished is compared")?;
     let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
     match arguments.json {

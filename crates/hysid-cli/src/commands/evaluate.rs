@@ -13,15 +13,17 @@ use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::data::explained;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
-use crate::messages::{json_results, results, warning};
+use crate::messages::{json_results, results, summarised, warning};
 use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
+use crate::units::Factors;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = read_model(&arguments.model)?;
     let mut rows = Rows::open(&arguments.data)?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
+    let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
 
     let warm_up = model.warm_up();
@@ -40,15 +42,17 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         Ok(ControlFlow::Continue(()))
     };
     let wanted = Wanted { measured: true, cells: false, band: arguments.band };
-    let warnings = table_run::run(&model, &mut rows, &roles, wanted, &mut take)?;
-    let Some(errors) = sums.errors(&roles.output) else {
+    let warnings = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
+    // Errors of converted outputs are in the model's unit, which its name tells.
+    let output = if factors.output.is_some() { &model.names().output } else { &roles.output };
+    let Some(errors) = sums.errors(output) else {
         let (channel, problem) = (Some(Channel::Output), DataProblem::NothingToScore);
         let defect = DataError { record: String::new(), row: None, channel, problem };
         return Err(explained(&rows.head.file, None, defect.into(), &roles));
     };
-    warnings.context("the run was ended early")?.iter().for_each(warning);
+    summarised(&warnings.context("the run was ended early")?).iter().for_each(warning);
     let band = arguments.band.map(|probability| BandCoverage::of(covered, probability));
-    let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(&roles.output)).flatten();
+    let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(output)).flatten();
     match arguments.json {
         true => json_results(&Printed { errors: &errors, after_warm_up, band })?,
         false => {

@@ -17,6 +17,7 @@ use crate::messages::{stdout_failed, warning};
 use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
 use crate::terminal::clipped;
+use crate::units::Factors;
 use crate::{Outcome, interrupt};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
@@ -50,6 +51,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     }
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, false)?;
 
+    let factors = Factors::of(&model, &roles, &rows.head.file, false, arguments.units.same_units)?;
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, roles: &roles, delimiter: rows.head.delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter: rows.head.delimiter, text: header };
@@ -58,7 +60,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
         output.add(simulated)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     };
-    let Some(warnings) = table_run::run(&model, &mut rows, &roles, wanted, &mut take)? else {
+    let Some(warnings) = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)? else {
         return Ok(Outcome::Interrupted);
     };
     warnings.iter().for_each(warning);

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from hysid import _hysid
 from hysid._data import columns
 from hysid._fitting import as_json, fitted
-from hysid._warning import HysidWarning
+from hysid._warning import HysidWarning, warn
 from hysid.model import Errors, Model
 
 if TYPE_CHECKING:
@@ -180,12 +180,13 @@ def compare(
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
     unseen = None if test is None else columns(*_parts(test))
+    data = arranged.dataset()
+    warn(data.warnings() + ([] if unseen is None else unseen.dataset().copies_of(data)))
     names = _hysid.model_names() if models is None else list(models)
     for name in names:
         if name not in ("auto", *_hysid.model_names(), "epnn"):
             raise ValueError(f"model `{name}` is unknown: choose one of auto, {', '.join(_hysid.model_names())}")
 
-    data = arranged.dataset()
     rows: list[Compared] = []
     requests: list[_hysid.Request] = []
     for name in names:
@@ -220,7 +221,7 @@ def _compared(
     try:
         model = fitted(data, request, time_limit=limit, threads=1)
         seconds = perf_counter() - began
-        test = None if unseen is None else model._evaluated(unseen)
+        test = None if unseen is None else model._evaluated(model._converted(unseen, same_units=False))
     except ValueError as error:
         return Compared(name, error=str(error))
     return Compared(name, model, model.train, test, seconds)

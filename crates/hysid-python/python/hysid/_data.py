@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hysid import _hysid
+from hysid._time import are_stamps, seconds
+from hysid._warning import warn
 
 Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike]]
 """Numbers, or columns by their names; pandas objects are among the former."""
@@ -68,6 +70,8 @@ class Columns(NamedTuple):
 
 def columns(x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
     """Takes everything apart, and refuses columns of different length."""
+    given = {"x": x, "y": y, "time": time, "rate": rate, "records": records}
+    check_indexes(given)
     inputs = _inputs(x)
     arranged = Columns(
         inputs,
@@ -82,7 +86,41 @@ def columns(x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
                 f'record "{RECORD}", {what}: has {len(column.values)} values '
                 f"where the first input has {arranged.rows}"
             )
+    warn_of_order(x, [rows for _, rows in arranged.records])
     return arranged
+
+
+def check_indexes(given: Mapping[str, Any]) -> None:
+    """Refuse pandas objects of different indexes: rows are taken by position."""
+    indexed = {name: values for name, values in given.items() if _is_indexed(values)}
+    for name, values in given.items():
+        if isinstance(values, Mapping):
+            columns = {f"{name}[{key!r}]": column for key, column in values.items()}
+            indexed.update((key, column) for key, column in columns.items() if _is_indexed(column))
+    first, *others = indexed or {"": None}
+    for other in others:
+        if not indexed[first].index.equals(indexed[other].index):
+            raise ValueError(
+                f"{first} and {other} have different indexes, and rows are taken by position: bring them in the same "
+                f"order, as with {other}.reindex({first}.index), or give arrays, as with {other}.to_numpy()"
+            )
+
+
+def warn_of_order(x: Any, records: list[slice]) -> None:
+    """Warn of a pandas object whose index does not grow from row to row within a record."""
+    if not _is_indexed(x) or getattr(x.index.dtype, "kind", "O") not in "iufMm":
+        return
+    if not all(x.index[rows].is_monotonic_increasing for rows in records):
+        warn(
+            [
+                "the rows are not in the order of their index: a model with memory takes them in their order as time "
+                "(sort them, as with sort_index(); a shuffled split, such as ShuffleSplit, destroys it)"
+            ]
+        )
+
+
+def _is_indexed(values: Any) -> bool:
+    return hasattr(values, "iloc") and hasattr(values, "index")
 
 
 def _inputs(x: Any) -> list[Column]:
@@ -120,11 +158,20 @@ def _column(values: Any, what: str) -> Column | None:
         if len(values.columns) != 1:
             raise ValueError(f"{what}: one column is needed, not {len(values.columns)}")
         values, name = values.iloc[:, 0], values.columns[0]
-    return Column(_numbers(values, what), None if name is None else str(name))
+    name = None if name is None else str(name)
+    if what == "time" and are_stamps(values):
+        try:
+            return Column(seconds(values), "t_s" if name is None else f"{name} [s]")
+        except ValueError as error:
+            raise ValueError(f"time: {error}") from None
+    return Column(_numbers(values, what), name)
 
 
 def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.ndarray:
     """Contiguous float64; the very same array if it is that already."""
+    values = without_mask(values, what)
+    if are_stamps(values):
+        raise ValueError(f"{what}: dates and times are no numbers (give them as time)")
     try:
         if hasattr(values, "iloc"):
             values = values.to_numpy(dtype=np.float64, na_value=np.nan)
@@ -140,6 +187,19 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
         expected = " or ".join(f"{dimension}" for dimension in dimensions)
         raise ValueError(f"{what}: an array of {expected} dimensions is needed, not {values.ndim}")
     return numbers
+
+
+def without_mask(values: Any, what: str) -> Any:
+    """Values with NaN where an output is masked; of anything else, nothing may be masked."""
+    if not np.ma.isMaskedArray(values):
+        return values
+    mask = np.ma.getmaskarray(values)
+    if not mask.any():
+        return np.ma.getdata(values)
+    if what != "output":
+        row = int(np.argwhere(mask)[0][0])
+        raise ValueError(f"{what}: row {row + 1} is masked (only the output may be blank)")
+    return np.ma.filled(values.astype(np.float64), np.nan)
 
 
 def _records(records: Any, rows: int) -> list[tuple[str, slice]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -104,10 +105,10 @@ def fit(
     x : array of shape (n,) or (n, inputs)
         The inputs in the user's units; a pandas object gives its names to the model.
     y : array of shape (n,)
-        The measured output in the user's unit. NaN is a blank: such a row drives the memory, and is neither
-        trained on nor scored.
+        The measured output in the user's unit. NaN, or a mask, is a blank: such a row drives the memory, and is
+        neither trained on nor scored. Rows are taken by position: pandas objects must have the same index.
     time : array of shape (n,), optional
-        Time stamps, increasing within each record.
+        Time stamps, increasing within each record; dates and times become seconds since the first.
     rate : str or array of shape (n,), default "auto"
         How the rate of the first input is found: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
@@ -295,6 +296,10 @@ class _Teller:
 def as_json(options: dict[str, Any]) -> str:
     """Options as the native module takes them; what was left out has its default."""
     given = {name: _plain(value) for name, value in options.items() if value is not None}
+    for name, value in given.items():
+        for number in value if isinstance(value, list) else [value]:
+            if isinstance(number, float) and not math.isfinite(number):
+                raise ValueError(f"{name} {number}: a finite number is needed")
     try:
         return json.dumps(given)
     except TypeError as error:

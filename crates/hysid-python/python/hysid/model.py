@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
-from hysid._data import columns
+from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._warning import warn
 
@@ -314,6 +314,8 @@ class Model:
         time: ArrayLike | None = None,
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,
+        *,
+        same_units: bool = False,
     ) -> Any:
         """Run freely over inputs, from the virgin state. Contiguous float64 columns are not copied.
 
@@ -327,6 +329,9 @@ class Model:
             The rate of the first input, for a model that was trained with a given one.
         records : array of shape (n,), optional
             A label for each row: the memory starts afresh where the label changes.
+        same_units : bool
+            Take the numbers as they are, whatever units the names of pandas objects tell. Otherwise known units
+            are converted to those of the training, and others that differ are refused.
 
         Returns
         -------
@@ -338,7 +343,8 @@ class Model:
         ValueError
             Inputs that the model cannot take.
         """
-        return _like(x, self._simulated(columns(x, None, time, rate, records)), f"{self.output}_model")
+        arranged = self._converted(columns(x, None, time, rate, records), same_units)
+        return _like(x, self._simulated(arranged), f"{self.output}_model")
 
     def predict(
         self,
@@ -348,6 +354,7 @@ class Model:
         records: ArrayLike | None = None,
         *,
         probability: float = 0.9,
+        same_units: bool = False,
     ) -> Prediction:
         """Run freely as `simulate`, with a band that holds the measured output with this probability.
 
@@ -361,6 +368,8 @@ class Model:
             As of `simulate`.
         probability : float
             0.5 to 0.99.
+        same_units : bool
+            As of `simulate`.
 
         Returns
         -------
@@ -382,7 +391,7 @@ class Model:
         >>> bool((low < output).all() and (output < high).all())
         True
         """
-        arranged = columns(x, None, time, rate, records)
+        arranged = self._converted(columns(x, None, time, rate, records), same_units)
         runs = [
             self._native.predict(name, *driving, probability) for name, driving in _of_records(arranged)
         ]
@@ -416,6 +425,7 @@ class Model:
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,
         *,
+        same_units: bool = False,
         after_warm_up: bool = False,
     ) -> Errors:
         """Judge a free run against the measured output.
@@ -427,6 +437,8 @@ class Model:
         y : array of shape (n,)
             The measured output; NaN is not scored.
         time, rate, records : array of shape (n,), optional
+            As of `simulate`.
+        same_units : bool
             As of `simulate`.
         after_warm_up : bool
             Leave out the rows of the model's warm-up at the beginning of each record.
@@ -441,7 +453,35 @@ class Model:
         ValueError
             Inputs that the model cannot take, or no measured output at all.
         """
-        return self._evaluated(columns(x, y, time, rate, records), after_warm_up=after_warm_up)
+        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        return self._evaluated(arranged, after_warm_up=after_warm_up)
+
+    def _converted(self, arranged: Columns, same_units: bool) -> Columns:
+        """Columns in the units of the training, as far as names tell units; says what is converted."""
+        if same_units:
+            return arranged
+        trained = self.description["columns"]
+        notes: list[str] = []
+
+        def one(column: Column | None, name: str | None) -> Column | None:
+            if column is None or column.name is None or name is None:
+                return column
+            factor = _hysid.unit_factor(column.name, name)
+            if factor is None:
+                return column
+            notes.append(f"{column.name} is converted to the unit of the model's {name} (times {factor:.6g})")
+            return Column(factor * column.values, name)
+
+        pairs = zip(arranged.inputs, trained["inputs"])
+        converted = [one(column, name) or column for column, name in pairs]
+        result = arranged._replace(
+            inputs=[*converted, *arranged.inputs[len(converted) :]],
+            time=one(arranged.time, trained["time"]),
+            rate=one(arranged.rate, trained["rate"]),
+            output=one(arranged.output, trained["output"]),
+        )
+        warn(notes)
+        return result
 
     def _evaluated(self, arranged: Columns, *, after_warm_up: bool = False) -> Errors:
         data = arranged.dataset()

@@ -11,7 +11,7 @@ from sklearn.utils import check_array, check_consistent_length, check_random_sta
 from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_data
 
 from hysid import _hysid
-from hysid._data import Column, Columns, runs
+from hysid._data import Column, Columns, check_indexes, runs, warn_of_order, without_mask
 from hysid._fitting import identified
 
 __all__ = ["HysteresisRegressor"]
@@ -23,7 +23,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     Rows are samples in the order of time: a model with memory answers to what came before. `predict` is a free
     run over the rows in their order, from the virgin state; measured outputs are never looked at. Time stamps
     and the labels of records are columns of `X` that `time` and `record` name, so that they stay with their rows
-    in a pipeline or a cross-validation, of which ``GroupKFold`` over the records is the one to choose.
+    in a pipeline or a cross-validation, of which ``GroupKFold`` over the records is the one to choose: a shuffled
+    split, such as ``ShuffleSplit``, takes rows out of their order, of which `fit` warns.
 
     Parameters
     ----------
@@ -157,6 +158,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             name = type(self).__name__
             raise ValueError(f"This {name} estimator requires y to be passed, but the target y is None.")
         output_name = getattr(y, "name", None)
+        check_indexes({"X": X, "y": y})
+        y = without_mask(y, "output")
         values = self._validated(X, reset=True)
         measured = check_array(
             y, ensure_2d=False, ensure_all_finite="allow-nan", dtype=np.float64, input_name="y"
@@ -165,8 +168,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         check_consistent_length(values, measured)
         output = Column(np.ascontiguousarray(measured), None if output_name is None else str(output_name))
         options = {name: getattr(self, name) for name in _hysid.option_names() if name != "seed"}
+        columns = self._columns(values)
+        warn_of_order(X, [rows for _, rows in columns.records])
         self.model_ = identified(
-            self._columns(values)._replace(output=output),
+            columns._replace(output=output),
             self.rate,
             {**options, "seed": self._seed()},
             time_limit=self.time_limit,
@@ -192,7 +197,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             The output, in the unit of the training.
         """
         check_is_fitted(self)
-        return self.model_._simulated(self._columns(self._validated(X, reset=False)))
+        columns = self._columns(self._validated(X, reset=False))
+        warn_of_order(X, [rows for _, rows in columns.records])
+        return self.model_._simulated(columns)
 
     def score(self, X: Any, y: Any, sample_weight: Any = None) -> float:  # noqa: N803
         """Give the coefficient of determination of a free run; blank outputs are passed over.
@@ -211,12 +218,13 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         float
             1 for a perfect model, 0 for one that is no better than the mean.
         """
-        measured = np.asarray(y, dtype=np.float64).ravel()
+        measured = np.asarray(without_mask(y, "output"), dtype=np.float64).ravel()
         scored = ~np.isnan(measured)
         weight = None if sample_weight is None else np.asarray(sample_weight)[scored]
         return float(r2_score(measured[scored], self.predict(X)[scored], sample_weight=weight))
 
     def _validated(self, X: Any, reset: bool) -> np.ndarray:  # noqa: N803
+        X = without_mask(X, "X")  # noqa: N806
         if hasattr(X, "columns") and self.record in getattr(X, "columns", ()):
             # Labels may be words; only where they change matters.
             labels = X[self.record].to_numpy()

@@ -7,6 +7,7 @@ mod columns;
 mod creep;
 mod drift;
 mod lag;
+mod marks;
 mod repetition;
 mod sampling;
 mod start;
@@ -14,7 +15,9 @@ mod start;
 use serde::Serialize;
 
 use super::branch::Survey;
-use super::{Cycle, Delay, Finding, Piece};
+use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
+use crate::error::Result;
+use crate::record::{Dataset, Record};
 use crate::unit;
 use crate::warning::Significant;
 
@@ -37,6 +40,8 @@ pub enum ComplaintKind {
     OutputClipped,
     /// The input stands at the end of what was measured while the output goes on.
     InputClipped,
+    /// Values that mark what was not measured, or spikes.
+    MissingValueMark,
     /// Rows repeat the row before.
     RepeatedRows,
     /// A column keeps its value for a fixed number of rows.
@@ -113,6 +118,7 @@ pub(crate) fn examine(
     delay: Option<&Delay>,
 ) -> Vec<Complaint> {
     let found = [
+        marks::complaints(survey.data),
         lag::complaints(survey, delay),
         drift::complaints(survey, cycles),
         creep::complaints(survey),
@@ -134,6 +140,20 @@ pub(crate) fn examine(
     }
     told.sort_by_key(|complaint| std::cmp::Reverse(complaint.severity));
     told
+}
+
+/// What of the values themselves should be known before any fit: marks of missing values, and clipped channels.
+///
+/// # Errors
+/// Data that nothing can be said about: a constant input or output, hardly any rows.
+pub fn before_a_fit(data: &Dataset) -> Result<Vec<Complaint>> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    let found = marks::complaints(data);
+    // Where the range is that of a mark, the ends of what was measured are not known.
+    if !found.is_empty() || !clipping::may_be(data) {
+        return Ok(found);
+    }
+    Ok(clipping::complaints(&Survey::new(data, &DiagnosisOptions::default())))
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
@@ -186,6 +206,6 @@ impl Units {
 }
 
 /// Rows of a record as evidence.
-fn piece(survey: &Survey, record: usize, first: usize, last: usize) -> Piece {
-    Piece::of(&survey.data.records()[record], (first, last))
+fn piece(record: &Record, first: usize, last: usize) -> Piece {
+    Piece::of(record, (first, last))
 }

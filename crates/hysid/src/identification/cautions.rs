@@ -3,7 +3,7 @@
 use crate::classical::identification::Rival;
 use crate::identification::{ModelName, Request};
 use crate::record::Dataset;
-use crate::warning::Significant;
+use crate::warning::{Significant, Warning};
 
 /// Half ranges that the middle of the field may lie away from 0.
 const FAR: f64 = 2.0;
@@ -17,7 +17,17 @@ impl Request {
             cautions.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", model.name()));
         }
         cautions.extend(far_from_zero(model, data));
+        cautions.extend(self.larger_than(data).map(|warning| warning.to_string()));
         cautions
+    }
+}
+
+impl Request {
+    /// A network with more parameters than rows with an output; of other models the fitted one tells.
+    fn larger_than(&self, data: &Dataset) -> Option<Warning> {
+        let Self::Network(options) = self else { return None };
+        // Sizes that no network can have are refused by the fit.
+        Warning::of_size(options.architecture(data).ok()?.parameters(), data.scored())
     }
 }
 

@@ -162,7 +162,7 @@ impl Ensemble {
     /// # Errors
     /// A group without voices, a member that is not there, an ensemble as a member, members of different
     /// inputs, weights that are negative, not finite or all 0, inside and outside.
-    pub fn new(members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
+    pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
         if members.iter().any(|member| member.ensemble().is_some()) {
             return Err(Error::Option("an ensemble cannot be a member of another".into()));
@@ -173,6 +173,8 @@ impl Ensemble {
         if !(range.0 < range.1 && range.0.is_finite() && range.1.is_finite()) {
             return Err(Error::Option("the range of an ensemble's input is no range".into()));
         }
+        // The ensemble remembers them for all.
+        members.iter_mut().for_each(Model::forget_records);
         Ok(Self { members, group, range })
     }
 

@@ -2,14 +2,26 @@
 
 use crate::automatic::{Selection, WarmUp};
 use crate::metrics::Errors;
-use crate::model::Model;
-use crate::warning::Significant;
+use crate::model::{Ensemble, Model};
+use crate::warning::{Significant, Warning};
 
 impl Model {
     /// What a user should know before relying on the model, in sentences: rows that it was not trained on, and
     /// data that could not tell candidates apart. Empty if there is nothing.
     pub fn notes(&self) -> Vec<String> {
-        self.warm_up_note().into_iter().chain(self.one_loop_note()).collect()
+        let size = self.size_warning().map(|warning| warning.to_string());
+        self.warm_up_note().into_iter().chain(self.one_loop_note()).chain(size).collect()
+    }
+
+    /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member. Of a
+    /// single network it is told before the fit.
+    fn size_warning(&self) -> Option<Warning> {
+        if self.network().is_some() {
+            return None;
+        }
+        let members = self.ensemble().map_or(&[][..], Ensemble::members);
+        let largest = members.iter().map(Model::parameters).max();
+        Warning::of_size(largest.unwrap_or_else(|| self.parameters()), self.provenance().samples)
     }
 
     fn warm_up_note(&self) -> Option<String> {

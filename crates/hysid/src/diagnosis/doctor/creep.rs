@@ -58,7 +58,10 @@ pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
         100.0 * largest.movement.abs() / survey.height(),
         holds.len()
     );
-    let rows = holds.iter().take(SHOWN).map(|hold| piece(survey, hold.record, hold.rows.0, hold.rows.1));
+    let rows = holds
+        .iter()
+        .take(SHOWN)
+        .map(|hold| piece(&survey.data.records()[hold.record], hold.rows.0, hold.rows.1));
     vec![Complaint {
         value: Some(largest.movement),
         unit: units.output.clone(),

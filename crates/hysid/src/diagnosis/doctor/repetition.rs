@@ -44,7 +44,7 @@ fn repeated_rows(survey: &Survey) -> Option<Complaint> {
             let run = (row..x.len()).take_while(|&row| same(row)).count();
             if (1..=LONGEST_RUN).contains(&run) {
                 repeated += run;
-                shown = shown.or_else(|| Some(piece(survey, number, row - 1, row + run - 1)));
+                shown = shown.or_else(|| Some(piece(&survey.data.records()[number], row - 1, row + run - 1)));
             }
             row += run.max(1);
         }

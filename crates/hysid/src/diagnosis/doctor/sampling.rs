@@ -53,7 +53,7 @@ fn time_steps(survey: &Survey) -> Vec<Complaint> {
                     ComplaintKind::TimeGap,
                     Severity::Warning,
                     statement,
-                    vec![piece(survey, number, longest, longest + 1)],
+                    vec![piece(&survey.data.records()[number], longest, longest + 1)],
                 )
             });
         }
@@ -74,7 +74,7 @@ fn time_steps(survey: &Survey) -> Vec<Complaint> {
                     ComplaintKind::ChangingSamplingRate,
                     Severity::Note,
                     statement,
-                    vec![piece(survey, number, 0, record.len() - 1)],
+                    vec![piece(&survey.data.records()[number], 0, record.len() - 1)],
                 )
             });
         }

@@ -31,7 +31,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
     }
     let units = Units::of(survey);
     let complaint = |kind, severity, statement: String| {
-        Some(Complaint::of_rows(kind, severity, statement, vec![piece(survey, number, 0, 0)]))
+        Some(Complaint::of_rows(kind, severity, statement, vec![piece(&survey.data.records()[number], 0, 0)]))
     };
     let largest = survey.input.0.abs().max(survey.input.1.abs());
     let later: Vec<&Branch> = survey.of_record(number).iter().skip(2).collect();

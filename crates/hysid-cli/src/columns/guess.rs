@@ -1,0 +1,182 @@
+//! Which of the columns that no option names are time, inputs and output: guessed from names, units and values. A guess
+//! that is more likely wrong than right is refused.
+
+use std::ops::Range;
+
+use anyhow::{Result, bail};
+use hysid::column::{Course, Part, one_signal};
+use hysid::unit;
+
+use crate::cell::CellReader;
+use crate::table::Table;
+use crate::terminal::{clipped, listed};
+
+/// More columns than this are not all inputs.
+const MOST_INPUTS: usize = 4;
+
+/// Values are not looked at in a table with more free columns than this.
+const MOST_READ: usize = 200;
+
+/// What is to be guessed, and from what.
+pub struct Guess<'t> {
+    pub table: &'t Table,
+    /// Rows of each record.
+    pub records: Vec<Range<usize>>,
+    /// Columns without a role so far, in their order.
+    pub free: Vec<&'t String>,
+    /// Time stamps, if they are known.
+    pub time: Option<String>,
+    /// The output, if an option names it.
+    pub output: Option<String>,
+    /// An option names the inputs.
+    pub has_inputs: bool,
+    /// Columns that are left out, each with the reason.
+    pub set_aside: Vec<(String, &'static str)>,
+}
+
+impl Guess<'_> {
+    /// Guesses: time, output, and inputs where no option names them.
+    ///
+    /// # Errors
+    /// Columns of which the names and values tell that the guess would be wrong.
+    pub fn complete(&mut self) -> Result<()> {
+        if self.free.len() > self.needed() && self.free.len() <= MOST_READ {
+            self.set_aside_what_no_input_is()?;
+        }
+        if self.output.is_none() {
+            self.output = self.free.pop().cloned();
+            self.refuse_the_inverse()?;
+        }
+        if !self.has_inputs {
+            self.refuse_many()?;
+            self.refuse_alike()?;
+        }
+        Ok(())
+    }
+
+    /// Columns that must be left.
+    fn needed(&self) -> usize {
+        usize::from(self.output.is_none()) + usize::from(!self.has_inputs)
+    }
+
+    /// Sets aside text, counters, constants and time stamps, as long as there is more than what is needed.
+    fn set_aside_what_no_input_is(&mut self) -> Result<()> {
+        let mut unclear = Vec::new();
+        for name in self.free.clone() {
+            let course = self.values(name).map(|values| {
+                let parts: Vec<&[f64]> = self.records.iter().map(|rows| &values[rows.clone()]).collect();
+                Course::of(parts)
+            });
+            let grows = matches!(course, Some(Course::Counts | Course::Grows));
+            if unit::may_be_time(name) && grows {
+                self.take_time(name);
+                continue;
+            }
+            // Where nothing else is to be guessed, columns without a role need no reason.
+            if self.has_inputs && self.output.is_some() {
+                continue;
+            }
+            let reason = match course {
+                None => "text",
+                Some(Course::Counts) => "counts the rows",
+                Some(Course::Constant) => "constant",
+                Some(Course::Grows) => {
+                    unclear.push((name, "grows from row to row: name it with --time"));
+                    continue;
+                }
+                Some(Course::CountsInSteps) => {
+                    unclear.push((name, "counts up in steps: name it with --record"));
+                    continue;
+                }
+                Some(Course::Varies) => continue,
+            };
+            self.set_aside(name, reason);
+        }
+        // A column that only grows has no hysteresis; alone, it may still be what is wanted.
+        match unclear.first() {
+            Some((name, what)) if !self.has_inputs && self.free.len() > self.needed() => bail!(
+                "{}: column \"{}\" {what}, or name input and output with --input and --output",
+                self.table.file,
+                clipped(name)
+            ),
+            _ => Ok(()),
+        }
+    }
+
+    fn take_time(&mut self, name: &String) {
+        if self.time.is_some() {
+            return self.set_aside(name, "a second time");
+        }
+        self.time = Some(name.clone());
+        self.free.retain(|other| *other != name);
+    }
+
+    fn set_aside(&mut self, name: &String, reason: &'static str) {
+        if self.free.len() > self.needed() {
+            self.free.retain(|other| *other != name);
+            self.set_aside.push((name.clone(), reason));
+        }
+    }
+
+    /// The numbers of a column, NaN where it is blank; `None` if its first cells are no numbers.
+    fn values(&self, name: &str) -> Option<Vec<f64>> {
+        let place = self.table.column(name)?;
+        let mut cells = CellReader::new(self.table.delimiter);
+        let number = |(row, &line): (usize, &u64)| match self.table.cell(row, place).trim() {
+            "" => Some(f64::NAN),
+            cell => cells.number(cell, line).ok(),
+        };
+        let numbers: Vec<Option<f64>> = self.table.lines.iter().enumerate().map(number).collect();
+        // A single word among numbers is a mistake, which is told where the column is read for its numbers.
+        let is_text = numbers.iter().all(|number| number.is_none_or(f64::is_nan));
+        (!is_text).then(|| numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+    }
+
+    fn refuse_the_inverse(&self) -> Result<()> {
+        let Some(output) = self.output.as_deref().filter(|_| !self.has_inputs) else { return Ok(()) };
+        let is_swapped = |input: &&&String| Part::are_swapped(Part::of(input), Part::of(output));
+        match self.free.iter().find(is_swapped) {
+            None => Ok(()),
+            Some(input) => {
+                let (input, output) = (clipped(input), clipped(output));
+                bail!(
+                    "{}: \"{output}\" is in the last column, but \"{input}\" looks more like the output: decide with \
+                     --output {input}, or --output {output}",
+                    self.table.file
+                )
+            }
+        }
+    }
+
+    fn refuse_many(&self) -> Result<()> {
+        if self.free.len() <= MOST_INPUTS {
+            return Ok(());
+        }
+        let names: Vec<String> = self.free.iter().map(|name| (*name).clone()).collect();
+        bail!(
+            "{}: {} columns could be inputs: name them with --input ({})",
+            self.table.file,
+            names.len(),
+            listed(&names)
+        )
+    }
+
+    fn refuse_alike(&self) -> Result<()> {
+        let columns: Vec<(&&String, Vec<f64>)> =
+            self.free.iter().filter_map(|name| Some((name, self.values(name)?))).collect();
+        for (place, (name, values)) in columns.iter().enumerate() {
+            for (other, other_values) in &columns[..place] {
+                if let Some(correlation) = one_signal(other_values, values) {
+                    bail!(
+                        "{}: columns \"{}\" and \"{}\" are nearly the same signal (correlation {correlation:.4}), such as \
+                         a command and its measurement: name the input with --input",
+                        self.table.file,
+                        clipped(other),
+                        clipped(name)
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}
