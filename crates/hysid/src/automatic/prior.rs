@@ -3,11 +3,12 @@
 //! One loop between two ends, run through however often, shows nothing of what lies inside it. Candidates that
 //! predict the loop equally well then differ by factors on smaller loops, and so do their errors there from those
 //! that the folds show. How much they do was found on generated cases: one loop to learn from, smaller loops and
-//! reversal curves to predict (docs/accuracy.md).
+//! reversal curves to predict (docs/accuracy.md). Records of one loop at several speeds tell which candidates hold the
+//! speed, and are judged by the folds alone.
 
 use crate::classical::identification::{ClassicalOptions, Rival};
 use crate::identification::Request;
-use crate::record::Dataset;
+use crate::record::{Dataset, Record};
 use crate::turning_points::turning_points;
 
 /// Reversals below this share of the range are noise.
@@ -19,6 +20,9 @@ const INSIDE: f64 = 0.1;
 /// Reversals inside the loop from which on there is more than one loop.
 const SMALLER_LOOP: usize = 2;
 
+/// Records whose speeds differ by more than this factor show more than one loop does.
+const OTHER_SPEED: f64 = 1.5;
+
 /// How much wider a band is for data of one loop, on the generated cases.
 pub(super) const WIDER_BAND: f64 = 1.6;
 
@@ -28,9 +32,10 @@ pub(super) const POWER_OF_KINDS: f64 = 8.0;
 /// Whether the data tell candidates apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Evidence {
-    /// The data hold loops of several sizes.
+    /// The data hold loops of several sizes, or one at several speeds.
     SeveralLoops,
-    /// All reversals of the first input lie at the ends of its range.
+    /// All reversals of the first input lie at the ends of its range, and all records are run at one speed, as far
+    /// as the data tell.
     OneLoop,
 }
 
@@ -45,7 +50,7 @@ impl Evidence {
             turning.into_iter().filter(|&row| is_inside(x[row])).count()
         };
         let all: usize = data.records().iter().map(|record| inside(&record.inputs()[0])).sum();
-        if all < SMALLER_LOOP { Self::OneLoop } else { Self::SeveralLoops }
+        if all < SMALLER_LOOP && !differ_in_speed(data) { Self::OneLoop } else { Self::SeveralLoops }
     }
 
     /// What is added to the score of a candidate: mean logarithm of its error inside the loop over its error
@@ -56,6 +61,21 @@ impl Evidence {
             Self::OneLoop => inside_over_folds(candidate),
         }
     }
+}
+
+fn differ_in_speed(data: &Dataset) -> bool {
+    let speeds = data.records().iter().filter_map(speed);
+    let (slowest, fastest) =
+        speeds.fold((f64::INFINITY, 0.0), |(low, high), speed| (speed.min(low), speed.max(high)));
+    fastest > OTHER_SPEED * slowest
+}
+
+/// Path of the first input over the time that it takes; `None` without time stamps and for an input at rest.
+fn speed(record: &Record) -> Option<f64> {
+    let time = record.time()?;
+    let path: f64 = record.inputs()[0].windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+    let speed = path / (time.last()? - time.first()?);
+    (speed > 0.0 && speed.is_finite()).then_some(speed)
 }
 
 fn inside_over_folds(candidate: &Request) -> f64 {
@@ -103,6 +123,22 @@ mod tests {
         assert_eq!(evidence(&[-1.0, 0.97, -0.98, 1.0, -1.0]), Evidence::OneLoop);
         assert_eq!(evidence(&[0.0, 1.0]), Evidence::OneLoop);
         assert_eq!(evidence(&[198.0, 202.0, 198.0, 202.0, 198.0]), Evidence::OneLoop);
+    }
+
+    #[test]
+    fn one_loop_at_several_speeds_is_more_than_one_loop() {
+        let record = |step: f64| {
+            let x: Vec<f64> = (0..200).map(|row| (0.1 * f64::from(row)).sin()).collect();
+            let time = (0..200).map(|row| step * f64::from(row)).collect();
+            Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap()
+        };
+        let evidence = |steps: &[f64]| {
+            let records = steps.iter().map(|&step| record(step)).collect();
+            let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
+            Evidence::of(&Dataset::new(names, records).unwrap())
+        };
+        assert_eq!(evidence(&[1.0, 1.2]), Evidence::OneLoop);
+        assert_eq!(evidence(&[1.0, 1.2, 0.1]), Evidence::SeveralLoops);
     }
 
     #[test]
