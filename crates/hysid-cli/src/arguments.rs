@@ -66,7 +66,7 @@ pub enum Command {
     Simulate(Simulate),
     /// Errors of a model's free run against measured data
     Evaluate(Evaluate),
-    /// How well does a model foretell data it was not fitted to? Cross-validation, fold by fold
+    /// How well does a model predict data it was not fitted to? Cross-validation, fold by fold
     Validate(Box<Validate>),
     /// Fit every model to the same data and compare them on data that none has seen
     Compare(Compare),

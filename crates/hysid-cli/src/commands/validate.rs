@@ -1,4 +1,4 @@
-//! `hysid validate`: how well a model foretells data that it was not fitted to.
+//! `hysid validate`: how well a model predicts data that it was not fitted to.
 
 use anyhow::{Context, Result, anyhow};
 use hysid::identification::identify;

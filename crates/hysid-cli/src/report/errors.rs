@@ -23,6 +23,8 @@ fn grade(percent: f64) -> &'static str {
 pub fn verdict(report: &Report) -> String {
     let provenance = report.model.provenance();
     let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
+    let behind = provenance.train_after_warm_up.as_ref();
+    parts.extend(behind.map(|errors| format!("{} on these without the warm-up", judged(errors))));
     parts.push(match &provenance.validation {
         Some(errors) => {
             format!("{} on data held out (cross-validation)", judged(errors))
@@ -91,8 +93,8 @@ fn explanation(report: &Report) -> String {
     let provenance = report.model.provenance();
     text += match (&provenance.validation, &provenance.selection) {
         (Some(_), Some(_)) => {
-            "“Validation” is what was foretold of data held out, all folds together, before the model was trained \
-             on everything; what counts how much was chosen there, so it is a little flattered."
+            "“Validation” is the error on data held out: each fold was predicted by models that were trained without \
+             it. The weights of the ensemble were chosen on the same folds, so this error is slightly too low."
         }
         (Some(_), None) => {
             "“Validation” is the error on data held out, of networks that were trained in the same way without \

@@ -93,7 +93,7 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
-    Without a choice of `model`, candidates are judged by what they foretell of data held out, and those that do
+    Without a choice of `model`, candidates are judged by what they predict of data held out, and those that do
     best answer together: that is the most accurate, and takes minutes. One named model takes seconds.
 
     Every option has the name that it has on the command line of the program `hysid`; ``None`` is its default.

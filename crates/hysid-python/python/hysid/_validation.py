@@ -78,7 +78,7 @@ def validate(
     """Fit to a part of the data and judge on the rest, in free run, several times.
 
     Of several records, some are held out in turn. A single record is cut in time: the model sees its beginning
-    and foretells what follows, with the memory carried over; and blocks are held out from its beginning and
+    and predicts what follows, with the memory carried over; and blocks are held out from its beginning and
     middle. Ctrl-C ends it, warns, and returns the folds so far.
 
     Parameters
