@@ -70,6 +70,9 @@ fn main() -> ExitCode {
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
             note(format_args!("error: {error:#}"));
+            if interrupt::requested() && matches!(error.downcast_ref(), Some(hysid::Error::Stopped)) {
+                return ExitCode::from(interrupt::exit_status());
+            }
             ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
         }
     }

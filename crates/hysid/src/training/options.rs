@@ -9,6 +9,7 @@ use crate::network::{Architecture, Family, Sizes};
 use crate::preprocessing::{HISTORY_INPUTS, Shaping};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::training::FEWEST_ROWS;
 use crate::training::genetic::POPULATIONS;
 
 /// How networks are trained.
@@ -233,6 +234,9 @@ impl FitOptions {
                 "a population of {}: choose {fewest} to {most}",
                 self.population
             )));
+        }
+        if self.thin < FEWEST_ROWS {
+            return Err(Error::Option(format!("thin {}: at least {FEWEST_ROWS} rows are needed", self.thin)));
         }
         self.shaping.check()?;
         self.penalties().check()

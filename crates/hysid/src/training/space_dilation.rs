@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::linear_algebra::dot;
+use crate::training::soundness::{Frame, MOST_COUNTED, are_finite};
 use crate::training::termination::{Stall, Termination};
 
 /// A function and one of its sub-gradients: writes the sub-gradient, returns the value.
@@ -168,6 +169,21 @@ impl SpaceDilation {
             last_move: options.first_step,
             best,
         })
+    }
+
+    /// True if a minimisation with these settings can go on from here.
+    pub(super) fn is_sound(&self, frame: &Frame, options: &DilationOptions) -> bool {
+        let n = self.x.len();
+        let vectors = [&self.x, &self.scales, &self.gradient, &self.best.x];
+        let numbers = [self.value, self.step, self.last_move, self.best.value];
+        self.options == *options
+            && vectors.into_iter().all(|vector| frame.is_vector(vector))
+            && self.scales.iter().all(|scale| *scale > 0.0)
+            && self.transformation.len() == n * n
+            && are_finite(&self.transformation)
+            && are_finite(&numbers)
+            && self.step > 0.0
+            && self.best.iterations.max(self.best.evaluations) <= MOST_COUNTED
     }
 
     /// The lowest point so far.
