@@ -527,6 +527,7 @@ const QUICKLY_SOLVED: usize = 500;
 /// Wrong sides up to this, relative to the largest, are rounding.
 const ROUNDING: f64 = 1e-11;
 
+/// The minimum; of a matrix that is not finite, all zeros.
 fn minimum(matrix: &Symmetric, right: Vec<f64>, stop: StopCheck<'_>) -> Option<Vec<f64>> {
     let mut pace = Pace::new(stop);
     let n = right.len();
@@ -542,6 +543,10 @@ fn minimum(matrix: &Symmetric, right: Vec<f64>, stop: StopCheck<'_>) -> Option<V
             let mut weights = right;
             factor.solve(&mut weights);
             return Some(weights);
+        }
+        // Only numbers that are none are not made definite by a ridge as large as that.
+        if ridge > 1e12 * largest {
+            return Some(vec![0.0; n]);
         }
         ridge = (ridge * 10.0).max(1e-14 * largest);
     }
@@ -631,6 +636,13 @@ mod tests {
             }
         }
         assert!(bound_somewhere > 20, "the bounds hardly ever bound");
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_finite_has_an_end() {
+        let mut problem = problem(5, 30, 1);
+        problem.matrix.add_at(2, 1, f64::NAN);
+        assert_eq!(problem.minimum(StopCheck::never()), Some(vec![0.0; 5]));
     }
 
     #[test]

@@ -26,6 +26,7 @@ use crate::classical::series::Series;
 use crate::error::{Error, Result};
 use crate::stop_check::StopCheck;
 use crate::training::Termination;
+use crate::training::options::{MOST_EPOCHS, MOST_STARTS};
 use descent::Descent;
 pub(crate) use projection::Columns;
 use projection::{Projection, UNFINISHED};
@@ -141,8 +142,11 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub fn validated(self) -> Result<Self> {
-        if self.starts == 0 {
-            return Err(Error::Option("a search needs at least one start".into()));
+        if self.starts == 0 || self.starts > MOST_STARTS {
+            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
+        }
+        if self.epochs > MOST_EPOCHS {
+            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
         }
         Ok(self)
     }

@@ -101,7 +101,7 @@ fn of_network(data: &Dataset, options: &FitOptions, threads: usize) -> Result<Me
         _ => (m + p) * (m + p) + p * p + p * m,
     };
     let buffers = 500.0 * (m + p);
-    let all_runs = options.starts + if options.starts > 1 { RUNS_ON_FOLDS } else { 0 };
+    let all_runs = options.starts.saturating_add(if options.starts > 1 { RUNS_ON_FOLDS } else { 0 });
     let state = m * m
         + 4.0 * p
         + match options.training {

@@ -4,6 +4,9 @@
 use crate::linear_algebra::{Cholesky, Gram, Symmetric};
 use crate::stop_check::{Pace, StopCheck};
 
+/// Ridge beyond which a matrix is given up, as a multiple of its largest diagonal entry.
+const LARGEST_RIDGE: f64 = 1e12;
+
 /// The linear least-squares problem inside the objective.
 pub(crate) struct OutputProblem<'a> {
     pub gram: &'a Gram,
@@ -47,7 +50,8 @@ impl OutputSolution {
 
 impl OutputProblem<'_> {
     /// Solves theory.md (3.2). Where rounding makes the matrix indefinite (more features than rows, or
-    /// features all but equal), the ridge is raised until it is not. Asked to stop, the objective is infinite.
+    /// features all but equal), the ridge is raised until it is not. Asked to stop, and for features
+    /// that are not finite, the objective is infinite.
     pub fn solve(&self) -> OutputSolution {
         let m = self.features;
         let matrix = Symmetric::from_fn(m, |i, j| self.gram.at(i, j) / self.rows);
@@ -63,6 +67,8 @@ impl OutputProblem<'_> {
             match penalised.cholesky(self.stop) {
                 Some(factor) => break (factor, added),
                 None if self.stop.is_asked() => return OutputSolution::broken_off(m),
+                // Only numbers that are none are not made definite by a ridge as large as that.
+                None if ridge > LARGEST_RIDGE * largest => return OutputSolution::broken_off(m),
                 None => ridge = (ridge * 10.0).max(1e-14 * largest),
             }
         };

@@ -244,10 +244,10 @@ impl FitOptions {
 }
 
 /// Most epochs of a start.
-const MOST_EPOCHS: usize = 1_000_000;
+pub(crate) const MOST_EPOCHS: usize = 1_000_000;
 
 /// Most starts.
-const MOST_STARTS: usize = 10_000;
+pub(crate) const MOST_STARTS: usize = 10_000;
 
 /// Penalties on the weights, in scaled units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -247,9 +247,11 @@ impl SpaceDilation {
             if next == self.x {
                 return false;
             }
-            let value = f.evaluate(&next, &mut self.gradient);
-            self.best.evaluations += 1;
-            if !is_usable(value, &self.gradient) || !next.iter().all(|x| x.is_finite()) {
+            // The function is asked nothing of what is no point.
+            let is_point = next.iter().all(|x| x.is_finite());
+            let value = if is_point { f.evaluate(&next, &mut self.gradient) } else { f64::NAN };
+            self.best.evaluations += usize::from(is_point);
+            if !is_usable(value, &self.gradient) {
                 halvings += 1;
                 if halvings == MOST_HALVINGS {
                     return false;
