@@ -1,13 +1,16 @@
-//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts | tidy`.
+//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts | fuzz | soak |
+//! tidy`.
 
 mod bench;
 mod cases;
 mod check;
 mod dependencies;
 mod files;
+mod fuzz;
 mod generate_cases;
 mod program;
 mod python;
+mod soak;
 mod test;
 mod tidy;
 mod verdicts;
@@ -27,6 +30,11 @@ Commands:
   python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
+  fuzz [TARGET] [SECONDS] [--seed NUMBER] [--coverage]
+                 the targets of fuzz/ (all of them) on mutated inputs, for so many seconds (60) each. The same seed (1)
+                 gives the same inputs. With --coverage, one target under libFuzzer
+  soak [KILLS]   kills fits at KILLS (200) random moments, fills the disk, races writers, fits every model to nasty
+                 data under a time limit, and reports
   cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]
             [-- ARG..]
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
@@ -74,6 +82,10 @@ fn main() -> ExitCode {
         ["python"] => python::test(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
+        ["fuzz", rest @ ..] => fuzz::Request::parse(rest).and_then(|request| fuzz::run(&request)),
+        ["soak", rest @ ..] if soak::kills(rest).is_some() => {
+            soak::run(soak::kills(rest).unwrap_or_default())
+        }
         ["cases", rest @ ..] => {
             cases::Request::parse(rest, &cases::OPTIONS).and_then(|request| cases::run(&request))
         }

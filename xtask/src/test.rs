@@ -3,10 +3,11 @@
 
 use anyhow::Result;
 
-use crate::{cargo, python};
+use crate::{cargo, fuzz, python};
 
 pub fn run() -> Result<()> {
     rust()?;
+    fuzz::in_tests()?;
     python::test()
 }
 

@@ -16,6 +16,7 @@ use hysid::warning::Significant;
 
 use crate::arguments::Compare;
 use crate::data::Data as Read;
+use crate::identification::check_memory;
 use crate::interrupt;
 use crate::messages::note;
 use crate::timing::ns_per_sample;
@@ -95,7 +96,7 @@ pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec
             loop {
                 let next = queue.lock().expect("no thread panics with the lock").pop_front();
                 let Some(request) = next else { return Ok(()) };
-                let row = pool.install(|| row(data, request, arguments.time_limit));
+                let row = pool.install(|| row(data, request, arguments.time_limit, workers));
                 let mut finished = finished.lock().expect("no thread panics with the lock");
                 finished.push(row);
                 say(finished.last().expect("one was added"), finished.len(), requests.len());
@@ -120,7 +121,7 @@ fn error(row: &Row) -> f64 {
     fitted.and_then(|fitted| fitted.judged().nrmse_std_percent).unwrap_or(f64::INFINITY)
 }
 
-fn row(data: &Data, request: &Request, time_limit: Option<f64>) -> Row {
+fn row(data: &Data, request: &Request, time_limit: Option<f64>, workers: usize) -> Row {
     let of = |outcome| Row { request: request.clone(), outcome };
     if interrupt::requested() {
         return of(Err("interrupted".into()));
@@ -132,10 +133,11 @@ fn row(data: &Data, request: &Request, time_limit: Option<f64>) -> Row {
         Request::Auto(_) => time_limit.unwrap_or(f64::INFINITY),
         Request::Network(_) | Request::Classical(_) => time_limit.unwrap_or(TIME_LIMIT),
     };
-    of(fitted(data, request, limit).map_err(|error| format!("{error:#}")))
+    of(fitted(data, request, limit, workers).map_err(|error| format!("{error:#}")))
 }
 
-fn fitted(data: &Data, request: &Request, time_limit: f64) -> Result<Fitted> {
+fn fitted(data: &Data, request: &Request, time_limit: f64, threads: usize) -> Result<Fitted> {
+    check_memory(&data.train.set, request, threads).map_err(|error| data.train.explain(error))?;
     let began = Instant::now();
     let fit = identify(&data.train.set, request, &mut |_| {
         let over = began.elapsed().as_secs_f64() >= time_limit || interrupt::requested();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use hysid::diagnosis::before_a_fit;
-use hysid::identification::Request;
+use hysid::identification::{Request, memory_need};
 use hysid::metrics::{ErrorSums, Errors};
 use hysid::model::{Model, Prediction, Provenance};
 use hysid::record::{Dataset, Record};
@@ -93,6 +93,11 @@ pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
     summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }
 
+/// Refuses work that needs more memory than there is.
+pub fn check_memory(data: &Dataset, request: &Request, threads: usize) -> hysid::Result<()> {
+    memory_need(data, request, threads)?.check(hysid_files::available_memory())
+}
+
 /// So many threads; one for each processor if not said.
 pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0).into()).build();
@@ -104,6 +109,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let request = work.request;
     let said = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;
+    check_memory(&data.set, request, pool.current_num_threads()).map_err(|error| data.explain(error))?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
     let mut observer = |progress: &Progress| follower.observe(progress);
     let fitted = pool.install(|| match work.begun {

@@ -138,7 +138,13 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
     }
     let part = match (progress.phase, progress.method) {
         (Phase::Starts, _) => return "cross-validation".into(),
+        (Phase::AllData, Method::LevenbergMarquardt) if best == f64::INFINITY => {
+            return format!("{starts} starts");
+        }
         (Phase::AllData, Method::LevenbergMarquardt) => format!("{starts} starts"),
+        (Phase::AllData, Method::Genetic | Method::Subgradient) if best == f64::INFINITY => {
+            return "first evaluations".into();
+        }
         (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
         (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY && progress.epoch == 0 => {
             return "least squares".into();

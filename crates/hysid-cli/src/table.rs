@@ -91,6 +91,15 @@ mod tests {
         Table::from_bytes(Path::new("f"), text.as_bytes()).unwrap().lines
     }
 
+    /// The last byte of one cell and the first of the next make a letter together, and nothing alone.
+    #[test]
+    fn a_letter_cut_in_two_by_a_delimiter_is_no_text() {
+        for text in [b"x,y\n1\xc9,\xb72\n".as_slice(), b"x\xc9,\xb7y\n1,2\n"] {
+            let error = Table::from_bytes(Path::new("f"), text).unwrap_err().to_string();
+            assert!(error.contains("f, line"), "{error}");
+        }
+    }
+
     #[test]
     fn rows_know_their_lines() {
         assert_eq!(lines("a,b\n1,2\n3,4\n"), [2, 3]);

@@ -1,4 +1,4 @@
-//! How the program `hysid` and its Python package write files.
+//! How the program `hysid` and its Python package write files, and what else both ask of the system.
 //!
 //! - **Atomic.** A file is written beside its target, synced and renamed: the target is complete or as it was.
 //! - **Only over its own files.** A file that Hysid did not write is not replaced, unless that is asked for. A model
@@ -8,6 +8,7 @@
 //!
 //! A [`Destination`] is a path together with the [`Kind`] of file that goes there.
 
+mod available_memory;
 mod backup;
 mod destination;
 mod failure;
@@ -19,6 +20,7 @@ mod rescue;
 mod target;
 mod temporary;
 
+pub use available_memory::available_memory;
 pub use destination::Destination;
 pub use failure::{Failure, reason};
 pub use kind::{GENERATOR, Kind, PAGE_MARK};

@@ -140,7 +140,10 @@ pub fn identify(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(Model, usize, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
-    let work = move |observer: &mut Observer<'_>| identification::identify(&set, &request, observer);
+    let work = move |observer: &mut Observer<'_>| {
+        check_memory(&set, &request)?;
+        identification::identify(&set, &request, observer)
+    };
     let (fitted, interrupted) = attended(py, threads, time_limit, progress, work)?;
     Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
 }
@@ -158,9 +161,18 @@ pub fn validate(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, bool)> {
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
-    let work = move |observer: &mut Observer<'_>| cross_validate(&set, &request, folds, observer);
+    let work = move |observer: &mut Observer<'_>| {
+        check_memory(&set, &request)?;
+        cross_validate(&set, &request, folds, observer)
+    };
     let (validation, interrupted) = attended(py, threads, time_limit, progress, work)?;
     Ok((serde_json::to_string(&validation).map_err(refused)?, interrupted))
+}
+
+/// Refuses work that needs more memory than there is, with the threads of this pool.
+fn check_memory(data: &hysid::record::Dataset, request: &identification::Request) -> hysid::Result<()> {
+    let need = identification::memory_need(data, request, rayon::current_num_threads())?;
+    need.check(hysid_files::available_memory())
 }
 
 /// Does the work in a thread of its own, while the caller's looks for Ctrl-C and tells the progress. Gives

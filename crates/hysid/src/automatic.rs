@@ -138,6 +138,14 @@ const MOST_ROWS: usize = 6000;
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
 
+/// What is fitted to the data, each from its first start.
+pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<Request> {
+    match &options.only {
+        Some(request) => vec![(**request).clone()],
+        None => candidates(data, options).iter().map(|candidate| candidate.request(0)).collect(),
+    }
+}
+
 /// Identifies by cross-validation.
 ///
 /// # Errors

@@ -23,7 +23,7 @@ pub mod turning_point_stack;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, LARGEST_VALUE, Result};
 
 /// What a law is told of one more sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +34,14 @@ pub struct Sample {
     pub rate: f64,
     /// Time since the sample before; 0 at the first of a record.
     pub step: f64,
+}
+
+impl Sample {
+    /// As a law takes it: values beyond [`LARGEST_VALUE`] are taken as that, so that nothing overflows.
+    pub(crate) fn limited(self) -> Self {
+        let limited = |value: f64| value.clamp(-LARGEST_VALUE, LARGEST_VALUE);
+        Self { x: limited(self.x), rate: limited(self.rate), step: limited(self.step) }
+    }
 }
 
 /// What every classical model can do.

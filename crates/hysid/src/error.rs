@@ -23,6 +23,27 @@ pub enum Error {
     /// A checkpoint that cannot be used.
     #[error("{0}")]
     Checkpoint(String),
+    /// More memory than there is.
+    #[error(
+        "this needs about {:.1} GB of memory, most of it for {taken_by}, and {:.1} GB are available: {advice}",
+        .needed / 1e9,
+        .available / 1e9
+    )]
+    Memory {
+        /// Bytes needed, as estimated.
+        needed: f64,
+        /// Bytes available.
+        available: f64,
+        /// What takes them.
+        taken_by: String,
+        /// What lowers them.
+        advice: &'static str,
+    },
+    /// The observer asked to stop before there was any model.
+    #[error(
+        "stopped before there was a first model: allow more time, or choose a smaller model or fewer rows"
+    )]
+    Stopped,
 }
 
 /// Largest magnitude that a value of a record may have. Beyond it the square of a

@@ -1,12 +1,9 @@
 //! Identification of any model by its name: a network of the family, or one of its rivals.
 
 mod cautions;
+mod memory_need;
 pub mod options;
 pub(crate) mod variants;
-
-use std::ops::ControlFlow;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
@@ -19,10 +16,13 @@ use crate::network::Family;
 use crate::preprocessing::{Origin, Seen};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::options::ENSEMBLE_PENALTIES;
 use crate::training::random_stops::{RandomStopsOptions, fit_random_stops_until};
+pub use memory_need::{MemoryNeed, memory_need};
+
 use crate::training::{
-    self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, Termination,
+    self, Fit, FitOptions, HistoryPoint, Method, Observer, Phase, Progress, Run, SharedObserver, Termination,
 };
 
 /// A model by its name.
@@ -210,7 +210,7 @@ fn named<const N: usize>(all: [(&str, bool); N]) -> Vec<String> {
 /// round of its search, or now and then if there is none, and there is no checkpoint.
 ///
 /// # Errors
-/// Data that nothing can be identified from, or options outside their meaning.
+/// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
 pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) -> Result<Fit> {
     match request {
         Request::Network(options) => training::fit(data, options, observer),
@@ -219,36 +219,6 @@ pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) 
             random_stops(data, options, observer)
         }
         Request::Classical(options) => law(data, options, observer),
-    }
-}
-
-/// The observer as fits without rounds ask it, from several threads.
-struct Patience<'o, 'a> {
-    observer: Mutex<&'o mut Observer<'a>>,
-    is_over: AtomicBool,
-}
-
-impl<'o, 'a> Patience<'o, 'a> {
-    fn of(observer: &'o mut Observer<'a>) -> Self {
-        Self { observer: Mutex::new(observer), is_over: AtomicBool::new(false) }
-    }
-
-    fn hear(&self, progress: &Progress) -> ControlFlow<()> {
-        let mut observer = self.observer.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Whoever has said stop is not asked again.
-        if self.is_over() || observer(progress).is_break() {
-            self.is_over.store(true, Ordering::Relaxed);
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn is_over(&self) -> bool {
-        self.is_over.load(Ordering::Relaxed)
-    }
-
-    fn termination(&self, otherwise: Termination) -> Termination {
-        if self.is_over() { Termination::Stopped } else { otherwise }
     }
 }
 
@@ -262,20 +232,22 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
         seed: options.seed,
     };
     let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
-    let patience = Patience::of(observer);
-    let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
+    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
     let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
-    let found = fit_random_stops_until(&seen.data, &wanted, &stop)?;
+    let found = fit_random_stops_until(&seen.data, &wanted, stop)?;
     let body = Body::Network { network: found.network, scaling: found.scaling };
-    finished(data, options, &seen, body, 1, patience.termination(Termination::Converged), Vec::new())
+    finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
 }
 
 fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
     let seen = Seen::of(data, &options.shaping, options.rate, options.model.origin())?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
-    let patience = Patience::of(observer);
-    let stop = || patience.hear(&Progress::of_least_squares(options.model)).is_break();
+    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
     let mut of_round = |progress: SearchProgress| {
         if !progress.train_nrmse_percent.is_nan() {
             history.push(HistoryPoint {
@@ -284,10 +256,10 @@ fn law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) 
                 train_nrmse_percent: progress.train_nrmse_percent,
             });
         }
-        patience.hear(&Progress::of_search(options.model, &progress))
+        observer.tell(&Progress::of_search(options.model, &progress))
     };
-    let found = classical::fit(&seen.data, &of_seen, &mut of_round, &stop)?;
-    let termination = patience.termination(found.termination);
+    let found = classical::fit(&seen.data, &of_seen, &mut of_round, stop)?;
+    let termination = observer.termination(found.termination);
     let run = Run {
         phase: Phase::AllData,
         start: 0,

@@ -48,6 +48,7 @@ pub mod rate;
 pub mod record;
 pub mod scaling;
 pub mod simd;
+mod stop_check;
 pub mod summary;
 pub mod training;
 pub mod turning_points;

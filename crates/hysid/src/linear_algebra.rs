@@ -6,6 +6,7 @@ mod blocked_cholesky;
 use pulp::{Simd, WithSimd};
 
 use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
 
 /// Rows of a [`Batch`]: its columns stay in the second-level cache.
 const BATCH: usize = 256;
@@ -73,8 +74,8 @@ impl Gram {
     }
 
     /// Adds a batch's rows, and empties it, with the widest instruction set of this machine.
-    pub fn gather(&mut self, batch: &mut Batch) {
-        simd::run(AddBatch { gram: self, batch });
+    pub fn gather(&mut self, batch: &mut Batch, pace: &mut Pace<'_>) {
+        simd::run(AddBatch { gram: self, batch, pace });
     }
 
     /// Adds `factor` times another Gram matrix of the same columns: 1 for the rows of both, -1 to take
@@ -84,9 +85,9 @@ impl Gram {
         self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += factor * b);
     }
 
-    /// Adds a batch's rows, and empties it.
+    /// Adds a batch's rows, and empties it; only in part once the pace is over.
     #[inline(always)]
-    pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch) {
+    pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch, pace: &mut Pace<'_>) {
         debug_assert_eq!(batch.columns, self.n);
         if batch.rows == 0 {
             return;
@@ -98,6 +99,9 @@ impl Gram {
             })
         };
         for first in (0..self.stride).step_by(TILE) {
+            if pace.is_over(first * TILE * BATCH / 4) {
+                break;
+            }
             let left = columns(first);
             for second in (0..=first).step_by(TILE) {
                 let right = columns(second);
@@ -143,17 +147,18 @@ impl Gram {
     }
 }
 
-struct AddBatch<'a> {
+struct AddBatch<'a, 's> {
     gram: &'a mut Gram,
     batch: &'a mut Batch,
+    pace: &'a mut Pace<'s>,
 }
 
-impl WithSimd for AddBatch<'_> {
+impl WithSimd for AddBatch<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.gram.add(simd, self.batch);
+        self.gram.add(simd, self.batch, self.pace);
     }
 }
 
@@ -217,9 +222,14 @@ impl Symmetric {
         self.data[i * self.n + i] += value;
     }
 
-    /// `self -= W Wᵀ` for a matrix with one row of `columns` numbers for each row of `self`.
-    pub fn subtract_product(&mut self, w: &[f64], columns: usize) {
+    /// `self -= W Wᵀ` for a matrix with one row of `columns` numbers for each row of `self`; only in part once
+    /// asked to stop.
+    pub fn subtract_product(&mut self, w: &[f64], columns: usize, stop: StopCheck<'_>) {
+        let mut pace = Pace::new(stop);
         for i in 0..self.n {
+            if pace.is_over(i * columns) {
+                return;
+            }
             for j in 0..=i {
                 let (a, b) = (&w[i * columns..(i + 1) * columns], &w[j * columns..(j + 1) * columns]);
                 self.data[i * self.n + j] -= dot(a, b);
@@ -227,11 +237,12 @@ impl Symmetric {
         }
     }
 
-    /// Cholesky factor `L` with `self = L Lᵀ`; `None` unless positive definite to rounding.
-    pub fn cholesky(mut self) -> Option<Cholesky> {
+    /// Cholesky factor `L` with `self = L Lᵀ`; `None` unless positive definite to rounding, and once asked to
+    /// stop.
+    pub fn cholesky(mut self, stop: StopCheck<'_>) -> Option<Cholesky> {
         let n = self.n;
         if n >= blocked_cholesky::WORTH_BLOCKS {
-            let data = blocked_cholesky::factorise(self.data, n)?;
+            let data = blocked_cholesky::factorise(self.data, n, stop)?;
             return Some(Cholesky { n, data });
         }
         for i in 0..n {
@@ -259,6 +270,11 @@ pub(crate) struct Cholesky {
 }
 
 impl Cholesky {
+    /// Of no rows.
+    pub fn empty() -> Self {
+        Self { n: 0, data: Vec::new() }
+    }
+
     /// `L⁻¹ b`, in place.
     pub fn solve_lower(&self, b: &mut [f64]) {
         for i in 0..self.n {
@@ -310,15 +326,15 @@ mod tests {
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) {
             let n = self.0.n;
-            let mut batch = Batch::new(n);
+            let (mut batch, mut pace) = (Batch::new(n), Pace::new(StopCheck::never()));
             for row in 0..self.1 {
                 if batch.free() == 0 {
-                    self.0.add(simd, &mut batch);
+                    self.0.add(simd, &mut batch, &mut pace);
                 }
                 let columns: Vec<[f64; 1]> = (0..n).map(|column| [value(row, column)]).collect();
                 batch.append(&columns, 1);
             }
-            self.0.add(simd, &mut batch);
+            self.0.add(simd, &mut batch, &mut pace);
         }
     }
 
@@ -346,10 +362,10 @@ mod tests {
         }
         for n in [2, blocked_cholesky::WORTH_BLOCKS + 3] {
             let indefinite = Symmetric::from_fn(n, |i, j| if i == j { 1.0 } else { 2.0 });
-            assert!(indefinite.cholesky().is_none());
+            assert!(indefinite.cholesky(StopCheck::never()).is_none());
             let mut poisoned = Symmetric::from_fn(n, |i, j| f64::from(i == j));
             poisoned.add_at(n - 1, 0, f64::NAN);
-            assert!(poisoned.cholesky().is_none());
+            assert!(poisoned.cholesky(StopCheck::never()).is_none());
         }
     }
 
@@ -363,7 +379,7 @@ mod tests {
             let product: f64 = (0..n).map(|j| entry(i, j) * exact[j]).sum();
             approx::assert_relative_eq!(b[i], product, max_relative = 1e-11, epsilon = 1e-9);
         }
-        matrix.clone().cholesky().unwrap().solve(&mut b);
+        matrix.clone().cholesky(StopCheck::never()).unwrap().solve(&mut b);
         for (found, exact) in b.iter().zip(&exact) {
             approx::assert_relative_eq!(found, exact, epsilon = 1e-7);
         }

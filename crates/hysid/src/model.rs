@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::automatic::Selection;
 use crate::classical::identification::Rival;
 use crate::classical::{Classical, Law};
-use crate::error::{Channel, DataProblem, Error, Result};
+use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
 use crate::identification::{ModelName, Request};
 use crate::metrics::{ErrorSums, Errors};
 use crate::network::Network;
@@ -141,6 +141,18 @@ pub struct TrainedRanges {
 
 /// Of more records than this a model does not remember which they were.
 pub const MOST_REMEMBERED: usize = 1000;
+impl TrainedRanges {
+    /// Refuses ranges of a file that are none.
+    fn check(&self) -> Result<()> {
+        let is_range =
+            |&(low, high): &(f64, f64), most: f64| low <= high && low.abs().max(high.abs()) <= most;
+        let values = self.inputs.iter().chain([&self.output]).all(|range| is_range(range, LARGEST_VALUE));
+        if values && self.rate.iter().all(|range| is_range(range, f64::MAX)) {
+            return Ok(());
+        }
+        Err(Error::Option("a range that it was trained on is none".into()))
+    }
+}
 
 /// How a model came about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

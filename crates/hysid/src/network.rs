@@ -23,7 +23,7 @@ pub use parameters::Layout;
 pub use sweep::Drive;
 
 pub(crate) use gradient::GradientOverRecords;
-pub(crate) use jacobian::{Columns, GramOverRecords};
+pub(crate) use jacobian::{Columns, GramOverRecords, RowsOverRecords};
 
 use pulp::{Simd, WithSimd};
 

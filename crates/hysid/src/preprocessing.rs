@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::rate::RateMethod;
 use crate::record::{Dataset, Excitation, Record};
+use crate::scaling::SCALES;
 use crate::training::FEWEST_ROWS;
 
 /// What is asked for, in shares of what the data show.
@@ -233,17 +234,18 @@ impl Preprocessing {
 
     /// The first input as the model sees it.
     pub fn input(&self, x: f64) -> f64 {
-        let x = x - self.origin(0);
+        let x = limited(x) - self.origin(0);
         self.companding.map_or(x, |scale| (x / scale).asinh())
     }
 
     /// Any input as the model sees it; the first counts as 0.
     pub(crate) fn input_as_seen(&self, input: usize, value: f64) -> f64 {
-        if input == 0 { self.input(value) } else { value - self.origin(input) }
+        if input == 0 { self.input(value) } else { limited(value) - self.origin(input) }
     }
 
     /// The rate as the model sees it.
     pub fn rate(&self, rate: f64) -> f64 {
+        let rate = limited(rate);
         self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
     }
 
@@ -252,7 +254,7 @@ impl Preprocessing {
         seen.clear();
         seen.extend(inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, value)));
         if let Some(scales) = self.history {
-            seen.extend(past.take(inputs[0] - self.origin(0), scales));
+            seen.extend(past.take(limited(inputs[0]) - self.origin(0), scales));
         }
     }
 
@@ -312,13 +314,18 @@ impl Preprocessing {
     pub(crate) fn check(&self) -> Result<()> {
         let scales =
             [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
-        let is_scale = |scale: f64| scale > 0.0 && scale.is_finite();
+        let is_scale = |scale: f64| SCALES.contains(&scale);
         let is_value = |origin: &f64| origin.abs() <= LARGEST_VALUE;
         if scales.into_iter().flatten().all(is_scale) && self.origins.iter().all(is_value) {
             return Ok(());
         }
         Err(Error::Option("its preprocessing has a scale that is none".into()))
     }
+}
+
+/// A value of the user's as a model takes it, so that nothing overflows: records have no larger ones.
+fn limited(value: f64) -> f64 {
+    value.clamp(-LARGEST_VALUE, LARGEST_VALUE)
 }
 
 /// Columns that a model sees in the place of those measured.

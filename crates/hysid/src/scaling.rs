@@ -1,8 +1,10 @@
 //! Factors between the user's units and those of a network, theory.md (2.1).
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
+use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::network::{Architecture, Drive};
 use crate::rate::RateMethod;
 use crate::record::{Dataset, Excitation, Record};
@@ -21,7 +23,25 @@ pub struct Scaling {
     pub output_deviation: f64,
 }
 
+/// Scales that a value of the user's can be divided by, and its quotient be squared.
+pub(crate) const SCALES: RangeInclusive<f64> = 1e-150..=1e150;
+
 impl Scaling {
+    /// Refuses factors of a file that are none.
+    ///
+    /// # Errors
+    /// A factor that cannot be divided by, or a mean beyond any record's.
+    pub(crate) fn check(&self) -> Result<()> {
+        let factors = self.inputs.iter().chain(&self.rate).chain([&self.output_deviation]);
+        if let Some(factor) = factors.into_iter().find(|factor| !SCALES.contains(factor)) {
+            return Err(Error::Option(format!("its scaling has the factor {factor}")));
+        }
+        if self.output_mean.abs() <= LARGEST_VALUE {
+            return Ok(());
+        }
+        Err(Error::Option(format!("its scaling has the mean output {}", self.output_mean)))
+    }
+
     /// Finds the factors of a data set.
     ///
     /// # Errors
@@ -119,7 +139,7 @@ impl Scaling {
     }
 }
 
-/// A scale that can be divided by: 1 for a channel that is always 0.
+/// A scale that can be divided by: 1 for a channel that is always 0, or as good as that.
 fn usable(scale: f64) -> f64 {
-    if scale > 0.0 { scale } else { 1.0 }
+    if SCALES.contains(&scale) { scale } else { 1.0 }
 }

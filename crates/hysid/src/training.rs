@@ -5,6 +5,7 @@
 //! [`resume`] takes up a fit where a [`Checkpoint`] left it.
 
 pub mod checkpoint;
+pub(crate) mod curvature;
 mod encoding;
 mod fitting;
 pub mod genetic;
@@ -15,6 +16,8 @@ pub mod objective;
 pub mod options;
 pub mod random_stops;
 mod run;
+mod shared_observer;
+mod soundness;
 pub mod space_dilation;
 pub mod start;
 pub mod termination;
@@ -33,13 +36,14 @@ use checkpoint::Snapshot;
 use fitting::Fitting;
 pub use history::{HistoryPoint, Phase, Run};
 pub use options::{FitOptions, Method, Regularisation, Trainer};
+pub(crate) use shared_observer::SharedObserver;
 pub use termination::Termination;
 
 /// Fewest rows with an output that a model is identified from.
 pub const FEWEST_ROWS: usize = 10;
 
-/// Where a fit is, told to the observer after every epoch, and now and then in the midst of a fit without
-/// epochs.
+/// Where a fit is, told to the observer after every epoch, and now and then in between: the same once more, without
+/// a checkpoint, so that it may say stop.
 #[derive(Debug, Clone)]
 pub struct Progress<'a> {
     /// The model that is being fitted.
@@ -57,8 +61,7 @@ pub struct Progress<'a> {
     pub epoch: usize,
     /// Evaluations of the objective by this start in this phase, gradients included.
     pub evaluations: usize,
-    /// Error on the training rows, in percent of the output's standard deviation; NaN in the midst of a fit
-    /// that has no rounds.
+    /// Error on the training rows, in percent of the output's standard deviation; NaN while there is none.
     pub train_nrmse_percent: f64,
     /// Share of the work done, 0 to 1, if every start takes all its epochs.
     pub done: f64,
@@ -75,6 +78,27 @@ impl Progress<'_> {
     /// The same without the state, of a fit that is only a part of the work.
     pub(crate) fn of_part(&self, done: f64) -> Progress<'static> {
         Progress { done, is_part: true, snapshot: None, ..self.clone() }
+    }
+
+    /// The same without the state.
+    pub(crate) fn without_state(&self) -> Progress<'static> {
+        Progress { snapshot: None, ..self.clone() }
+    }
+
+    /// Of a network's fit before its first epoch.
+    pub(crate) fn of_beginning(options: &FitOptions) -> Self {
+        Self {
+            model: ModelName::Network(options.model),
+            is_part: false,
+            phase: Phase::AllData,
+            method: options.training.plan(options.epochs)[0].0,
+            start: 0,
+            epoch: 0,
+            evaluations: 0,
+            train_nrmse_percent: f64::NAN,
+            done: 0.0,
+            snapshot: None,
+        }
     }
 
     /// Of a model's fit that has no rounds.
@@ -116,11 +140,12 @@ pub struct Fit {
 /// Identifies a network.
 ///
 /// `observer` is told of every epoch and may stop the fit by breaking: the best model so far is then
-/// returned, with [`Termination::Stopped`]. The result depends on data, options and seed only, not on
+/// returned, with [`Termination::Stopped`]. It is also asked in the midst of long epochs, so that it is obeyed
+/// soon; what such an epoch has not finished is thrown away. The result depends on data, options and seed only, not on
 /// the number of threads.
 ///
 /// # Errors
-/// Data that nothing can be identified from, or options outside their meaning.
+/// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
@@ -130,9 +155,9 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 /// to without the interruption.
 ///
 /// # Errors
-/// A checkpoint of other data.
+/// A checkpoint of other data, or one that contradicts itself.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
     let (options, state) = checkpoint.for_data(data)?;
     let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
-    Fitting::new(data, &seen, options)?.from(state).run(observer)
+    Fitting::new(data, &seen, options)?.from(state)?.run(observer)
 }

@@ -54,59 +54,98 @@ const BLOCKS: [(f64, f64); 2] = [(0.0, 0.35), (0.35, 0.65)];
 /// The folds of a data set: of several records at most `most`, of a single one always five. None if the
 /// data are too few.
 pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
-    let folds = match measurements(data.records()).as_slice() {
-        [alone] => of_record(data, &data.records()[alone[0]]),
+    cuts(data, most).iter().map(|cut| cut.fold(data)).collect()
+}
+
+/// Where data are cut into a fold: a fold is a copy of the data, and a thousand of them would be too many to keep.
+#[derive(Debug, Clone)]
+enum Cut {
+    /// These records are held out.
+    Records(Vec<usize>),
+    /// What follows these rows of a single record is judged, up to an end; shares of the rows, in percent.
+    Forecast { record: usize, begin: usize, end: usize, percent: (f64, f64) },
+    /// A block of rows of a single record.
+    Block { record: usize, begin: usize, end: usize, percent: (f64, f64) },
+}
+
+impl Cut {
+    fn fold(&self, data: &Dataset) -> Fold {
+        match self {
+            Self::Records(held) => {
+                let (held_out, train) = data.partition(|index| held.binary_search(&index).is_ok());
+                let names: Vec<&str> = held_out.records().iter().map(Record::name).collect();
+                Fold { name: names.join(", "), train, held_out }
+            }
+            &Self::Forecast { record, begin, end, percent: (from, to) } => Fold {
+                name: format!("{from} to {to} %, from what came before"),
+                train: data.of_record(data.records()[record].rows_up_to(begin)),
+                held_out: data
+                    .of_record(data.records()[record].rows_up_to(end).scored_where(|row| row >= begin)),
+            },
+            &Self::Block { record, begin, end, percent: (from, to) } => Fold {
+                name: format!("{from} to {to} %, from the rest"),
+                train: data
+                    .of_record(data.records()[record].clone().scored_where(|row| row < begin || row >= end)),
+                held_out: data
+                    .of_record(data.records()[record].rows_up_to(end).scored_where(|row| row >= begin)),
+            },
+        }
+    }
+}
+
+/// The cuts whose folds have enough to fit to and to judge on.
+fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
+    let cuts = match measurements(data.records()).as_slice() {
+        [alone] => of_record(alone[0], &data.records()[alone[0]]),
         several => of_records(data, several, most),
     };
-    let is_enough =
-        |fold: &Fold| fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0;
-    folds.into_iter().filter(is_enough).collect()
+    let is_enough = |cut: &Cut| {
+        let fold = cut.fold(data);
+        fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
+    };
+    cuts.into_iter().filter(is_enough).collect()
 }
 
 /// Measurements with an output are dealt out in their order; copies stay together.
-fn of_records(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Fold> {
+fn of_records(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Cut> {
     let is_scored = |records: &&Vec<usize>| data.records()[records[0]].scored() > 0;
     let scored: Vec<&Vec<usize>> = measurements.iter().filter(is_scored).collect();
     let count = scored.len().min(most);
     if count < 2 {
         return Vec::new();
     }
-    let fold = |fold: usize| {
-        let held: Vec<usize> =
-            scored.iter().skip(fold).step_by(count).flat_map(|records| (*records).clone()).collect();
-        let (held_out, train) = data.partition(|index| held.contains(&index));
-        let names: Vec<&str> = held_out.records().iter().map(Record::name).collect();
-        Fold { name: names.join(", "), train, held_out }
+    let cut = |fold: usize| {
+        let records = scored.iter().skip(fold).step_by(count).flat_map(|records| (*records).clone());
+        let mut held: Vec<usize> = records.collect();
+        held.sort_unstable();
+        Cut::Records(held)
     };
-    (0..count).map(fold).collect()
+    (0..count).map(cut).collect()
 }
 
-fn of_record(data: &Dataset, record: &Record) -> Vec<Fold> {
+/// A single measurement is cut in time: the record at this place.
+fn of_record(place: usize, record: &Record) -> Vec<Cut> {
     let scored: Vec<usize> = (0..record.len()).filter(|&row| !record.output()[row].is_nan()).collect();
-    let row = |share: f64| {
-        let place = (share * scored.len() as f64).round() as usize;
-        scored.get(place).copied().unwrap_or(record.len())
-    };
-    let percent = |share: f64| (100.0 * share).round();
-    let forecast = |&(fitted, judged): &(f64, f64)| {
-        let (begin, end) = (row(fitted), row(fitted + judged));
-        Fold {
-            name: format!("{} to {} %, from what came before", percent(fitted), percent(fitted + judged)),
-            train: data.of_record(record.rows_up_to(begin)),
-            held_out: data.of_record(record.rows_up_to(end).scored_where(|row| row >= begin)),
-        }
-    };
-    let block = |&(from, to): &(f64, f64)| {
-        let (begin, end) = (row(from), row(to));
-        Fold {
-            name: format!("{} to {} %, from the rest", percent(from), percent(to)),
-            train: data.of_record(record.clone().scored_where(|row| row < begin || row >= end)),
-            held_out: data.of_record(record.rows_up_to(end).scored_where(|row| row >= begin)),
-        }
-    };
     if scored.len() < 4 * FEWEST_ROWS {
         return Vec::new();
     }
+    let row = |share: f64| {
+        let from = (share * scored.len() as f64).round() as usize;
+        scored.get(from).copied().unwrap_or(record.len())
+    };
+    let percent = |from: f64, to: f64| ((100.0 * from).round(), (100.0 * to).round());
+    let forecast = |&(fitted, judged): &(f64, f64)| Cut::Forecast {
+        record: place,
+        begin: row(fitted),
+        end: row(fitted + judged),
+        percent: percent(fitted, fitted + judged),
+    };
+    let block = |&(from, to): &(f64, f64)| Cut::Block {
+        record: place,
+        begin: row(from),
+        end: row(to),
+        percent: percent(from, to),
+    };
     FORECASTS.iter().map(forecast).chain(BLOCKS.iter().map(block)).collect()
 }
 
@@ -136,41 +175,49 @@ pub struct CrossValidation {
 
 /// A cross-validation on its way, for those who fit the folds themselves: with a time limit each, say.
 #[derive(Debug, Clone)]
-pub struct CrossValidator {
-    folds: Vec<Fold>,
+pub struct CrossValidator<'d> {
+    data: &'d Dataset,
+    cuts: Vec<Cut>,
     output: String,
     judged: Vec<FoldErrors>,
     pooled: PooledErrors,
 }
 
-impl CrossValidator {
+impl<'d> CrossValidator<'d> {
     /// Cuts the data into folds, as [`folds`].
     ///
     /// # Errors
     /// Data too few for two folds.
-    pub fn new(data: &Dataset, most_folds: usize) -> Result<Self> {
-        let folds = folds(data, most_folds);
-        if folds.len() < 2 {
+    pub fn new(data: &'d Dataset, most_folds: usize) -> Result<Self> {
+        let cuts = cuts(data, most_folds);
+        if cuts.len() < 2 {
             return Err(Error::Option(format!(
                 "the data are too few to hold any out: at least two records, or one of {} rows",
                 4 * FEWEST_ROWS
             )));
         }
         let output = data.names().output.clone();
-        Ok(Self { folds, output, judged: Vec::new(), pooled: PooledErrors::default() })
+        Ok(Self { data, cuts, output, judged: Vec::new(), pooled: PooledErrors::default() })
     }
 
-    /// The folds.
-    pub fn folds(&self) -> &[Fold] {
-        &self.folds
+    /// Number of folds.
+    pub fn folds(&self) -> usize {
+        self.cuts.len()
+    }
+
+    /// A fold, counted from 0: a copy of the data.
+    ///
+    /// # Panics
+    /// If there are not so many folds.
+    pub fn fold(&self, place: usize) -> Fold {
+        self.cuts[place].fold(self.data)
     }
 
     /// Judges a model that was fitted to a fold's training part on what was held out.
     ///
     /// # Errors
     /// As [`Model::simulate`].
-    pub fn judge(&mut self, fold: usize, model: &Model) -> Result<FoldErrors> {
-        let fold = &self.folds[fold];
+    pub fn judge(&mut self, fold: &Fold, model: &Model) -> Result<FoldErrors> {
         let unseen = model.evaluate(&fold.held_out)?;
         self.pooled.add(&fold.held_out, &fold.predicted_by(model)?);
         let train = model.provenance().train.clone();
@@ -202,8 +249,9 @@ pub fn cross_validate(
     observer: &mut Observer<'_>,
 ) -> Result<CrossValidation> {
     let mut validator = CrossValidator::new(data, most_folds)?;
-    let count = validator.folds().len();
+    let count = validator.folds();
     for place in 0..count {
+        let fold = validator.fold(place);
         let mut stopped = false;
         let mut of_fold = |progress: &Progress| {
             let share = (place as f64 + progress.done) / count as f64;
@@ -211,8 +259,10 @@ pub fn cross_validate(
             stopped = flow.is_break();
             flow
         };
-        let model = identify(&validator.folds()[place].train, request, &mut of_fold)?.model;
-        validator.judge(place, &model)?;
+        match identify(&fold.train, request, &mut of_fold) {
+            Err(Error::Stopped) if place > 0 => break,
+            fitted => validator.judge(&fold, &fitted?.model)?,
+        };
         if stopped {
             break;
         }

@@ -162,6 +162,39 @@ fn the_stall_rule_ends_a_phase_early() {
     assert_eq!((run.termination, run.history.last().unwrap().epoch), (Termination::EpochsUsed, 60));
 }
 
+/// A checkpoint with its checksum right and another number in the place of one of its own.
+fn with_number(bytes: &[u8], key: &str, value: f64) -> Checkpoint {
+    let magic = bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let mut content = bytes[magic + 4..].to_vec();
+    // MessagePack: a text of up to 31 bytes, then a number of eight bytes.
+    let text = [&[0xa0 | key.len() as u8], key.as_bytes(), &[0xcb]].concat();
+    let at = content.windows(text.len()).position(|window| window == text).expect("the key") + text.len();
+    content[at..at + 8].copy_from_slice(&value.to_be_bytes());
+    let sum = crc32fast::hash(&content).to_le_bytes();
+    Checkpoint::from_bytes(&[&bytes[..magic], &sum, &content].concat()).unwrap()
+}
+
+/// They panicked, or went on for ever.
+#[test]
+fn contradictory_checkpoints_are_refused() {
+    let keys: [(Trainer, &[&str]); 3] = [
+        (Trainer::LevenbergMarquardt, &["mu", "growth", "objective", "mean_square"]),
+        (Trainer::Genetic, &["cost", "objective"]),
+        (Trainer::Subgradient, &["step", "value", "last_move", "coefficient"]),
+    ];
+    for (training, keys) in keys {
+        let checkpoint = cut_at(3, |observer| {
+            let _ = fit(&data(), &options(training, 1), observer).unwrap();
+        });
+        let bytes = checkpoint.to_bytes();
+        for key in keys {
+            let wrong = with_number(&bytes, key, f64::NAN);
+            let error = resume(&data(), wrong, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
+            assert!(error.contains("contradicts itself") && error.contains("anew"), "{key}: {error}");
+        }
+    }
+}
+
 #[test]
 fn damaged_checkpoints_and_other_data_are_refused() {
     let checkpoint = cut_at(4, |observer| {

@@ -68,11 +68,16 @@ fn refusal(text: &str) -> String {
 }
 
 /// The text with its checksum made to fit again, as the file module describes it: CRC 32 of all
-/// before the key, without white space.
+/// before the key, without the white space between its parts.
 fn with_fitting_checksum(text: &str) -> String {
     let end = text.rfind("\"checksum\"").unwrap();
-    let content: Vec<u8> = text[..end].bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
-    format!("{}\"checksum\": \"{:08x}\"\n}}\n", &text[..end], crc32fast::hash(&content))
+    // No text of these files has a quotation mark within.
+    let parts = text[..end].split('"').enumerate().map(|(place, part)| match place % 2 {
+        0 => part.split_ascii_whitespace().collect(),
+        _ => part.to_string(),
+    });
+    let content = parts.collect::<Vec<String>>().join("\"");
+    format!("{}\"checksum\": \"{:08x}\"\n}}\n", &text[..end], crc32fast::hash(content.as_bytes()))
 }
 
 #[test]
@@ -135,6 +140,52 @@ fn an_edited_number_is_noticed() {
     assert!(refusal(&edited).contains("checksum does not match"));
     let forced = Model::from_json(&with_fitting_checksum(&edited)).unwrap();
     assert_ne!(forced, *FULL);
+}
+
+/// A blank in a name is part of the name.
+#[test]
+fn a_blank_within_a_text_is_noticed() {
+    let text = FULL.to_json();
+    for (name, with_blank) in
+        [("\"output\": \"y\"", "\"output\": \"y \""), ("\"hysid-model\"", "\"hysid-model\" ")]
+    {
+        let changed = text.replacen(name, with_blank, 1);
+        assert_ne!(changed, text);
+        match with_blank.ends_with(' ') {
+            true => assert_eq!(Model::from_json(&changed).unwrap(), *FULL),
+            false => assert!(refusal(&changed).contains("checksum does not match")),
+        }
+    }
+}
+
+/// Factors that no fit finds: the outputs would be infinite, or none.
+#[test]
+fn scales_that_nothing_can_be_divided_by_are_refused() {
+    let text = FULL.to_json();
+    let with = |part: &str, field: &str, value: &str| {
+        let begin = text.find(&format!("\"{part}\"")).unwrap();
+        let field = format!("\"{field}\": ");
+        let at = begin + text[begin..].find(&field).unwrap() + field.len();
+        let at = at + text[at..].find(|c: char| c.is_ascii_digit() || c == '-').unwrap();
+        let end = at + text[at..].find([',', '\n', ']']).unwrap();
+        let mut changed = text.clone();
+        changed.replace_range(at..end, value);
+        with_fitting_checksum(&changed)
+    };
+    for field in ["inputs", "rate", "output_deviation"] {
+        for value in ["0.0", "-1.0", "1e308", "5e-324"] {
+            let said = refusal(&with("scaling", field, value));
+            assert!(said.contains("its scaling has the factor"), "{field} {value}: {said}");
+        }
+    }
+    assert!(refusal(&with("scaling", "output_mean", "1e308")).contains("mean output"));
+    assert!(refusal(&with("trained_ranges", "inputs", "1e9")).contains("range"));
+    let preprocessing = text.replacen(
+        "\"trained_ranges\"",
+        "\"preprocessing\": {\"companding\": 5e-324, \"rate_companding\": null, \"history\": null}, \"trained_ranges\"",
+        1,
+    );
+    assert!(refusal(&with_fitting_checksum(&preprocessing)).contains("preprocessing has a scale"));
 }
 
 #[test]

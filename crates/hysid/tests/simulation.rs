@@ -170,6 +170,42 @@ fn errors_in_blocks_are_those_of_the_whole_to_the_last_bit() {
     assert_eq!(parts.errors("y"), whole.errors("y"));
 }
 
+/// Numbers that only a stepper can be given: records refuse them.
+#[test]
+fn a_step_is_finite_for_any_finite_input_and_rate() {
+    let rate = Some(RateMethod::Backward);
+    for model in ModelName::all() {
+        let rate = rate.filter(|_| model.uses_rate());
+        let model = fitted(vec![record(150, "r")], &small(model, rate));
+        let mut stepper = model.stepper();
+        for (k, x) in [0.1, 1.7e308, -1.7e308, 0.0, f64::MAX, 5e-324, 0.3].into_iter().enumerate() {
+            let given = [None, Some(1.7e308), Some(-1e300)][k % 3];
+            let y = stepper.step(&[x], k as f64, given).unwrap();
+            assert!(y.is_finite(), "{}: {y} at {x}, rate {given:?}", model.name().name());
+        }
+    }
+}
+
+/// A member that refuses a sample does so before another has taken it.
+#[test]
+fn a_sample_that_is_refused_changes_nothing() {
+    let options = serde_json::json!({ "model": "xpnn+", "members": 3, "stops": 3, "hidden": 2, "epochs": 2, "history": true });
+    let serde_json::Value::Object(options) = options else { panic!("a map") };
+    let request = ChosenOptions::of(options).unwrap().request(Some(RateMethod::Backward), false);
+    let model = fitted(vec![record(150, "r")], &request);
+    let mut stepper = model.stepper();
+    stepper.step(&[0.1], 0.0, None).unwrap();
+    let mut untouched = stepper.clone();
+    // The backward rate is infinite.
+    assert!(stepper.step(&[1e300], 5e-324, None).is_err());
+    assert!(stepper.step(&[f64::NAN], 1.0, None).is_err());
+    for k in 1..4 {
+        let next =
+            |stepper: &mut hysid::model::Stepper<'_>| stepper.step(&[0.2], f64::from(k), None).unwrap();
+        assert_eq!(next(&mut stepper).to_bits(), next(&mut untouched).to_bits());
+    }
+}
+
 #[test]
 fn defects_name_their_row_in_the_record() {
     let model =

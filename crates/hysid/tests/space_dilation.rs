@@ -66,6 +66,22 @@ fn ramp(n: usize) -> Vec<f64> {
     (1..=n).map(|i| i as f64).collect()
 }
 
+/// It was asked the value at what is no point, and a network's least squares did not end there.
+#[test]
+fn a_function_is_only_asked_at_points() {
+    let mut largest: f64 = 0.0;
+    let mut falling = |x: &[f64], g: &mut [f64]| {
+        assert!(x.iter().all(|x| x.is_finite()), "{x:?}");
+        largest = largest.max(x[0].abs());
+        g[0] = -1.0;
+        -1e-200 * x[0]
+    };
+    let options = DilationOptions { first_step: 1e100, growth: 10.0, ..DilationOptions::default() };
+    let limits = Limits { iterations: 20, ..Limits::default() };
+    minimise(&mut falling, vec![0.0], options, limits).unwrap();
+    assert!(largest > 1e300, "{largest}: the steps did not grow so far");
+}
+
 #[test]
 fn a_quadratic_of_condition_one_million() {
     // theory.md section 3: an independent implementation took 356 iterations with these settings.

@@ -13,7 +13,7 @@ use crate::arguments::Validate;
 use crate::columns::Roles;
 use crate::commands::fit::{request, warn_of_useless};
 use crate::data::{Data, read_tables};
-use crate::identification::{say_beforehand, thread_pool};
+use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
 use crate::lines::{WIDTH, aligned, wrapped};
 use crate::messages::{json_results, note, results};
@@ -46,12 +46,21 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     say_beforehand(&data, &request, "stopping; the folds that are done are told")?;
 
     let pool = thread_pool(arguments.threads)?;
+    check_memory(&data.set, &request, pool.current_num_threads()).map_err(|error| data.explain(error))?;
     let mut follower = Follower::new(request.starts(), arguments.time_limit, None);
-    let (all, mut stopped) = (validator.folds().len(), 0);
-    for fold in 0..all {
-        follower.begin_fold(fold, all);
+    let (all, mut stopped) = (validator.folds(), 0);
+    for place in 0..all {
+        follower.begin_fold(place, all);
+        let fold = validator.fold(place);
         let mut observer = |progress: &Progress| follower.observe(progress);
-        let fitted = pool.install(|| identify(&validator.folds()[fold].train, &request, &mut observer));
+        let fitted = pool.install(|| identify(&fold.train, &request, &mut observer));
+        if matches!(fitted, Err(hysid::Error::Stopped)) {
+            if interrupt::requested() {
+                break;
+            }
+            follower.say(&format!("fold {} of {all}: no time for a first model", place + 1));
+            continue;
+        }
         let model = fitted.map_err(|error| data.explain(error))?.model;
         if is_stopped(&model) {
             if interrupt::requested() {
@@ -59,14 +68,17 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
             }
             stopped += 1;
         }
-        let errors = validator.judge(fold, &model).map_err(|error| data.explain(error))?;
-        follower.say(&format!("fold {} of {all}: {} % of std unseen", fold + 1, percent(&errors.unseen)));
+        let errors = validator.judge(&fold, &model).map_err(|error| data.explain(error))?;
+        follower.say(&format!("fold {} of {all}: {} % of std unseen", place + 1, percent(&errors.unseen)));
         if interrupt::requested() {
             break;
         }
     }
     let seconds = follower.finish();
     let Some(errors) = validator.result() else {
+        if !interrupt::requested() {
+            return Err(hysid::Error::Stopped.into());
+        }
         note(format_args!("interrupted before the first fold was done"));
         return Ok(Outcome::Interrupted);
     };

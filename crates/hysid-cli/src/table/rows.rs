@@ -169,8 +169,11 @@ impl<R: Read> Rows<R> {
         let ends = &self.ends[..self.cells];
         let raw = &self.buffer[self.start..self.start + self.parsed];
         match std::str::from_utf8(&self.text[..ends.last().copied().unwrap_or(0)]) {
-            Ok(text) => Ok(Row { line: self.lines.line_of(raw), text, ends }),
-            Err(_) => {
+            // The end of one cell and the beginning of the next may make a letter that neither has.
+            Ok(text) if ends.iter().all(|&end| text.is_char_boundary(end)) => {
+                Ok(Row { line: self.lines.line_of(raw), text, ends })
+            }
+            _ => {
                 let valid = std::str::from_utf8(raw).map_or_else(|error| error.valid_up_to(), str::len);
                 let mut lines = self.lines;
                 lines.pass(&raw[..valid]);

@@ -255,6 +255,7 @@ impl Law for BoucWen {
     }
 
     fn step(&self, state: &mut BoucWenState, sample: Sample) -> f64 {
+        let sample = sample.limited();
         let z = self.advance(state, sample.x);
         self.offset
             + self.elastic_stiffness * sample.x

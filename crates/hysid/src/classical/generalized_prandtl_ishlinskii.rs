@@ -122,6 +122,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
     }
 
     fn step(&self, state: &mut Vec<f64>, sample: Sample) -> f64 {
+        let sample = sample.limited();
         let (left, right) = (self.left.value(sample.x), self.right.value(sample.x));
         let mut y = self.offset;
         let mut r = 0.0;

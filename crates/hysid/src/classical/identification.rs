@@ -8,7 +8,7 @@ use crate::classical::generalized_prandtl_ishlinskii::{
     GeneralizedPrandtlIshlinskii, GeneralizedPrandtlIshlinskiiOptions,
 };
 use crate::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm, JilesAthertonOptions};
-use crate::classical::linear_fit::{Sign, StopCheck};
+use crate::classical::linear_fit::Sign;
 use crate::classical::masing::{Masing, MasingOptions};
 use crate::classical::modified_prandtl_ishlinskii::{
     ModifiedPrandtlIshlinskii, ModifiedPrandtlIshlinskiiOptions,
@@ -24,6 +24,7 @@ use crate::error::{Error, Result};
 use crate::preprocessing::{Origin, Shaping};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::Termination;
 
 /// The models that are no networks of the family.
@@ -200,7 +201,7 @@ pub(crate) fn fit(
     data: &Dataset,
     options: &ClassicalOptions,
     observer: &mut SearchObserver<'_>,
-    stop: &StopCheck<'_>,
+    stop: StopCheck<'_>,
 ) -> Result<Identified<Classical>> {
     let ClassicalOptions { operators, sign, free_weights, rate, starts, epochs, seed, .. } = *options;
     Ok(match options.model {
@@ -208,13 +209,14 @@ pub(crate) fn fit(
             let defaults = PrandtlIshlinskiiOptions::default();
             let operators = operators.unwrap_or(defaults.operators);
             let thresholds = options.thresholds.clone();
-            convex(PrandtlIshlinskii::fit(data, &PrandtlIshlinskiiOptions { operators, thresholds, sign })?)
+            let options = PrandtlIshlinskiiOptions { operators, thresholds, sign };
+            convex(PrandtlIshlinskii::fit_until(data, &options, stop)?)
         }
         Rival::Masing => {
             let defaults = MasingOptions::default();
             let operators = operators.unwrap_or(defaults.operators);
             let thresholds = options.thresholds.clone();
-            convex(Masing::fit(data, &MasingOptions { operators, thresholds, sign })?)
+            convex(Masing::fit_until(data, &MasingOptions { operators, thresholds, sign }, stop)?)
         }
         Rival::ModifiedPrandtlIshlinskii => {
             let defaults = ModifiedPrandtlIshlinskiiOptions::default();
@@ -240,7 +242,7 @@ pub(crate) fn fit(
                 epochs: epochs.unwrap_or(defaults.epochs),
                 seed,
             };
-            searched(GeneralizedPrandtlIshlinskii::fit(data, &options, observer)?)
+            searched(GeneralizedPrandtlIshlinskii::fit_until(data, &options, observer, stop)?)
         }
         Rival::RateDependentPrandtlIshlinskii => {
             let defaults = RateDependentPrandtlIshlinskiiOptions::default();
@@ -263,7 +265,7 @@ pub(crate) fn fit(
                 epochs: epochs.unwrap_or(defaults.epochs),
                 seed,
             };
-            searched(RateDependentPrandtlIshlinskii::fit(data, &options, observer)?)
+            searched(RateDependentPrandtlIshlinskii::fit_until(data, &options, observer, stop)?)
         }
         Rival::NeuroMadelung => {
             let defaults = NeuroMadelungOptions::default();
@@ -274,7 +276,7 @@ pub(crate) fn fit(
                 epochs: epochs.unwrap_or(defaults.epochs),
                 seed,
             };
-            searched(NeuroMadelung::fit(data, &options, observer)?)
+            searched(NeuroMadelung::fit_until(data, &options, observer, stop)?)
         }
         Rival::BoucWen => {
             let defaults = BoucWenOptions::default();
@@ -285,7 +287,7 @@ pub(crate) fn fit(
                 epochs: epochs.unwrap_or(defaults.epochs),
                 seed,
             };
-            searched(BoucWen::fit(data, &options, observer)?)
+            searched(BoucWen::fit_until(data, &options, observer, stop)?)
         }
         Rival::JilesAtherton => {
             let defaults = JilesAthertonOptions::default();
@@ -299,7 +301,7 @@ pub(crate) fn fit(
                 epochs: epochs.unwrap_or(defaults.epochs),
                 seed,
             };
-            searched(JilesAtherton::fit(data, &options, observer)?)
+            searched(JilesAtherton::fit_until(data, &options, observer, stop)?)
         }
         Rival::RandomStops => {
             return Err(Error::Option("random-stops is a network and not fitted as a law".into()));

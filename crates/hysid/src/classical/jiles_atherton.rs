@@ -101,6 +101,14 @@ impl JilesAtherton {
         self.coupling / self.saturation
     }
 
+    /// Elementary operations, roughly, that [`Self::advance`] takes.
+    fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
+        let end = SATURATED * (self.a + self.k + self.coupling);
+        let travel = (h - state.h).abs().min(2.0 * end);
+        let parts = (travel / (LONGEST_PART * self.a.min(self.k))).min(MOST_PARTS);
+        20 + 200 * parts as usize
+    }
+
     /// Takes the next field and gives `M/M_s`.
     fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
         let direction = (h - state.h).signum();
@@ -168,6 +176,7 @@ impl Law for JilesAtherton {
     }
 
     fn step(&self, state: &mut JilesAthertonState, sample: Sample) -> f64 {
+        let sample = sample.limited();
         let m = self.advance(state, sample.x);
         self.offset + self.permeability * sample.x + self.saturation * m
     }

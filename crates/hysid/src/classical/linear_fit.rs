@@ -15,9 +15,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::classical::series::Series;
-use crate::error::{DataProblem, Result};
+use crate::error::{DataProblem, Error, Result};
 use crate::linear_algebra::{Batch, Gram, Symmetric};
 use crate::record::Dataset;
+use crate::stop_check::{Pace, StopCheck};
 use crate::training::FEWEST_ROWS;
 
 /// Blocks that the rows are cut into for cross-validation.
@@ -31,10 +32,6 @@ const SLACK: f64 = 0.03;
 
 /// Rows that are copied into a batch together: a cache line.
 const LINE: usize = 8;
-
-/// Asked now and then in the midst of a fit that has no rounds to tell of: true once it should end soon, with
-/// the best it has.
-pub(crate) type StopCheck<'a> = dyn Fn() -> bool + Sync + 'a;
 
 /// Series of a data set with one input, all that a classical model can be fitted to.
 ///
@@ -98,6 +95,12 @@ impl Folds {
         Self { of_rows, count: FOLDS, judged: (0..FOLDS).collect() }
     }
 
+    /// All rows together, for sums that nothing is held out of.
+    pub fn none(series: &[Series]) -> Self {
+        let of_rows = series.iter().map(|series| vec![0; series.samples.len()]).collect();
+        Self { of_rows, count: 1, judged: vec![0] }
+    }
+
     /// Folds for series.
     pub fn of_series(series: &[Series]) -> Self {
         let inputs = |series: &Series| series.samples.iter().map(|sample| sample.x).collect();
@@ -147,6 +150,11 @@ impl Sums {
         }
     }
 
+    /// The same, without keeping the sums beside it.
+    pub fn into_quadratic(self) -> Quadratic {
+        self.quadratic()
+    }
+
     fn add_multiple(&mut self, other: &Sums, factor: f64, rows: usize) {
         self.gram.add_multiple(&other.gram, factor);
         self.rows = rows;
@@ -167,10 +175,16 @@ impl FoldSums {
 
     /// Sums of all rows.
     pub fn total(&self) -> Sums {
-        let mut total = self.folds[0].clone();
-        for fold in &self.folds[1..] {
+        self.clone().into_total()
+    }
+
+    /// Sums of all rows, without a copy.
+    pub fn into_total(self) -> Sums {
+        let mut folds = self.folds.into_iter();
+        let mut total = folds.next().expect("there is at least one fold");
+        for fold in folds {
             let rows = total.rows + fold.rows;
-            total.add_multiple(fold, 1.0, rows);
+            total.add_multiple(&fold, 1.0, rows);
         }
         total
     }
@@ -179,32 +193,32 @@ impl FoldSums {
     /// when trained on the others. `solve` gives the weights of all candidates for some sums, in order,
     /// so that each may start from the one before.
     ///
-    /// The logarithm keeps one fold that lies beyond the others from deciding everything. Asked to stop, the
-    /// first fold decides, and those that were under way.
+    /// The logarithm keeps one fold that lies beyond the others from deciding everything. Asked to stop, those
+    /// folds decide that were done; `None` if there is none.
     pub fn scores(
         &self,
-        solve: impl Fn(&Quadratic) -> Vec<Vec<f64>> + Sync,
-        stop: &StopCheck<'_>,
-    ) -> Vec<f64> {
+        solve: impl Fn(&Quadratic) -> Option<Vec<Vec<f64>>> + Sync,
+        stop: StopCheck<'_>,
+    ) -> Option<Vec<f64>> {
         let total = self.total();
         let judged = self.judged.iter().map(|&fold| &self.folds[fold]);
         let held_out: Vec<&Sums> = judged.filter(|fold| fold.rows > 0).collect();
-        let judge = |(place, fold): (usize, &&Sums)| -> Option<Vec<f64>> {
-            if place > 0 && stop() {
+        let judge = |fold: &&Sums| -> Option<Vec<f64>> {
+            if stop.is_asked() {
                 return None;
             }
             let mut rest = total.clone();
             rest.add_multiple(fold, -1.0, total.rows - fold.rows);
-            let candidates = solve(&rest.quadratic());
+            let candidates = solve(&rest.quadratic())?;
             Some(candidates.iter().map(|weights| fold.mean_square_error(weights).ln()).collect())
         };
-        let by_fold: Vec<Option<Vec<f64>>> = held_out.par_iter().enumerate().map(judge).collect();
+        let by_fold: Vec<Option<Vec<f64>>> = held_out.par_iter().map(judge).collect();
         let by_fold: Vec<Vec<f64>> = by_fold.into_iter().flatten().collect();
-        let mut mean = vec![0.0; by_fold[0].len()];
+        let mut mean = vec![0.0; by_fold.first()?.len()];
         for scores in &by_fold {
             mean.iter_mut().zip(scores).for_each(|(mean, score)| *mean += score / by_fold.len() as f64);
         }
-        mean
+        Some(mean)
     }
 }
 
@@ -221,23 +235,28 @@ pub(crate) struct Choice {
 
 impl FoldSums {
     /// Chooses sign (one of all, if none is given) and factor of the penalty; weights of `reversible` are
-    /// bounded as those of [`Bounds::new`].
+    /// bounded as those of [`Bounds::new`]. Asked to stop before anything was compared, it is a factor in the
+    /// middle and the first of the signs.
     pub fn choose(
         &self,
         penalty: &Penalty,
         factors: &[f64],
         sign: Option<Sign>,
         reversible: &Range<usize>,
-        stop: &StopCheck<'_>,
+        stop: StopCheck<'_>,
     ) -> Choice {
         let features = self.folds[0].features;
         let signs = sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
         for &sign in &signs {
             let bounds = Bounds::new(sign, reversible.clone(), features);
-            let scores = self.scores(|rest| rest.path(penalty, factors, &bounds), stop);
+            let path = |rest: &Quadratic| rest.path(penalty, factors, &bounds, stop);
+            let Some(scores) = self.scores(path, stop) else { break };
             let choices = scores.iter().zip(factors);
             candidates.extend(choices.map(|(&score, &factor)| Choice { score, factor, sign }));
+        }
+        if candidates.is_empty() {
+            return Choice { score: f64::INFINITY, factor: factors[factors.len() / 2], sign: signs[0] };
         }
         let scores: Vec<f64> = candidates.iter().map(|choice| choice.score).collect();
         candidates[lowest(&scores)]
@@ -251,7 +270,8 @@ pub(crate) fn lowest(scores: &[f64]) -> usize {
 }
 
 /// Gathers rows of features, fold by fold.
-pub(crate) struct Gatherer {
+pub(crate) struct Gatherer<'a> {
+    pace: Pace<'a>,
     folds: Vec<Sums>,
     judged: Vec<usize>,
     batch: Batch,
@@ -260,9 +280,10 @@ pub(crate) struct Gatherer {
     fold: usize,
 }
 
-impl Gatherer {
-    pub fn new(features: usize, folds: &Folds) -> Self {
+impl<'a> Gatherer<'a> {
+    pub fn new(features: usize, folds: &Folds, stop: StopCheck<'a>) -> Self {
         Self {
+            pace: Pace::new(stop),
             folds: vec![Sums::new(Gram::new(features + 1), features, 0); folds.count],
             judged: folds.judged.clone(),
             batch: Batch::new(features + 1),
@@ -270,6 +291,11 @@ impl Gatherer {
             filled: 0,
             fold: 0,
         }
+    }
+
+    /// Counts the operations of one more row; true once asked to stop.
+    pub fn is_over(&mut self, operations: usize) -> bool {
+        self.pace.is_over(operations)
     }
 
     /// Adds a row, unless its target is blank.
@@ -291,7 +317,7 @@ impl Gatherer {
             self.batch.append(&self.lines, LINE);
             self.filled = 0;
             if self.batch.free() < LINE {
-                self.folds[fold].gram.gather(&mut self.batch);
+                self.folds[fold].gram.gather(&mut self.batch, &mut self.pace);
             }
         }
     }
@@ -299,12 +325,17 @@ impl Gatherer {
     fn flush(&mut self) {
         self.batch.append(&self.lines, self.filled);
         self.filled = 0;
-        self.folds[self.fold].gram.gather(&mut self.batch);
+        self.folds[self.fold].gram.gather(&mut self.batch, &mut self.pace);
     }
 
-    pub fn finish(mut self) -> FoldSums {
+    /// # Errors
+    /// A stop before all rows were gathered.
+    pub fn finish(mut self) -> Result<FoldSums> {
         self.flush();
-        FoldSums { folds: self.folds, judged: self.judged }
+        if self.pace.is_over(0) {
+            return Err(Error::Stopped);
+        }
+        Ok(FoldSums { folds: self.folds, judged: self.judged })
     }
 }
 
@@ -373,36 +404,52 @@ impl Quadratic {
         }
     }
 
-    /// The minimum. Where rounding makes the matrix indefinite, a ridge is added until it is not.
-    pub fn minimum(&self) -> Vec<f64> {
-        minimum(&self.matrix, self.right.clone())
+    /// The minimum; `None` once asked to stop. Where rounding makes the matrix indefinite, a ridge is added
+    /// until it is not.
+    pub fn minimum(&self, stop: StopCheck<'_>) -> Option<Vec<f64>> {
+        minimum(&self.matrix, self.right.clone(), stop)
     }
 
-    /// The minimum within bounds, from a guess near it (or none: an empty one).
-    pub fn minimum_within(mut self, bounds: &Bounds, guess: &[f64]) -> Vec<f64> {
+    /// The minimum within bounds, from a guess near it (or none: an empty one); `None` once asked to stop.
+    pub fn minimum_within(mut self, bounds: &Bounds, guess: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         if !bounds.bounded.contains(&true) {
-            return self.minimum();
+            return self.minimum(stop);
         }
         self.flip(&bounds.flipped);
         let mut guess = guess.to_vec();
         bounds.turn(&mut guess);
-        let mut weights = self.non_negative_minimum(&bounds.bounded, &guess);
+        let mut weights = self.non_negative_minimum(&bounds.bounded, &guess, stop)?;
         bounds.turn(&mut weights);
-        weights
+        Some(weights)
     }
 
-    /// Minima with each of several factors of a penalty, in their order (rising).
-    pub fn path(&self, penalty: &Penalty, factors: &[f64], bounds: &Bounds) -> Vec<Vec<f64>> {
+    /// The minimum that a fit ends with. Asked to stop, it is still found where that takes little time.
+    ///
+    /// # Errors
+    /// A stop, where it takes long.
+    pub fn last_minimum(self, bounds: &Bounds, stop: StopCheck<'_>) -> Result<Vec<f64>> {
+        let stop = if self.right.len() <= QUICKLY_SOLVED { StopCheck::never() } else { stop };
+        self.minimum_within(bounds, &[], stop).ok_or(Error::Stopped)
+    }
+
+    /// Minima with each of several factors of a penalty, in their order (rising); `None` once asked to stop.
+    pub fn path(
+        &self,
+        penalty: &Penalty,
+        factors: &[f64],
+        bounds: &Bounds,
+        stop: StopCheck<'_>,
+    ) -> Option<Vec<Vec<f64>>> {
         let mut path: Vec<Vec<f64>> = Vec::new();
         // From the largest on, each from the one before.
         for &factor in factors.iter().rev() {
             let mut penalised = self.clone();
             penalised.penalise(penalty, factor);
             let guess = path.last().map_or(&[] as &[f64], Vec::as_slice);
-            path.push(penalised.minimum_within(bounds, guess));
+            path.push(penalised.minimum_within(bounds, guess, stop)?);
         }
         path.reverse();
-        path
+        Some(path)
     }
 
     /// The same function of the weights with some of them of opposite sign.
@@ -420,10 +467,15 @@ impl Quadratic {
     }
 
     /// The minimum with `w_i ≥ 0` for all `i` with `bounded[i]`, from a guess which of them are positive
-    /// (all, if it is empty). Block principal pivoting (Portugal, Júdice and Vicente 1994): variables
+    /// (all, if it is empty); `None` once asked to stop. Block principal pivoting (Portugal, Júdice and Vicente 1994): variables
     /// change sides all at once while that lowers the number of those on the wrong side, else one at
     /// a time (Murty), which ends for a positive definite matrix.
-    pub fn non_negative_minimum(&self, bounded: &[bool], guess: &[f64]) -> Vec<f64> {
+    pub fn non_negative_minimum(
+        &self,
+        bounded: &[bool],
+        guess: &[f64],
+        stop: StopCheck<'_>,
+    ) -> Option<Vec<f64>> {
         let n = self.right.len();
         let mut free: Vec<bool> =
             (0..n).map(|i| !bounded[i] || guess.get(i).is_none_or(|&w| w > 0.0)).collect();
@@ -433,7 +485,7 @@ impl Quadratic {
         for _ in 0..MOST_PIVOTS {
             let chosen: Vec<usize> = (0..n).filter(|&i| free[i]).collect();
             let right = chosen.iter().map(|&i| self.right[i]).collect();
-            let solution = minimum(&self.matrix.select(&chosen), right);
+            let solution = minimum(&self.matrix.select(&chosen), right, stop)?;
             weights.fill(0.0);
             chosen.iter().zip(&solution).for_each(|(&i, &w)| weights[i] = w);
             let product = self.matrix.times(&weights);
@@ -458,7 +510,7 @@ impl Quadratic {
             wrong.iter().for_each(|&i| free[i] = !free[i]);
         }
         (0..n).filter(|&i| bounded[i]).for_each(|i| weights[i] = weights[i].max(0.0));
-        weights
+        Some(weights)
     }
 }
 
@@ -469,20 +521,32 @@ const PATIENCE: usize = 3;
 /// of ten are needed.
 const MOST_PIVOTS: usize = 500;
 
+/// Weights that are found within some hundredths of a second.
+const QUICKLY_SOLVED: usize = 500;
+
 /// Wrong sides up to this, relative to the largest, are rounding.
 const ROUNDING: f64 = 1e-11;
 
-fn minimum(matrix: &Symmetric, right: Vec<f64>) -> Vec<f64> {
+/// The minimum; of a matrix that is not finite, all zeros.
+fn minimum(matrix: &Symmetric, right: Vec<f64>, stop: StopCheck<'_>) -> Option<Vec<f64>> {
+    let mut pace = Pace::new(stop);
     let n = right.len();
     let largest = (0..n).map(|i| matrix.diagonal(i)).fold(1e-300, f64::max);
     let mut ridge = 0.0;
     loop {
+        if pace.is_over(n * n * n / 6) {
+            return None;
+        }
         let mut raised = matrix.clone();
         (0..n).for_each(|i| raised.add_to_diagonal(i, ridge));
-        if let Some(factor) = raised.cholesky() {
+        if let Some(factor) = raised.cholesky(stop) {
             let mut weights = right;
             factor.solve(&mut weights);
-            return weights;
+            return Some(weights);
+        }
+        // Only numbers that are none are not made definite by a ridge as large as that.
+        if ridge > 1e12 * largest {
+            return Some(vec![0.0; n]);
         }
         ridge = (ridge * 10.0).max(1e-14 * largest);
     }
@@ -530,12 +594,12 @@ mod tests {
             (mixed >> 40) as f64 / (1u64 << 24) as f64 - 0.5 + 0.4 * ((row + 3 * column) as f64 * 0.37).sin()
         };
         let one = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
-        let mut gatherer = Gatherer::new(n, &one);
+        let mut gatherer = Gatherer::new(n, &one, StopCheck::never());
         for row in 0..rows {
             let features: Vec<f64> = (0..n).map(|column| value(row, column)).collect();
             gatherer.add(0, &features, value(row, n));
         }
-        gatherer.finish().total().quadratic()
+        gatherer.finish().unwrap().total().quadratic()
     }
 
     fn objective(problem: &Quadratic, weights: &[f64]) -> f64 {
@@ -550,12 +614,12 @@ mod tests {
         for seed in 0..40 {
             let problem = problem(n, 30, seed);
             let bounded: Vec<bool> = (0..n).map(|i| i != 2).collect();
-            let found = problem.non_negative_minimum(&bounded, &[]);
+            let found = problem.non_negative_minimum(&bounded, &[], StopCheck::never()).unwrap();
             let mut best = f64::INFINITY;
             for set in 0..1usize << n {
                 let chosen: Vec<usize> = (0..n).filter(|&i| !bounded[i] || set >> i & 1 == 1).collect();
                 let right = chosen.iter().map(|&i| problem.right[i]).collect();
-                let part = minimum(&problem.matrix.select(&chosen), right);
+                let part = minimum(&problem.matrix.select(&chosen), right, StopCheck::never()).unwrap();
                 let mut weights = vec![0.0; n];
                 chosen.iter().zip(part).for_each(|(&i, w)| weights[i] = w);
                 if (0..n).all(|i| !bounded[i] || weights[i] >= 0.0) {
@@ -565,12 +629,20 @@ mod tests {
             assert!((objective(&problem, &found) - best).abs() < 1e-12 * best.abs().max(1e-3));
             bound_somewhere += usize::from(found.contains(&0.0));
             // A bad guess leads to the same place.
-            let from_zero = problem.non_negative_minimum(&bounded, &vec![0.0; n]);
+            let from_zero =
+                problem.non_negative_minimum(&bounded, &vec![0.0; n], StopCheck::never()).unwrap();
             for (a, b) in found.iter().zip(&from_zero) {
                 approx::assert_relative_eq!(a, b, epsilon = 1e-9);
             }
         }
         assert!(bound_somewhere > 20, "the bounds hardly ever bound");
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_finite_has_an_end() {
+        let mut problem = problem(5, 30, 1);
+        problem.matrix.add_at(2, 1, f64::NAN);
+        assert_eq!(problem.minimum(StopCheck::never()), Some(vec![0.0; 5]));
     }
 
     #[test]
@@ -581,7 +653,7 @@ mod tests {
         problem.right.iter_mut().skip(1).step_by(2).for_each(|right| *right = -*right);
         for sign in [Sign::NonNegative, Sign::NonPositive] {
             let bounds = Bounds::apart(sign, 10..n, 0..0, n);
-            let weights = problem.clone().minimum_within(&bounds, &[]);
+            let weights = problem.clone().minimum_within(&bounds, &[], StopCheck::never()).unwrap();
             let product = problem.matrix.times(&weights);
             let side = if sign == Sign::NonNegative { 1.0 } else { -1.0 };
             let mut at_bound = 0;
@@ -617,19 +689,19 @@ mod tests {
     #[test]
     fn the_error_from_sums_is_that_of_the_rows() {
         let one = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
-        let mut gatherer = Gatherer::new(2, &one);
+        let mut gatherer = Gatherer::new(2, &one, StopCheck::never());
         for k in 0..1000 {
             let x = f64::from(k) * 0.01;
             gatherer.add(0, &[1.0, x], if k % 10 == 0 { f64::NAN } else { 2.0 + 3.0 * x + (x * 7.0).sin() });
         }
-        let sums = gatherer.finish().total();
+        let sums = gatherer.finish().unwrap().total();
         let rows = (0..1000).filter(|k| k % 10 != 0).map(|k| ((f64::from(k) * 0.07).sin()).powi(2));
         approx::assert_relative_eq!(
             sums.mean_square_error(&[2.0, 3.0]),
             rows.sum::<f64>() / 900.0,
             epsilon = 1e-9
         );
-        let fitted = sums.quadratic().minimum();
+        let fitted = sums.quadratic().minimum(StopCheck::never()).unwrap();
         assert!((fitted[0] - 2.0).abs() < 0.1 && (fitted[1] - 3.0).abs() < 0.05);
     }
 }

@@ -18,13 +18,14 @@ use crate::classical::linear_fit::{
     Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic, lowest,
 };
 use crate::classical::series::Series;
-use crate::classical::thresholds::{self, check_thresholds, check_weights, limited};
+use crate::classical::thresholds::{self, check_thresholds, check_weights, fits_on_grids, limited};
 use crate::classical::turning_point_stack::{Branch, TurningPointStack};
 use crate::classical::{Dimension, Law, Parameter, Sample};
 use crate::error::{Error, Result};
 use crate::operator::{play, stop};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
 
 /// A model by Masing's rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -116,12 +117,16 @@ impl Masing {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &MasingOptions) -> Result<Self> {
+        Self::fit_until(data, options, StopCheck::never())
+    }
+
+    /// As [`Masing::fit`]; asked to stop, with the grids and penalties compared so far.
+    pub(crate) fn fit_until(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
         let grids =
             thresholds::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-        let fits: Vec<(f64, Vec<f64>)> =
-            grids.iter().map(|grid| slopes_on_grid(&series, &scaling, grid, options.sign)).collect();
+        let fits = fits_on_grids(&grids, |grid| slopes_on_grid(&series, &scaling, grid, options.sign, stop))?;
         let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
         let best = lowest(&scores);
         let slope = scaling.output_deviation / scaling.inputs[0];
@@ -148,8 +153,14 @@ impl Masing {
 }
 
 /// Score by cross-validation, and weights (constant, slopes) in scaled units.
-fn slopes_on_grid(series: &[Series], scaling: &Scaling, grid: &[f64], sign: Option<Sign>) -> (f64, Vec<f64>) {
-    let sums = slope_sums(series, scaling, grid);
+fn slopes_on_grid(
+    series: &[Series],
+    scaling: &Scaling,
+    grid: &[f64],
+    sign: Option<Sign>,
+    stop: StopCheck<'_>,
+) -> Result<(f64, Vec<f64>)> {
+    let sums = slope_sums(series, scaling, grid, stop)?;
     let features = grid.len() + 2;
     // Bends of the curve are what costs; all slopes alike cost next to nothing.
     let mut penalty = Penalty::ridge((0..features).map(|i| if i == 0 { 0.0 } else { 1e-3 }));
@@ -158,22 +169,26 @@ fn slopes_on_grid(series: &[Series], scaling: &Scaling, grid: &[f64], sign: Opti
     }
     let reversible = 1..1;
     let factors = logarithmic(1e-9, 1e-1, 17);
-    let choice = sums.choose(&penalty, &factors, sign, &reversible, &|| false);
-    let mut penalised = sums.total().quadratic();
+    let choice = sums.choose(&penalty, &factors, sign, &reversible, stop);
+    let mut penalised = sums.into_total().quadratic();
     penalised.penalise(&penalty, choice.factor);
-    (choice.score, penalised.minimum_within(&Bounds::new(choice.sign, reversible, features), &[]))
+    let bounds = Bounds::new(choice.sign, reversible, features);
+    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
 }
 
 /// Sums of constant and slopes: the feature of a slope is a stop less the one before.
-fn slope_sums(series: &[Series], scaling: &Scaling, grid: &[f64]) -> FoldSums {
+fn slope_sums(series: &[Series], scaling: &Scaling, grid: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
     let folds = Folds::of_series(series);
     let mut features = vec![1.0; grid.len() + 2];
-    let mut gatherer = Gatherer::new(features.len(), &folds);
+    let mut gatherer = Gatherer::new(features.len(), &folds, stop);
     let factor = 1.0 / scaling.inputs[0];
     for (series, fold) in series.iter().zip(&folds.of_rows) {
         let mut plays = vec![0.0; grid.len()];
         let targets = scaling.scaled_output(&series.output);
         for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+            if gatherer.is_over(6 * features.len()) {
+                break;
+            }
             let mut before = 0.0;
             for ((play, &r), feature) in plays.iter_mut().zip(grid).zip(&mut features[1..]) {
                 *play = play::follow(*play, sample.x, r);

@@ -15,12 +15,13 @@ use crate::classical::linear_fit::{
     Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic, lowest,
 };
 use crate::classical::series::Series;
-use crate::classical::thresholds::{self, check_thresholds, check_weights, limited};
+use crate::classical::thresholds::{self, check_thresholds, check_weights, fits_on_grids, limited};
 use crate::classical::{Dimension, Law, Parameter, Sample};
 use crate::error::{Error, Result};
 use crate::operator::play;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
 
 /// A Prandtl-Ishlinskii model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,12 +102,21 @@ impl PrandtlIshlinskii {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &PrandtlIshlinskiiOptions) -> Result<Self> {
+        Self::fit_until(data, options, StopCheck::never())
+    }
+
+    /// As [`PrandtlIshlinskii::fit`]; asked to stop, with the grids and penalties compared so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &PrandtlIshlinskiiOptions,
+        stop: StopCheck<'_>,
+    ) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
         let grids =
             thresholds::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-        let fits: Vec<(f64, Vec<f64>)> =
-            grids.iter().map(|grid| weights_on_grid(&series, &scaling, grid, options.sign)).collect();
+        let fits =
+            fits_on_grids(&grids, |grid| weights_on_grid(&series, &scaling, grid, options.sign, stop))?;
         let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
         let best = lowest(&scores);
         let slope = scaling.output_deviation / scaling.inputs[0];
@@ -146,8 +156,9 @@ fn weights_on_grid(
     scaling: &Scaling,
     thresholds: &[f64],
     sign: Option<Sign>,
-) -> (f64, Vec<f64>) {
-    let sums = play_sums(series, scaling, thresholds);
+    stop: StopCheck<'_>,
+) -> Result<(f64, Vec<f64>)> {
+    let sums = play_sums(series, scaling, thresholds, stop)?;
     let features = 2 + thresholds.len();
     // The constant is free, the input nearly.
     let of = |i: usize| match i {
@@ -157,20 +168,25 @@ fn weights_on_grid(
     };
     let penalty = Penalty::ridge((0..features).map(of));
     let penalties = logarithmic(1e-9, 1e-1, 17);
-    let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN, &|| false);
-    let mut penalised = sums.total().quadratic();
+    let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN, stop);
+    let mut penalised = sums.into_total().quadratic();
     penalised.penalise(&penalty, choice.factor);
     let bounds = Bounds::new(choice.sign, PLAYS_BEGIN, features);
-    (choice.score, penalised.minimum_within(&bounds, &[]))
+    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
 }
 
 /// Constant and input come first and are free.
 const PLAYS_BEGIN: std::ops::Range<usize> = 2..2;
 
 /// Sums of constant, input and plays, inputs and plays in units of the largest input.
-fn play_sums(series: &[Series], scaling: &Scaling, thresholds: &[f64]) -> FoldSums {
+fn play_sums(
+    series: &[Series],
+    scaling: &Scaling,
+    thresholds: &[f64],
+    stop: StopCheck<'_>,
+) -> Result<FoldSums> {
     let folds = Folds::of_series(series);
-    let mut gatherer = Gatherer::new(2 + thresholds.len(), &folds);
+    let mut gatherer = Gatherer::new(2 + thresholds.len(), &folds, stop);
     let mut features = vec![0.0; 2 + thresholds.len()];
     features[0] = 1.0;
     let factor = 1.0 / scaling.inputs[0];
@@ -178,6 +194,9 @@ fn play_sums(series: &[Series], scaling: &Scaling, thresholds: &[f64]) -> FoldSu
         let mut plays = vec![0.0; thresholds.len()];
         let targets = scaling.scaled_output(&series.output);
         for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+            if gatherer.is_over(4 * features.len()) {
+                break;
+            }
             features[1] = sample.x * factor;
             for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[2..]) {
                 *play = play::follow(*play, sample.x, r);

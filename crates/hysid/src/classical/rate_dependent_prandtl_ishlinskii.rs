@@ -122,6 +122,7 @@ impl Law for RateDependentPrandtlIshlinskii {
     }
 
     fn step(&self, state: &mut Vec<f64>, sample: Sample) -> f64 {
+        let sample = sample.limited();
         self.advance(state, sample);
         let mut y = self.offset + self.spring * sample.x;
         self.weights.for_each(self.spacing, 1, |index, weight| y += weight * state[index]);

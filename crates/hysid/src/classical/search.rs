@@ -16,6 +16,7 @@ mod projection;
 mod rows;
 
 use std::ops::ControlFlow;
+use std::sync::Mutex;
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -23,10 +24,12 @@ use rayon::prelude::*;
 
 use crate::classical::series::Series;
 use crate::error::{Error, Result};
+use crate::stop_check::StopCheck;
 use crate::training::Termination;
+use crate::training::options::{MOST_EPOCHS, MOST_STARTS};
 use descent::Descent;
 pub(crate) use projection::Columns;
-use projection::Projection;
+use projection::{Projection, UNFINISHED};
 pub(crate) use rows::{Memory, spread, thinned};
 
 /// Random points looked at for each start.
@@ -90,8 +93,9 @@ pub(crate) trait Family: Sync {
     /// Whether the weight of each feature must not be negative; its length is the number of features.
     fn non_negative(&self) -> &[bool];
 
-    /// Runs over a record and gives the features of every row that has an output.
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns);
+    /// Runs over a record and gives the features of every row that has an output; ends early once
+    /// [`Columns::is_over`].
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
 
     /// Starting points that the data suggest, better than random ones.
     fn suggestions(&self) -> Vec<Vec<f64>> {
@@ -138,8 +142,11 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub fn validated(self) -> Result<Self> {
-        if self.starts == 0 {
-            return Err(Error::Option("a search needs at least one start".into()));
+        if self.starts == 0 || self.starts > MOST_STARTS {
+            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
+        }
+        if self.epochs > MOST_EPOCHS {
+            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
         }
         Ok(self)
     }
@@ -175,6 +182,8 @@ pub(super) struct Objective<'a, F> {
     target: Vec<f64>,
     /// Sum of the squared deviations of the output from its mean.
     variation: f64,
+    /// Breaks evaluations off.
+    stop: StopCheck<'a>,
 }
 
 impl<F: Family> Objective<'_, F> {
@@ -183,8 +192,11 @@ impl<F: Family> Objective<'_, F> {
     }
 
     fn value(&self, u: &[f64]) -> Projection {
+        if self.stop.is_asked() {
+            return Projection::unfinished();
+        }
         let parameters = self.parameters(u);
-        let mut columns = Columns::new(self.family.non_negative().len(), self.target.len());
+        let mut columns = Columns::new(self.family.non_negative().len(), self.target.len(), self.stop);
         for series in self.series {
             self.family.features(&parameters, series, &mut columns);
         }
@@ -200,21 +212,26 @@ impl<F: Family> Objective<'_, F> {
 /// number of threads: a start is walked by itself, and the starts are compared in their order.
 ///
 /// # Errors
-/// No start asked for. The data must have been found identifiable before.
+/// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
+/// before.
 pub(crate) fn search<F: Family>(
     family: &F,
     series: &[Series],
     effort: Effort,
     observer: &mut SearchObserver<'_>,
+    stop: StopCheck<'_>,
 ) -> Result<Found> {
     let effort = effort.validated()?;
     let target: Vec<f64> =
         series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
     let (_, deviation) = spread(&target);
     let variation = target.len() as f64 * deviation * deviation;
-    let objective = Objective { family, series, target, variation };
+    let objective = Objective { family, series, target, variation, stop };
 
     let mut descents = beginnings(&objective, effort);
+    if descents.first().is_none_or(|best| best.value.square_residual == UNFINISHED) {
+        return Err(Error::Stopped);
+    }
     let mut evaluations = effort.starts * DRAWS_PER_START;
     let mut termination = Termination::EpochsUsed;
     for round in 1..=effort.epochs {
@@ -231,7 +248,7 @@ pub(crate) fn search<F: Family>(
             evaluations: evaluations + descents.iter().map(|descent| descent.evaluations).sum::<usize>(),
             train_nrmse_percent: objective.nrmse_percent(&descents[0].value),
         });
-        if told.is_break() {
+        if told.is_break() || stop.is_asked() {
             termination = Termination::Stopped;
             break;
         }
@@ -265,27 +282,46 @@ fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<De
         variables.iter().map(|_| generator.random()).collect()
     };
     let count = suggested.len().max(effort.starts * DRAWS_PER_START);
-    let mut points: Vec<Descent> = (0..count)
-        .into_par_iter()
-        .map(|index| {
-            let u = draw(index);
-            let value = objective.value(&u);
-            Descent::new(u, value)
-        })
-        .collect();
-    points.sort_by(|a, b| a.value.square_residual.total_cmp(&b.value.square_residual));
-    let distance = |a: &Descent, b: &Descent| {
-        let square: f64 = a.u.iter().zip(&b.u).map(|(a, b)| (a - b) * (a - b)).sum();
-        (square / a.u.len().max(1) as f64).sqrt()
+    // Only what the points reach is kept, and the best of them: a residual of each would be gigabytes for thousands of
+    // starts.
+    let best: Mutex<Option<Descent>> = Mutex::new(None);
+    let reached = |index| {
+        let u = draw(index);
+        let value = objective.value(&u);
+        let square_residual = value.square_residual;
+        let mut best = best.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if best.as_ref().is_none_or(|best| square_residual < best.value.square_residual) {
+            *best = Some(Descent::new(u.clone(), value));
+        }
+        (square_residual, u)
     };
-    let mut chosen: Vec<Descent> = Vec::new();
+    let mut points: Vec<(f64, Vec<f64>)> = (0..count).into_par_iter().map(reached).collect();
+    if objective.stop.is_asked() {
+        return best.into_inner().ok().flatten().into_iter().collect();
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let distance = |a: &[f64], b: &[f64]| {
+        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+        (square / a.len().max(1) as f64).sqrt()
+    };
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
     let mut near = Vec::new();
-    for point in points {
+    for (_, point) in points {
+        if chosen.len() == effort.starts {
+            break;
+        }
         let is_apart = chosen.iter().all(|other| distance(&point, other) >= APART);
         (if is_apart { &mut chosen } else { &mut near }).push(point);
     }
-    chosen.truncate(effort.starts);
     let missing = effort.starts - chosen.len();
     chosen.extend(near.into_iter().take(missing));
-    chosen
+    let begin = |u: Vec<f64>| {
+        let value = objective.value(&u);
+        Descent::new(u, value)
+    };
+    let begun: Vec<Descent> = chosen.into_par_iter().map(begin).collect();
+    match begun[0].value.square_residual {
+        UNFINISHED => best.into_inner().ok().flatten().into_iter().collect(),
+        _ => begun,
+    }
 }

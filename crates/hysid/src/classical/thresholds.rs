@@ -38,6 +38,21 @@ pub(crate) fn candidates(given: Option<&[f64]>, count: usize, largest: f64) -> R
     }
 }
 
+/// Fits to several grids, one after another. A stop after the first leaves out those that are missing.
+///
+/// # Errors
+/// That of a fit; a stop before the first is done.
+pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Result<F>) -> Result<Vec<F>> {
+    let mut fits = Vec::new();
+    for grid in grids {
+        match fit(grid) {
+            Err(Error::Stopped) if !fits.is_empty() => break,
+            fit => fits.push(fit?),
+        }
+    }
+    Ok(fits)
+}
+
 /// Refuses thresholds that are not positive, finite and rising.
 pub(crate) fn check_thresholds(thresholds: &[f64]) -> Result<()> {
     let sound = |r: f64| r.is_finite() && r > 0.0;

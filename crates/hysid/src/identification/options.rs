@@ -17,7 +17,7 @@ use crate::network::{Family, Sizes};
 use crate::preprocessing::Shaping;
 use crate::rate::RateMethod;
 use crate::training::genetic::POPULATIONS;
-use crate::training::options::PENALTIES;
+use crate::training::options::{MOST_EPOCHS, PENALTIES};
 use crate::training::{FitOptions, Trainer};
 
 /// Numbers of neurons or operators that can be asked for.
@@ -128,6 +128,7 @@ impl ChosenOptions {
             ("operators", self.operators, NEURONS),
             ("dead_zones", self.dead_zones, NEURONS),
             ("starts", self.starts, STARTS),
+            ("epochs", self.epochs, 0..=MOST_EPOCHS),
             ("population", self.population, POPULATIONS),
         ];
         for (name, count, range) in counts {
@@ -473,6 +474,7 @@ mod tests {
             (json!({ "stop": 3 }), "there is no option `stop`: the options are companding, dead_zones,"),
             (json!({ "stops": 0 }), "stops 0: choose 1 to 1000"),
             (json!({ "stops": "many" }), "stops: invalid type: string \"many\""),
+            (json!({ "model": "neuro-madelung", "epochs": u64::MAX }), "choose 0 to 1000000"),
             (json!({ "model": "xpn" }), "model: model `xpn` is unknown: choose one of auto, pnn, gpnn"),
             (json!({ "training": "lm" }), "training `lm` is unknown"),
             (json!({ "validation": 1.0 }), "validation 1: a number between 0 and 1 is needed"),

@@ -11,6 +11,7 @@ use pulp::{Simd, WithSimd};
 
 use super::dot;
 use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
 
 /// Rows from which on blocks pay.
 pub(super) const WORTH_BLOCKS: usize = 256;
@@ -22,27 +23,31 @@ const GROUP: usize = 64;
 const TILE: usize = 4;
 
 /// The factor in place of the lower triangle of `data`, `n` rows of `n` numbers; `None` unless
-/// positive definite to rounding.
-pub(super) fn factorise(mut data: Vec<f64>, n: usize) -> Option<Vec<f64>> {
-    simd::run(Factorise { data: &mut data, n }).then_some(data)
+/// positive definite to rounding, and once asked to stop.
+pub(super) fn factorise(mut data: Vec<f64>, n: usize, stop: StopCheck<'_>) -> Option<Vec<f64>> {
+    simd::run(Factorise { data: &mut data, n, pace: Pace::new(stop) }).then_some(data)
 }
 
-struct Factorise<'a> {
+struct Factorise<'a, 's> {
     data: &'a mut [f64],
     n: usize,
+    pace: Pace<'s>,
 }
 
-impl WithSimd for Factorise<'_> {
+impl WithSimd for Factorise<'_, '_> {
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd>(mut self, simd: S) -> bool {
         let n = self.n;
         for first in (0..n).step_by(GROUP) {
             let (done, rest) = self.data.split_at_mut(first * n);
             let rows = GROUP.min(n - first);
             let group = &mut rest[..rows * n];
             for column in (0..first).step_by(TILE) {
+                if self.pace.is_over(column * TILE * GROUP / 2) {
+                    return false;
+                }
                 let others: [&[f64]; TILE] =
                     std::array::from_fn(|k| &done[(column + k) * n..(column + k) * n + column + TILE]);
                 let mut tiles = group.chunks_exact_mut(TILE * n);

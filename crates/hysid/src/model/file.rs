@@ -18,7 +18,10 @@ use crate::scaling::Scaling;
 use crate::unit;
 
 /// Version of the layout that is written.
-pub const FORMAT_VERSION: u64 = 4;
+pub const FORMAT_VERSION: u64 = 5;
+
+/// Up to this version the checksum passed over all white space, in texts too.
+const LOOSE_CHECKSUM: u64 = 4;
 
 const FORMAT: &str = "hysid-model";
 const CHECKSUM_KEY: &str = "\"checksum\"";
@@ -129,11 +132,18 @@ struct Readout {
     output: Vec<f64>,
 }
 
-/// Checksum of a file's text up to the checksum itself, white space aside: it notices any change of
-/// content, and no change of layout or line ends.
-fn checksum(text: &str) -> Option<u32> {
+/// Checksum of a file's text up to the checksum itself, white space between its parts aside: it notices any
+/// change of content, and no change of layout or line ends.
+fn checksum(text: &str, version: u64) -> Option<u32> {
     let end = text.rfind(CHECKSUM_KEY)?;
-    let content: Vec<u8> = text[..end].bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
+    let (mut is_within_text, mut is_escaped) = (false, false);
+    let counts = |byte: &u8| {
+        let is_quote = *byte == b'"' && !is_escaped;
+        is_escaped = *byte == b'\\' && is_within_text && !is_escaped;
+        is_within_text ^= is_quote;
+        !byte.is_ascii_whitespace() || is_within_text && version > LOOSE_CHECKSUM
+    };
+    let content: Vec<u8> = text[..end].bytes().filter(counts).collect();
     Some(crc32fast::hash(&content))
 }
 
@@ -246,7 +256,7 @@ pub(super) fn write(model: &Model) -> String {
     };
     let mut text =
         serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
-    let sum = checksum(&text).expect("the key is there");
+    let sum = checksum(&text, FORMAT_VERSION).expect("the key is there");
     let end = text.rfind("00000000").expect("the value is there");
     text.replace_range(end..end + 8, &format!("{sum:08x}"));
     text.push('\n');
@@ -276,22 +286,21 @@ pub(super) fn read(text: &str) -> Result<Model> {
             "this is not a Hysid model file (expected the JSON that `hysid fit` writes)".into(),
         ));
     }
-    match value.get("version").and_then(serde_json::Value::as_u64) {
-        Some(1..=FORMAT_VERSION) => {}
+    let version = match value.get("version").and_then(serde_json::Value::as_u64) {
+        Some(version @ 1..=FORMAT_VERSION) => version,
         Some(version) if version > FORMAT_VERSION => {
             return Err(Error::ModelFile(format!(
                 "the model file has format version {version}, this program reads up to {FORMAT_VERSION}: use a newer hysid"
             )));
         }
         _ => return Err(damaged("the model file has no valid format version".into())),
-    }
+    };
     let written = value.get("checksum").and_then(|sum| sum.as_str()).unwrap_or_default();
-    if checksum(text).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
+    if checksum(text, version).map(|sum| format!("{sum:08x}")).as_deref() != Some(written) {
         return Err(damaged(
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
-    let version = value["version"].as_u64().unwrap_or_default();
     let file = match version {
         // The text itself tells the place of an error.
         FORMAT_VERSION => serde_json::from_str(text),
@@ -323,7 +332,10 @@ fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
 
 fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Body> {
     match (network, law) {
-        (Some(parts), None) => Ok(Body::Network { network: parts.network()?, scaling: parts.scaling }),
+        (Some(parts), None) => {
+            parts.scaling.check()?;
+            Ok(Body::Network { network: parts.network()?, scaling: parts.scaling })
+        }
         (None, Some(law)) => Ok(Body::Law(law.validated()?)),
         _ => Err(Error::Option("it must have either a network or a law".into())),
     }
@@ -353,6 +365,7 @@ fn assemble(file: File) -> Result<Model> {
 /// Refuses parts that do not fit together.
 fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.preprocessing.check()?;
+    model.trained.check()?;
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {
         Body::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {

@@ -72,9 +72,11 @@ impl<'m> Stepper<'m> {
     /// difference is taken (0 at the first sample).
     ///
     /// # Errors
-    /// Another number of inputs, a value that is not finite, or time that does not advance.
+    /// Another number of inputs, a value that is not finite, or time that does not advance. The memory is as it was
+    /// then.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
-        self.state.step(&self.model, inputs, time, rate)
+        self.state.check(&self.model, inputs, time, rate)?;
+        Ok(self.state.advance(&self.model, inputs, time, rate))
     }
 
     /// Back to the virgin state.
@@ -93,25 +95,42 @@ impl State {
         }
     }
 
-    fn step(&mut self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
+    /// Refuses a sample that cannot be taken, before anything is changed.
+    fn check(&self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<()> {
         let expected = model.inputs();
         if inputs.len() != expected {
             return Err(Error::Option(format!("{} inputs where the model has {expected}", inputs.len())));
         }
-        let elapsed = match self.last {
-            Some((before, _)) => time - before,
-            None => 0.0,
-        };
+        let elapsed = self.elapsed(time);
         if model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
             return Err(Error::Option(format!("time {time} does not come after the last sample's")));
         }
-        let rate = model.rate.map(|_| {
-            let backward = self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
-            rate.unwrap_or(backward)
-        });
+        let rate = self.rate(model, inputs, elapsed, rate);
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
             return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
         }
+        if let (Body::Ensemble(ensemble), Memory::Ensemble(jury)) = (&model.body, &self.memory) {
+            let mut members = jury.members.iter().zip(ensemble.members());
+            return members.try_for_each(|(state, member)| state.check(member, inputs, time, rate));
+        }
+        Ok(())
+    }
+
+    /// Time since the last sample; 0 at the first.
+    fn elapsed(&self, time: f64) -> f64 {
+        self.last.map_or(0.0, |(before, _)| time - before)
+    }
+
+    /// The rate of the first input: that which is given, or a backward difference; `None` for a model without.
+    fn rate(&self, model: &Model, inputs: &[f64], elapsed: f64, given: Option<f64>) -> Option<f64> {
+        let backward = || self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
+        model.rate.map(|_| given.unwrap_or_else(backward))
+    }
+
+    /// Takes a sample that was checked.
+    fn advance(&mut self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> f64 {
+        let elapsed = self.elapsed(time);
+        let rate = self.rate(model, inputs, elapsed, rate);
         let seen_rate = rate.map(|rate| model.preprocessing.rate(rate));
         model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
         let y = match (&model.body, &mut self.memory) {
@@ -125,9 +144,6 @@ impl State {
                         *channels.next().expect("a channel for the rate") = rate * (1.0 / scale);
                     }
                 }
-                if let Some(bad) = u.iter().find(|u| !u.is_finite()) {
-                    return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
-                }
                 scaling.output(simulator.step(u, elapsed))
             }
             (Body::Law(law), Memory::Law(state)) => {
@@ -139,14 +155,14 @@ impl State {
                 let outside = excursion.take(inputs[0]);
                 outputs.clear();
                 for (state, member) in members.iter_mut().zip(ensemble.members()) {
-                    outputs.push(state.step(member, inputs, time, rate)?);
+                    outputs.push(state.advance(member, inputs, time, rate));
                 }
                 council.output(ensemble.group(), outside, |member| outputs[member])
             }
             _ => unreachable!("the memory was made for the body"),
         };
         self.last = Some((time, inputs[0]));
-        Ok(y)
+        y
     }
 
     fn reset(&mut self, model: &Model) {

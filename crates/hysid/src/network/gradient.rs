@@ -15,6 +15,7 @@ use crate::network::readout::{Backward, Readout};
 use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout};
 use crate::simd;
+use crate::stop_check::StopCheck;
 
 /// Partial sums of each component, so that a sum over rows is SIMD code.
 const LANES: usize = 8;
@@ -26,6 +27,8 @@ pub(crate) struct GradientOverRecords<'a> {
     pub output: &'a [f64],
     pub drives: &'a [Drive],
     pub targets: &'a [Vec<f64>],
+    /// Ends the walk early; the sum means nothing then.
+    pub stop: StopCheck<'a>,
 }
 
 impl GradientOverRecords<'_> {
@@ -48,7 +51,12 @@ impl WithSimd for GradientOverRecords<'_> {
             gradient: vec![[0.0; LANES]; layout.len()],
             layout,
         };
-        let walk = Walk { architecture: self.architecture, parameters: self.parameters, with_slopes: true };
+        let walk = Walk {
+            architecture: self.architecture,
+            parameters: self.parameters,
+            with_slopes: true,
+            stop: self.stop,
+        };
         walk.over(simd, self.drives, self.targets, &mut sums);
         sums.gradient.iter().map(|lanes| lanes.iter().sum()).collect()
     }

@@ -16,6 +16,7 @@ use crate::network::readout::{Backward, Readout};
 use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
 use crate::network::{Architecture, Layout, Network};
 use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
 
 /// Output and Jacobian of a network over a record.
 #[derive(Debug, Clone)]
@@ -36,18 +37,20 @@ impl Network {
     /// If the drive's channels are not those of the architecture.
     pub fn linearise(&self, drive: &Drive) -> Linearised {
         let p = self.parameters.len();
-        let mut rows = Rows {
-            wanted: 1 + p,
-            first: self.architecture.output_weights(),
-            columns: vec![Vec::with_capacity(drive.len()); 1 + p],
-        };
         let columns = Columns {
             architecture: &self.architecture,
             parameters: &self.parameters,
             output: Some(&self.output),
         };
-        simd::run(CollectRows { columns, drive, rows: &mut rows });
-        let jacobian = rows.columns.split_off(1);
+        let target = vec![0.0; drive.len()];
+        let rows = RowsOverRecords {
+            columns,
+            first: columns.count() - p,
+            drives: std::slice::from_ref(drive),
+            targets: &[target],
+            stop: StopCheck::never(),
+        };
+        let jacobian = rows.columns();
         let mut output = vec![0.0; drive.len()];
         let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
         self.simulator().run(&u, &drive.steps, &mut output);
@@ -71,11 +74,12 @@ impl<'a> Columns<'a> {
         self.architecture.output_weights() + 1 + jacobian
     }
 
-    fn walk(&self) -> Walk<'a> {
+    fn walk(&self, stop: StopCheck<'a>) -> Walk<'a> {
         Walk {
             architecture: self.architecture,
             parameters: self.parameters,
             with_slopes: self.output.is_some(),
+            stop,
         }
     }
 }
@@ -85,6 +89,8 @@ pub(crate) struct GramOverRecords<'a> {
     pub columns: Columns<'a>,
     pub drives: &'a [Drive],
     pub targets: &'a [Vec<f64>],
+    /// Ends the walk early; what is gathered means nothing then.
+    pub stop: StopCheck<'a>,
 }
 
 impl GramOverRecords<'_> {
@@ -99,11 +105,11 @@ impl WithSimd for GramOverRecords<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Gram {
         let n = self.columns.count();
-        let gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n) };
+        let gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
         let mut taken = ColumnsOfBlock::new(self.columns, gathered);
-        self.columns.walk().over(simd, self.drives, self.targets, &mut taken);
-        let Gathered { mut gram, mut batch } = taken.to;
-        gram.add(simd, &mut batch);
+        self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
+        let Gathered { mut gram, mut batch, mut pace } = taken.to;
+        gram.add(simd, &mut batch, &mut pace);
         gram
     }
 }
@@ -114,52 +120,64 @@ trait TakeRows {
 }
 
 /// Gathers rows into a Gram matrix.
-struct Gathered {
+struct Gathered<'a> {
     gram: Gram,
     batch: Batch,
+    pace: Pace<'a>,
 }
 
-impl TakeRows for Gathered {
+impl TakeRows for Gathered<'_> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]) {
         if self.batch.free() < rows {
-            self.gram.add(simd, &mut self.batch);
+            self.gram.add(simd, &mut self.batch, &mut self.pace);
         }
         self.batch.append(columns, rows);
     }
 }
 
-/// Keeps some of the columns of every row.
+/// Keeps the columns of every row, from the first that is wanted on.
 struct Rows {
     first: usize,
-    wanted: usize,
     columns: Vec<Vec<f64>>,
 }
 
-impl TakeRows for &mut Rows {
+impl TakeRows for Rows {
     #[inline(always)]
     fn take<S: Simd>(&mut self, _: S, rows: usize, columns: &[Row]) {
-        let wanted = &columns[self.first..self.first + self.wanted];
-        for (kept, column) in self.columns.iter_mut().zip(wanted) {
+        for (kept, column) in self.columns.iter_mut().zip(&columns[self.first..]) {
             kept.extend_from_slice(&column[..rows]);
         }
     }
 }
 
-struct CollectRows<'a> {
-    columns: Columns<'a>,
-    drive: &'a Drive,
-    rows: &'a mut Rows,
+/// The [`Columns`] of every row with a target, from column `first` on: for few rows.
+pub(crate) struct RowsOverRecords<'a> {
+    pub columns: Columns<'a>,
+    pub first: usize,
+    pub drives: &'a [Drive],
+    pub targets: &'a [Vec<f64>],
+    /// Ends the walk early; rows are missing then.
+    pub stop: StopCheck<'a>,
 }
 
-impl WithSimd for CollectRows<'_> {
-    type Output = ();
+impl RowsOverRecords<'_> {
+    pub fn columns(self) -> Vec<Vec<f64>> {
+        simd::run(self)
+    }
+}
+
+impl WithSimd for RowsOverRecords<'_> {
+    type Output = Vec<Vec<f64>>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let target = vec![0.0; self.drive.len()];
-        let mut taken = ColumnsOfBlock::new(self.columns, self.rows);
-        self.columns.walk().over(simd, std::slice::from_ref(self.drive), &[target], &mut taken);
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<Vec<f64>> {
+        let rows = self.targets.iter().flatten().filter(|y| !y.is_nan()).count();
+        let wanted = self.columns.count() - self.first;
+        let columns = (0..wanted).map(|_| Vec::with_capacity(rows)).collect();
+        let mut taken = ColumnsOfBlock::new(self.columns, Rows { first: self.first, columns });
+        self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
+        taken.to.columns
     }
 }
 

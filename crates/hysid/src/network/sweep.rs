@@ -9,6 +9,7 @@ use pulp::Simd;
 use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, Row};
 use crate::network::readout::Readout;
 use crate::network::{Architecture, limited};
+use crate::stop_check::{Pace, StopCheck};
 
 /// A record as a network sees it: scaled inputs by channel (first input, rate, further inputs), and
 /// the time step before each row, 0 at the first.
@@ -39,6 +40,7 @@ pub(crate) struct Walk<'a> {
     pub architecture: &'a Architecture,
     pub parameters: &'a [f64],
     pub with_slopes: bool,
+    pub stop: StopCheck<'a>,
 }
 
 /// A block of rows with a target.
@@ -62,7 +64,7 @@ pub(crate) trait TakeBlock {
 }
 
 impl Walk<'_> {
-    /// Walks over every record from the virgin state.
+    /// Walks over every record from the virgin state; ends early once asked to stop.
     #[inline(always)]
     pub fn over<S: Simd>(
         &self,
@@ -111,7 +113,10 @@ impl Block {
 }
 
 /// Buffers of a walk.
-struct Workspace {
+struct Workspace<'a> {
+    pace: Pace<'a>,
+    /// Operations for a block, roughly.
+    operations: usize,
     with_slopes: bool,
     memory: MemoryLayer,
     readout: Readout,
@@ -121,10 +126,12 @@ struct Workspace {
     filled: usize,
 }
 
-impl Workspace {
-    fn new(walk: &Walk) -> Self {
+impl<'a> Workspace<'a> {
+    fn new(walk: &Walk<'a>) -> Self {
         let a = walk.architecture;
         Self {
+            pace: Pace::new(walk.stop),
+            operations: 2 * BLOCK * walk.parameters.len(),
             with_slopes: walk.with_slopes,
             memory: MemoryLayer::new(a, walk.parameters),
             readout: Readout::new(a, walk.parameters),
@@ -141,6 +148,9 @@ impl Workspace {
         let mut sensitivity = self.memory.virgin_sensitivity();
         let mut steps = Row([0.0; BLOCK]);
         for start in (0..drive.len()).step_by(BLOCK) {
+            if self.pace.is_over(self.operations) {
+                return;
+            }
             let rows = BLOCK.min(drive.len() - start);
             for (block, channel) in self.block.u.iter_mut().zip(&drive.channels) {
                 for (block, &u) in block.iter_mut().zip(&channel[start..start + rows]) {

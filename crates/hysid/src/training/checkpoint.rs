@@ -9,7 +9,7 @@ use crate::training::options::FitOptions;
 
 /// First bytes of a checkpoint, with the version of its layout. A checkpoint is read only by the
 /// program that wrote it, or one with the same layout: it is no archive.
-const MAGIC: &[u8] = b"hysid checkpoint 2\n";
+const MAGIC: &[u8] = b"hysid checkpoint 3\n";
 
 /// All that is needed to go on with a fit, save the data themselves.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -7,6 +7,7 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use crate::training::objective::Objective;
+use crate::training::soundness::Frame;
 use crate::training::start::normal;
 
 /// Largest threshold, in half ranges of the input: beyond 1 a stop no longer slides.
@@ -72,6 +73,23 @@ impl Encoding {
             hidden: layout.hidden.clone(),
             run,
         }
+    }
+
+    /// True if all that its genes can stand for are parameters of the network.
+    pub fn is_sound(&self, frame: &Frame) -> bool {
+        let Frame { layout, architecture, .. } = frame;
+        let has_layout = self.stop_weights == layout.stop_weights
+            && self.channels == architecture.channels()
+            && self.hidden == layout.hidden
+            && self.run == 1 + architecture.memory_neurons();
+        let ends = |end: fn(&(f64, f64)) -> f64| self.bounds.iter().map(end).collect::<Vec<f64>>();
+        let (low, high) = (ends(|bounds| bounds.0), ends(|bounds| bounds.1));
+        has_layout
+            && self.bounds.len() == layout.len()
+            && low.iter().zip(&high).all(|(low, high)| low <= high)
+            && frame.are_parameters(&self.parameters(&low))
+            && frame.are_parameters(&self.parameters(&high))
+            && low[self.stop_weights.clone()].iter().step_by(self.channels).all(|threshold| *threshold > 0.0)
     }
 
     /// Lowest and highest value of each gene.

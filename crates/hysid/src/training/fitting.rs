@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::free_run::FreeRun;
 use crate::identification::{ModelName, Request};
 use crate::metrics::Errors;
@@ -20,13 +20,14 @@ use crate::preprocessing::{Origin, Preprocessing, Seen};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
 use crate::training::checkpoint::Snapshot;
 use crate::training::history::Phase;
 use crate::training::objective::Objective;
 use crate::training::options::{FitOptions, Regularisation, Trainer};
 use crate::training::run::{From, TrainingRun};
-use crate::training::termination::Termination;
-use crate::training::{FEWEST_ROWS, Fit, Observer, Progress};
+use crate::training::soundness::{Frame, require};
+use crate::training::{FEWEST_ROWS, Fit, Observer, Progress, SharedObserver};
 use crate::validation::{Fold, PooledErrors, folds};
 
 /// Most folds that a fit is validated on.
@@ -76,7 +77,6 @@ pub(crate) struct Fitting<'a> {
     state: State,
     /// Epochs of all runs, as far as they are known.
     epochs_expected: usize,
-    stopped: bool,
 }
 
 /// Data that networks are trained on, as they see them.
@@ -158,21 +158,36 @@ impl<'a> Fitting<'a> {
             measured,
             asked,
             state: State::default(),
-            stopped: false,
         })
     }
 
     /// As [`Fitting::new`], from a state on.
-    pub fn from(self, state: State) -> Self {
-        Self { state, ..self }
+    ///
+    /// # Errors
+    /// A state that no fit with these options comes to.
+    pub fn from(self, state: State) -> Result<Self> {
+        let starts = self.asked.starts;
+        let most = |runs: &[TrainingRun], most: usize| require(runs.len() <= most, "its number of runs");
+        most(&state.all_data, starts)?;
+        most(&state.folds, MOST_FOLDS * STARTS_ON_FOLDS.min(starts))?;
+        most(&state.folds_exact, MOST_FOLDS)?;
+        most(&state.all_exact, FINALISTS)?;
+        most(&state.all_rows, 1)?;
+        let frame = Frame::new(&self.asked, &self.architecture);
+        state.all_runs().try_for_each(|run| run.check(&frame))?;
+        Ok(Self { state, ..self })
     }
 
     /// Goes on to the end, or until the observer says stop.
+    ///
+    /// # Errors
+    /// A stop before there was any network.
     pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fit> {
+        let observer = &SharedObserver::new(observer, Progress::of_beginning(&self.asked));
         let penalties = self.asked.penalties();
         self.train_on_everything(penalties, observer)?;
         let validation = self.validate(penalties, observer)?;
-        let (winner, penalties) = if validation.is_exact && !self.stopped {
+        let (winner, penalties) = if validation.is_exact && !observer.is_over() {
             (self.without_penalties(observer)?, NO_PENALTIES)
         } else {
             (best_of(&self.state.all_data), penalties)
@@ -182,11 +197,11 @@ impl<'a> Fitting<'a> {
         let runs =
             self.state.folds.iter().flat_map(TrainingRun::runs).chain(winner.runs()).cloned().collect();
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
-        let Self { measured, asked, whole, stopped, .. } = self;
+        let Self { measured, asked, whole, .. } = self;
         let Part { preprocessing, scaling, .. } = whole;
         let found = Found {
             chosen_start: winner.start(),
-            termination: if stopped { Termination::Stopped } else { winner.termination() },
+            termination: observer.termination(winner.termination()),
             runs,
             validation: validation.errors,
             penalties: Some(penalties),
@@ -199,8 +214,14 @@ impl<'a> Fitting<'a> {
     }
 
     /// All starts on everything, thinned if it is much.
-    fn train_on_everything(&mut self, penalties: Regularisation, observer: &mut Observer<'_>) -> Result<()> {
-        let objective = self.whole.objective(self.architecture, penalties)?;
+    fn train_on_everything(
+        &mut self,
+        penalties: Regularisation,
+        observer: &SharedObserver<'_, '_>,
+    ) -> Result<()> {
+        let is_to_stop = || observer.is_to_stop();
+        let objective =
+            self.whole.objective(self.architecture, penalties)?.until(StopCheck::new(&is_to_stop));
         let stage = Stage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_data,
@@ -209,15 +230,22 @@ impl<'a> Fitting<'a> {
             epochs_before: 0,
         };
         let random = |start| Beginning { objective: 0, start, from: From::Random };
-        self.drive(&stage, (0..self.asked.starts).map(random).collect(), observer)
+        self.drive(&stage, (0..self.asked.starts).map(random).collect(), observer)?;
+        if self.state.all_data.is_empty() { Err(Error::Stopped) } else { Ok(()) }
     }
 
     /// A few starts on each fold, where several were asked for: the lowest objective of each fold predicts what
     /// was held out of it.
-    fn validate(&mut self, penalties: Regularisation, observer: &mut Observer<'_>) -> Result<Validation> {
-        if self.asked.starts == 1 || self.stopped {
+    fn validate(
+        &mut self,
+        penalties: Regularisation,
+        observer: &SharedObserver<'_, '_>,
+    ) -> Result<Validation> {
+        if self.asked.starts == 1 || observer.is_over() {
             return Ok(Validation::default());
         }
+        let is_to_stop = || observer.is_to_stop();
+        let stop = StopCheck::new(&is_to_stop);
         let folds = self.folds();
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
         let seen: Vec<Seen> = folds
@@ -229,8 +257,8 @@ impl<'a> Fitting<'a> {
         let random = |(objective, start)| Beginning { objective, start, from: From::Random };
         let all = (0..folds.len()).flat_map(|fold| (0..starts).map(move |start| (fold, start)));
         let stage = FoldStage { runs: |state| &mut state.folds, phase: Phase::Starts, penalties };
-        let objectives = self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer)?;
-        if self.stopped || folds.is_empty() {
+        let objectives = self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer, stop)?;
+        if observer.is_over() || folds.is_empty() {
             return Ok(Validation::default());
         }
         let of_run = |(index, run): (usize, &TrainingRun)| {
@@ -238,6 +266,9 @@ impl<'a> Fitting<'a> {
             OnFold::of(run, &parts[fold], &objectives[fold], &folds[fold], rate)
         };
         let on_folds: Vec<OnFold> = self.state.folds.iter().enumerate().map(of_run).collect::<Result<_>>()?;
+        if observer.is_over() {
+            return Ok(Validation::default());
+        }
         for (index, (run, on_fold)) in self.state.folds.iter_mut().zip(&on_folds).enumerate() {
             run.validated(index / starts, on_fold.error_percent());
         }
@@ -255,8 +286,8 @@ impl<'a> Fitting<'a> {
             return Ok(validation);
         }
         let stage = FoldStage { runs: |state| &mut state.folds_exact, penalties: NO_PENALTIES, ..stage };
-        let objectives = self.drive_on_folds(&stage, &parts, onward, observer)?;
-        if self.stopped {
+        let objectives = self.drive_on_folds(&stage, &parts, onward, observer, stop)?;
+        if observer.is_over() {
             return Ok(validation);
         }
         let of_run = |(fold, run): (usize, &TrainingRun)| {
@@ -265,6 +296,9 @@ impl<'a> Fitting<'a> {
         let without: Vec<OnFold> =
             self.state.folds_exact.iter().enumerate().map(of_run).collect::<Result<_>>()?;
         let without: Vec<&OnFold> = without.iter().collect();
+        if observer.is_over() {
+            return Ok(validation);
+        }
         if mean_error(&without) < WORTH * mean_error(&with_penalties) {
             return Ok(Validation { errors: self.pooled(&without, &folds), is_exact: true });
         }
@@ -281,15 +315,17 @@ impl<'a> Fitting<'a> {
     }
 
     /// Drives a stage on the training parts of all folds; gives the objectives there.
-    fn drive_on_folds(
+    fn drive_on_folds<'s>(
         &mut self,
         stage: &FoldStage,
         parts: &[Part],
         beginnings: Vec<Beginning>,
-        observer: &mut Observer<'_>,
-    ) -> Result<Vec<Objective<'static>>> {
+        observer: &SharedObserver<'_, '_>,
+        stop: StopCheck<'s>,
+    ) -> Result<Vec<Objective<'s>>> {
         let FoldStage { phase, runs, penalties } = *stage;
-        let objectives = parts.iter().map(|part| part.objective(self.architecture, penalties));
+        let objective = |part: &Part| Ok(part.objective(self.architecture, penalties)?.until(stop));
+        let objectives = parts.iter().map(objective);
         let objectives: Vec<Objective> = objectives.collect::<Result<_>>()?;
         let thinned: Vec<Objective> =
             objectives.iter().map(|objective| objective.thinned(self.asked.thin)).collect();
@@ -306,11 +342,13 @@ impl<'a> Fitting<'a> {
     }
 
     /// The best starts on everything, further without penalties: the lowest objective of these.
-    fn without_penalties(&mut self, observer: &mut Observer<'_>) -> Result<TrainingRun> {
+    fn without_penalties(&mut self, observer: &SharedObserver<'_, '_>) -> Result<TrainingRun> {
         let mut best: Vec<TrainingRun> = self.state.all_data.clone();
         best.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
         best.truncate(FINALISTS);
-        let objective = self.whole.objective(self.architecture, NO_PENALTIES)?;
+        let is_to_stop = || observer.is_to_stop();
+        let objective =
+            self.whole.objective(self.architecture, NO_PENALTIES)?.until(StopCheck::new(&is_to_stop));
         let stage = Stage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_exact,
@@ -319,11 +357,15 @@ impl<'a> Fitting<'a> {
             epochs_before: self.asked.epochs,
         };
         self.drive(&stage, best.iter().map(|run| onward(0, run)).collect(), observer)?;
+        let lowest = best.first().expect("there is at least one start").clone();
         let begun = best.into_iter().zip(&self.state.all_exact);
-        let lowest = begun.min_by(|a, b| a.1.objective().total_cmp(&b.1.objective()));
-        let (mut winner, finish) = lowest.expect("at least one run has begun");
-        winner.append(finish.clone());
-        Ok(winner)
+        Ok(match begun.min_by(|a, b| a.1.objective().total_cmp(&b.1.objective())) {
+            Some((mut winner, finish)) => {
+                winner.append(finish.clone());
+                winner
+            }
+            None => lowest,
+        })
     }
 
     /// The winner with its output weights; of thinned data it goes on for a few epochs on every row.
@@ -331,12 +373,18 @@ impl<'a> Fitting<'a> {
         &mut self,
         winner: TrainingRun,
         penalties: Regularisation,
-        observer: &mut Observer<'_>,
+        observer: &SharedObserver<'_, '_>,
     ) -> Result<(TrainingRun, Network)> {
         let mut winner = winner;
-        let objective = self.whole.objective(self.architecture, penalties)?;
+        if observer.is_over() {
+            let network = winner.network_as_trained(self.architecture)?;
+            return Ok((winner, network));
+        }
+        let is_to_stop = || observer.is_to_stop();
+        let objective =
+            self.whole.objective(self.architecture, penalties)?.until(StopCheck::new(&is_to_stop));
         let is_whole = objective.scored() <= self.asked.thin;
-        if self.asked.training == Trainer::LevenbergMarquardt && !is_whole && !self.stopped {
+        if self.asked.training == Trainer::LevenbergMarquardt && !is_whole {
             let stage = Stage {
                 phase: Phase::AllData,
                 runs: |state| &mut state.all_rows,
@@ -345,59 +393,83 @@ impl<'a> Fitting<'a> {
                 epochs_before: winner.epoch(),
             };
             self.drive(&stage, vec![onward(0, &winner)], observer)?;
-            winner.append(self.state.all_rows[0].clone());
+            if let Some(on_all_rows) = self.state.all_rows.first() {
+                winner.append(on_all_rows.clone());
+            }
         }
         let network = winner.network(&objective)?;
+        if observer.is_over() {
+            let network = winner.network_as_trained(self.architecture)?;
+            return Ok((winner, network));
+        }
         Ok((winner, network))
     }
 
     /// Advances runs in rounds until all are over or the observer says stop. `beginnings` are those of
-    /// all runs of the stage; those that have begun before are passed over.
+    /// all runs of the stage; those that have begun before are passed over. What a run was doing when the
+    /// observer said stop is thrown away: it stays as it was before the round.
     fn drive(
         &mut self,
         stage: &Stage,
         beginnings: Vec<Beginning>,
-        observer: &mut Observer<'_>,
+        observer: &SharedObserver<'_, '_>,
     ) -> Result<()> {
         let objective_of: Vec<usize> = beginnings.iter().map(|beginning| beginning.objective).collect();
         let (all, begun) = (beginnings.len(), (stage.runs)(&mut self.state).len());
+        require(begun <= all, "its number of runs")?;
         let mut waiting = beginnings.into_iter().skip(begun);
         let room = RUNS_PER_THREAD * rayon::current_num_threads();
-        while !self.stopped {
+        while !observer.is_over() {
             let (options, runs) = (&self.whole.options, (stage.runs)(&mut self.state));
             let under_way = runs.iter().filter(|run| !run.is_over()).count();
             let next: Vec<Beginning> = waiting.by_ref().take(room.saturating_sub(under_way)).collect();
             let begin = |Beginning { objective, start, from }| {
                 let objective = &stage.objectives[objective];
-                TrainingRun::new(objective, options, stage.phase, start, stage.epochs, from)
+                let run = TrainingRun::new(objective, options, stage.phase, start, stage.epochs, from);
+                if objective.is_long() && observer.is_over() { Ok(None) } else { run.map(Some) }
             };
-            runs.extend(next.into_par_iter().map(begin).collect::<Result<Vec<_>>>()?);
+            let begun = next.into_par_iter().map(begin).collect::<Result<Vec<_>>>()?;
+            // In their order, so that a fit that is resumed begins with the first that is missing.
+            runs.extend(begun.into_iter().map_while(|run| run));
             let advance = |(index, run): (usize, &mut TrainingRun)| {
                 let objective = &stage.objectives[objective_of[index]];
-                Ok(run.advance(objective, options)?.then_some(index))
+                let before = objective.is_long().then(|| run.clone());
+                let advanced = run.advance(objective, options);
+                match before.filter(|_| observer.is_over()) {
+                    Some(before) => {
+                        *run = before;
+                        Ok(None)
+                    }
+                    None => Ok(advanced?.then_some(index)),
+                }
             };
             let under_way = runs.par_iter_mut().enumerate().filter(|(_, run)| !run.is_over());
             let advanced: Vec<Option<usize>> = under_way.map(advance).collect::<Result<_>>()?;
             let is_over = runs.len() == all && runs.iter().all(TrainingRun::is_over);
+            if observer.is_over() {
+                if !runs.is_empty() {
+                    observer.tell_last(&self.progress(stage, 0));
+                }
+                break;
+            }
             for index in advanced.into_iter().flatten() {
-                self.tell(stage, index, observer);
-                if self.stopped {
-                    (stage.runs)(&mut self.state).iter_mut().for_each(TrainingRun::stop);
-                    return Ok(());
+                if observer.tell(&self.progress(stage, index)).is_break() {
+                    break;
                 }
             }
-            if is_over {
+            if is_over && !observer.is_over() {
                 return Ok(());
             }
         }
+        (stage.runs)(&mut self.state).iter_mut().for_each(TrainingRun::stop);
         Ok(())
     }
 
-    /// Tells the observer where a run is.
-    fn tell(&mut self, stage: &Stage, index: usize, observer: &mut Observer<'_>) {
+    /// Where a run is.
+    fn progress(&mut self, stage: &Stage, index: usize) -> Progress<'_> {
         let done = self.done();
         let run = &(stage.runs)(&mut self.state)[index];
-        let progress = Progress {
+        let told = Progress {
             model: ModelName::Network(self.asked.model),
             is_part: false,
             phase: stage.phase,
@@ -407,9 +479,10 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            snapshot: Some(Snapshot { options: &self.asked, data: self.measured, state: &self.state }),
+            snapshot: None,
         };
-        self.stopped = observer(&progress).is_break();
+        let snapshot = Some(Snapshot { options: &self.asked, data: self.measured, state: &self.state });
+        Progress { snapshot, ..told }
     }
 
     /// Share of the work done, if every run takes all its epochs.

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::random::mix;
+use crate::training::soundness::MOST_COUNTED;
 
 /// Individuals that enter a tournament.
 const TOURNAMENT: usize = 2;
@@ -85,6 +86,17 @@ impl Genetic {
             .map(|index| problem.individual(draw(&mut generator(problem.seed, 0, index))))
             .collect();
         Ok(Self { population, generation: 0, evaluations: size })
+    }
+
+    /// True if it is a population of so many within these bounds.
+    pub(super) fn is_sound(&self, bounds: &[(f64, f64)], size: usize) -> bool {
+        let is_gene = |(gene, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(gene);
+        let is_individual = |one: &Individual| {
+            one.genes.len() == bounds.len() && one.genes.iter().zip(bounds).all(is_gene) && !one.cost.is_nan()
+        };
+        self.population.len() == size
+            && self.population.iter().all(is_individual)
+            && self.generation.max(self.evaluations) <= MOST_COUNTED
     }
 
     /// Breeds the next generation.

@@ -2,6 +2,10 @@
 //! Jacobian, theory.md (3.2) to (3.4).
 
 use crate::linear_algebra::{Cholesky, Gram, Symmetric};
+use crate::stop_check::{Pace, StopCheck};
+
+/// Ridge beyond which a matrix is given up, as a multiple of its largest diagonal entry.
+const LARGEST_RIDGE: f64 = 1e12;
 
 /// The linear least-squares problem inside the objective.
 pub(crate) struct OutputProblem<'a> {
@@ -14,6 +18,7 @@ pub(crate) struct OutputProblem<'a> {
     pub ridge: f64,
     /// The first feature is the constant, which bears no penalty.
     pub constant: bool,
+    pub stop: StopCheck<'a>,
 }
 
 /// Output weights and what they reach.
@@ -24,28 +29,46 @@ pub(crate) struct OutputSolution {
     pub mean_square: f64,
     /// Half the mean square residual plus half the ridge penalty.
     pub objective: f64,
-    /// Factor of `PᵀP/N + λI`.
+    /// `Λ`: what each weight's own ridge came to.
+    pub ridge: Vec<f64>,
+    /// Factor of `PᵀP/N + Λ`.
     pub factor: Cholesky,
+}
+
+impl OutputSolution {
+    /// What stands for a solution that was broken off: worse than any other.
+    pub fn broken_off(features: usize) -> Self {
+        Self {
+            weights: vec![0.0; features],
+            mean_square: f64::INFINITY,
+            objective: f64::INFINITY,
+            ridge: vec![0.0; features],
+            factor: Cholesky::empty(),
+        }
+    }
 }
 
 impl OutputProblem<'_> {
     /// Solves theory.md (3.2). Where rounding makes the matrix indefinite (more features than rows, or
-    /// features all but equal), the ridge is raised until it is not.
+    /// features all but equal), the ridge is raised until it is not. Asked to stop, and for features
+    /// that are not finite, the objective is infinite.
     pub fn solve(&self) -> OutputSolution {
         let m = self.features;
         let matrix = Symmetric::from_fn(m, |i, j| self.gram.at(i, j) / self.rows);
         let largest = (0..m).map(|i| matrix.diagonal(i)).fold(1e-30, f64::max);
         let mut ridge = self.ridge;
-        let factor = loop {
+        let (factor, added) = loop {
             let mut penalised = matrix.clone();
-            for i in usize::from(self.constant)..m {
-                penalised.add_to_diagonal(i, ridge);
-            }
+            let mut added = vec![ridge; m];
             if self.constant {
-                penalised.add_to_diagonal(0, 1e-14 * largest);
+                added[0] = 1e-14 * largest;
             }
-            match penalised.cholesky() {
-                Some(factor) => break factor,
+            added.iter().enumerate().for_each(|(i, &value)| penalised.add_to_diagonal(i, value));
+            match penalised.cholesky(self.stop) {
+                Some(factor) => break (factor, added),
+                None if self.stop.is_asked() => return OutputSolution::broken_off(m),
+                // Only numbers that are none are not made definite by a ridge as large as that.
+                None if ridge > LARGEST_RIDGE * largest => return OutputSolution::broken_off(m),
                 None => ridge = (ridge * 10.0).max(1e-14 * largest),
             }
         };
@@ -62,7 +85,11 @@ impl OutputProblem<'_> {
             }
         }
         let mean_square = mean_square.max(0.0);
-        OutputSolution { objective: 0.5 * (mean_square + penalty), weights, mean_square, factor }
+        if self.stop.is_asked() {
+            return OutputSolution::broken_off(m);
+        }
+        let objective = 0.5 * (mean_square + penalty);
+        OutputSolution { objective, weights, mean_square, ridge: added, factor }
     }
 
     /// Gradient `Jᵀr/N`, theory.md (3.3), and Gauss-Newton matrix (3.4) without the decay terms, for a
@@ -77,14 +104,18 @@ impl OutputProblem<'_> {
             })
             .collect();
         let mut projected = vec![0.0; p * m];
+        let mut pace = Pace::new(self.stop);
         for (k, row) in projected.chunks_exact_mut(m).enumerate() {
+            if pace.is_over(m * m) {
+                break;
+            }
             for (i, value) in row.iter_mut().enumerate() {
                 *value = self.gram.at(first + k, i) / self.rows;
             }
             solution.factor.solve_lower(row);
         }
         let mut matrix = Symmetric::from_fn(p, |i, j| self.gram.at(first + i, first + j) / self.rows);
-        matrix.subtract_product(&projected, m);
+        matrix.subtract_product(&projected, m, self.stop);
         (gradient, matrix)
     }
 }

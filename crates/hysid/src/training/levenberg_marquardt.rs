@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::training::objective::{Objective, Slope, Value};
+use crate::training::soundness::{Frame, MOST_COUNTED};
 use crate::training::termination::Termination;
 
 /// First damping μ, relative to the curvature.
@@ -41,6 +42,17 @@ impl LevenbergMarquardt {
         Self { parameters, value, damping: Damping::new(), stalled: 0, evaluations: 1 }
     }
 
+    /// True if a descent can go on from here.
+    pub(super) fn is_sound(&self, frame: &Frame) -> bool {
+        let Damping { mu, growth, scale } = &self.damping;
+        frame.are_parameters(&self.parameters)
+            && (SMALLEST_DAMPING..=1e20 * LARGEST_DAMPING).contains(mu)
+            && (2.0..=1e100).contains(growth)
+            && (scale.is_empty() || frame.is_vector(scale) && scale.iter().all(|scale| *scale > 0.0))
+            && self.stalled <= PATIENCE
+            && self.evaluations <= MOST_COUNTED
+    }
+
     /// Where the descent is.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
@@ -59,7 +71,8 @@ impl LevenbergMarquardt {
     /// One iteration, which lowers the objective unless it tells that there is no way on.
     pub fn advance(&mut self, objective: &Objective) -> Option<Termination> {
         let value = self.value(objective).clone();
-        let slope = objective.slope(&self.parameters, &value);
+        // Broken off, the iteration is thrown away.
+        let slope = objective.slope(&self.parameters, &value)?;
         self.evaluations += 1;
         self.damping.see(&slope);
         if slope.gradient.iter().all(|g| g.abs() < 1e-14) {
@@ -95,7 +108,7 @@ impl Damping {
     fn see(&mut self, slope: &Slope) {
         self.scale.resize(slope.gradient.len(), 0.0);
         for (index, scale) in self.scale.iter_mut().enumerate() {
-            *scale = (MEMORY_OF_CURVATURE * *scale).max(slope.matrix.diagonal(index));
+            *scale = (MEMORY_OF_CURVATURE * *scale).max(slope.curvature.diagonal(index));
         }
         let floor = LEAST_CURVATURE * self.scale.iter().copied().fold(0.0, f64::max) + 1e-30;
         for scale in &mut self.scale {
@@ -113,7 +126,7 @@ impl Damping {
         value: &Value,
         evaluations: &mut usize,
     ) -> Option<(Vec<f64>, Value)> {
-        while self.mu < LARGEST_DAMPING {
+        while self.mu < LARGEST_DAMPING && !objective.stop().is_asked() {
             if let Some(candidate) = self.candidate(objective, slope, parameters) {
                 let found = objective.value(&candidate.parameters);
                 *evaluations += 1;
@@ -134,12 +147,8 @@ impl Damping {
 
     /// The damped step, kept within bounds, and the fall that the quadratic model foretells for it.
     fn candidate(&self, objective: &Objective, slope: &Slope, parameters: &[f64]) -> Option<Candidate> {
-        let mut damped = slope.matrix.clone();
-        for (index, scale) in self.scale.iter().enumerate() {
-            damped.add_to_diagonal(index, self.mu * scale);
-        }
-        let mut step: Vec<f64> = slope.gradient.iter().map(|g| -g).collect();
-        damped.cholesky()?.solve(&mut step);
+        let damping: Vec<f64> = self.scale.iter().map(|scale| self.mu * scale).collect();
+        let step = slope.curvature.step(&slope.gradient, &damping, objective.stop())?;
         let foretold_fall = 0.5
             * step
                 .iter()

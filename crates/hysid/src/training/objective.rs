@@ -4,10 +4,13 @@
 use std::borrow::Cow;
 
 use crate::error::Result;
-use crate::linear_algebra::Symmetric;
-use crate::network::{Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout};
+use crate::network::{
+    Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout, RowsOverRecords,
+};
 use crate::record::{Dataset, Thinning};
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
+use crate::training::curvature::{self, Curvature, has_few_rows};
 use crate::training::least_squares::{OutputProblem, OutputSolution};
 use crate::training::options::{FitOptions, Regularisation};
 
@@ -20,6 +23,9 @@ pub struct Objective<'a> {
     drives: Cow<'a, [Drive]>,
     targets: Vec<Vec<f64>>,
     rows: usize,
+    stop: StopCheck<'a>,
+    /// Evaluations take long enough to be broken off.
+    is_long: bool,
 }
 
 /// The objective at a point.
@@ -44,8 +50,12 @@ pub(crate) struct Slope {
     /// Gradient of F, theory.md (3.3).
     pub gradient: Vec<f64>,
     /// Gauss-Newton matrix with decay, theory.md (3.4).
-    pub matrix: Symmetric,
+    pub curvature: Curvature,
 }
+
+/// Operations of one evaluation with its slope from which on it is worth to be broken off: about ten
+/// milliseconds.
+const LONG: usize = 20_000_000;
 
 impl<'a> Objective<'a> {
     /// Scales the data for the architecture.
@@ -69,7 +79,30 @@ impl<'a> Objective<'a> {
             drives: Cow::Owned(drives?),
             targets,
             rows: data.scored(),
+            stop: StopCheck::never(),
+            is_long: false,
         })
+    }
+
+    /// The same, whose evaluations are broken off once asked to stop, if they take long: a value is infinite then, and a
+    /// gradient means nothing.
+    pub(crate) fn until(self, stop: StopCheck<'a>) -> Self {
+        let columns = self.layout.len() + self.architecture.output_weights();
+        // Rows without a target are run through, but not gathered.
+        let run: usize = self.drives.iter().map(Drive::len).sum();
+        let is_long =
+            columns.saturating_mul(columns.saturating_mul(self.rows).saturating_add(10 * run)) > LONG;
+        if is_long { Self { stop, is_long, ..self } } else { self }
+    }
+
+    /// True if evaluations may be broken off.
+    pub(crate) fn is_long(&self) -> bool {
+        self.is_long
+    }
+
+    /// What breaks evaluations off.
+    pub(crate) fn stop(&self) -> StopCheck<'a> {
+        self.stop
     }
 
     /// Rows that are compared.
@@ -88,6 +121,8 @@ impl<'a> Objective<'a> {
             layout: self.layout.clone(),
             architecture: self.architecture,
             regularisation: self.regularisation,
+            stop: self.stop,
+            is_long: self.is_long,
         }
     }
 
@@ -121,6 +156,10 @@ impl<'a> Objective<'a> {
 
     /// The value at a point.
     pub fn value(&self, parameters: &[f64]) -> Value {
+        if self.stop.is_asked() {
+            let solution = OutputSolution::broken_off(self.architecture.output_weights());
+            return Value { objective: f64::INFINITY, mean_square: f64::INFINITY, solution };
+        }
         let gram = self.gram(parameters, None);
         let solution = self.output_problem(&gram).solve();
         let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
@@ -139,6 +178,7 @@ impl<'a> Objective<'a> {
             output: &value.solution.weights,
             drives: &self.drives,
             targets: &self.targets,
+            stop: self.stop,
         };
         let mut gradient = sums.sum();
         gradient.iter_mut().for_each(|g| *g /= self.rows as f64);
@@ -148,7 +188,11 @@ impl<'a> Objective<'a> {
         gradient
     }
 
-    pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Slope {
+    /// Slope and curvature at a point with its value; `None` once asked to stop.
+    pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
+        if has_few_rows(parameters.len(), self.architecture.output_weights(), self.rows) {
+            return self.slope_of_few_rows(parameters, value);
+        }
         let gram = self.gram(parameters, Some(&value.solution.weights));
         let (mut gradient, mut matrix) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
@@ -156,21 +200,38 @@ impl<'a> Objective<'a> {
             gradient[index] += self.regularisation.decay * weight;
             matrix.add_to_diagonal(index, self.regularisation.decay);
         }
-        Slope { gradient, matrix }
+        let slope = Slope { gradient, curvature: Curvature::Matrix(matrix) };
+        (!self.stop.is_asked()).then_some(slope)
+    }
+
+    fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
+        let output = Some(value.solution.weights.as_slice());
+        let columns = Columns { architecture: &self.architecture, parameters, output };
+        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        let columns = RowsOverRecords { columns, first: 0, drives, targets, stop }.columns();
+        let mut decay = vec![0.0; parameters.len()];
+        self.weights(parameters).for_each(|(index, _)| decay[index] = self.regularisation.decay);
+        if stop.is_asked() {
+            return None;
+        }
+        let rows = curvature::Rows::new(columns, &value.solution, decay, parameters, stop)?;
+        Some(Slope { gradient: rows.gradient(), curvature: Curvature::Rows(rows) })
     }
 
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
         let columns = Columns { architecture: &self.architecture, parameters, output };
-        GramOverRecords { columns, drives: &self.drives, targets: &self.targets }.gram()
+        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        GramOverRecords { columns, drives, targets, stop }.gram()
     }
 
-    fn output_problem<'g>(&self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
+    fn output_problem<'g>(&'g self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
         OutputProblem {
             gram,
             features: self.architecture.output_weights(),
             rows: self.rows as f64,
             ridge: self.regularisation.ridge,
             constant: self.architecture.constant,
+            stop: self.stop,
         }
     }
 
@@ -184,6 +245,45 @@ mod tests {
     use super::*;
     use crate::network::{Family, Sizes};
     use crate::record::{ColumnNames, Record};
+
+    /// The rows of the curvature give the step that the matrix gives, to rounding.
+    #[test]
+    fn few_rows_give_the_same_step_as_the_matrix() {
+        let rows = 40;
+        let x: Vec<f64> = (0..rows).map(|k| (0.3 * k as f64).sin() * (1.0 + 0.02 * k as f64)).collect();
+        let y = (0..rows).map(|k| (0.3 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+        let record = Record::new("r", vec![x], y).unwrap();
+        let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+        let sizes = Sizes { stops: 20, hidden: 20, relaxation: 0 };
+        let options = FitOptions { model: Family::XpnnPlus, sizes, ..FitOptions::default() };
+        let scaling = Scaling::of(&data, None).unwrap();
+        let architecture = options.architecture(&data).unwrap();
+        let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+        let p = objective.layout().len();
+        assert!(!has_few_rows(p, architecture.output_weights(), rows), "compare with the matrix");
+        let point = crate::training::start::random(&objective, 1, 0);
+        let value = objective.value(&point);
+        let by_matrix = objective.slope(&point, &value).unwrap();
+        let by_rows = objective.slope_of_few_rows(&point, &value).unwrap();
+        let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let assert_near = |a: &[f64], b: &[f64], tolerance: f64| {
+            let size = largest(a);
+            assert!(size > 0.0);
+            for (a, b) in a.iter().zip(b) {
+                assert!((a - b).abs() < tolerance * size, "{a} and {b} of {size}");
+            }
+        };
+        assert_near(&by_matrix.gradient, &by_rows.gradient, 1e-9);
+        let diagonal = |slope: &Slope| (0..p).map(|i| slope.curvature.diagonal(i)).collect::<Vec<f64>>();
+        assert_near(&diagonal(&by_matrix), &diagonal(&by_rows), 1e-9);
+        let scale = largest(&diagonal(&by_matrix));
+        for damping in [1e-1, 1e-3] {
+            let damping = vec![damping * scale; p];
+            let step =
+                |slope: &Slope| slope.curvature.step(&slope.gradient, &damping, StopCheck::never()).unwrap();
+            assert_near(&step(&by_matrix), &step(&by_rows), 1e-6);
+        }
+    }
 
     #[test]
     fn the_gradient_is_the_same_with_and_without_the_jacobian() {
@@ -204,7 +304,7 @@ mod tests {
                 let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
                 let point = crate::training::start::random(&objective, 1, 0);
                 let value = objective.value(&point);
-                let of_slope = objective.slope(&point, &value).gradient;
+                let of_slope = objective.slope(&point, &value).unwrap().gradient;
                 let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));
                 assert!(size > 1e-4);
                 for (a, b) in of_slope.iter().zip(objective.gradient(&point, &value)) {

@@ -9,6 +9,7 @@ use crate::network::{Architecture, Family, Sizes};
 use crate::preprocessing::{HISTORY_INPUTS, Shaping};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::training::FEWEST_ROWS;
 use crate::training::genetic::POPULATIONS;
 
 /// How networks are trained.
@@ -234,16 +235,19 @@ impl FitOptions {
                 self.population
             )));
         }
+        if self.thin < FEWEST_ROWS {
+            return Err(Error::Option(format!("thin {}: at least {FEWEST_ROWS} rows are needed", self.thin)));
+        }
         self.shaping.check()?;
         self.penalties().check()
     }
 }
 
 /// Most epochs of a start.
-const MOST_EPOCHS: usize = 1_000_000;
+pub(crate) const MOST_EPOCHS: usize = 1_000_000;
 
 /// Most starts.
-const MOST_STARTS: usize = 10_000;
+pub(crate) const MOST_STARTS: usize = 10_000;
 
 /// Penalties on the weights, in scaled units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -12,13 +12,14 @@
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{
-    FoldSums, Folds, Penalty, Quadratic, StopCheck, Sums, logarithmic, lowest,
+    Bounds, FoldSums, Folds, Penalty, Quadratic, Sign, Sums, logarithmic, lowest,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
 use crate::training::FEWEST_ROWS;
 use crate::training::start::{self, Capacities};
 
@@ -60,7 +61,7 @@ pub struct RandomStops {
 }
 
 /// Tanh neurons, where cross-validation finds them better than none. Designed.
-const HIDDEN: usize = 100;
+pub(crate) const HIDDEN: usize = 100;
 
 /// From stops that are soon dead to such as hardly wear. Designed.
 const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
@@ -71,14 +72,14 @@ const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
 /// Data that nothing can be identified from, options outside their meaning, a rate that cannot be
 /// computed.
 pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
-    fit_random_stops_until(data, options, &|| false)
+    fit_random_stops_until(data, options, StopCheck::never())
 }
 
 /// As [`fit_random_stops`]; asked to stop, the best architecture so far, its penalty chosen by fewer folds.
 pub(crate) fn fit_random_stops_until(
     data: &Dataset,
     options: &RandomStopsOptions,
-    stop: &StopCheck<'_>,
+    stop: StopCheck<'_>,
 ) -> Result<RandomStops> {
     data.check_identifiable(FEWEST_ROWS)?;
     let scaling = Scaling::of(data, options.rate)?;
@@ -89,7 +90,7 @@ pub(crate) fn fit_random_stops_until(
         .iter()
         .flat_map(|&deterioration| hidden.iter().map(move |&hidden| (deterioration, hidden)));
     for (deterioration, hidden) in candidates {
-        if best.is_some() && stop() {
+        if best.is_some() && stop.is_asked() {
             break;
         }
         let architecture = Architecture {
@@ -104,7 +105,10 @@ pub(crate) fn fit_random_stops_until(
             constant: true,
         };
         architecture.check()?;
-        let candidate = fit_readout(data, options, &scaling, architecture, stop)?;
+        let candidate = match fit_readout(data, options, &scaling, architecture, stop) {
+            Err(Error::Stopped) if best.is_some() => break,
+            candidate => candidate?,
+        };
         let is_better =
             |best: &RandomStops| candidate.validation_nrmse_percent < best.validation_nrmse_percent;
         if best.as_ref().is_none_or(is_better) {
@@ -120,7 +124,7 @@ fn fit_readout(
     options: &RandomStopsOptions,
     scaling: &Scaling,
     architecture: Architecture,
-    stop: &StopCheck<'_>,
+    stop: StopCheck<'_>,
 ) -> Result<RandomStops> {
     let used = || data.records().iter().filter(|record| record.scored() > 0);
     let drives: Vec<Drive> =
@@ -134,7 +138,8 @@ fn fit_readout(
         &drives,
         &targets,
         &Folds::of(&inputs),
-    );
+        stop,
+    )?;
 
     let features = architecture.output_weights();
     let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
@@ -142,11 +147,18 @@ fn fit_readout(
     let solve = |sums: &Quadratic, ridge: f64| {
         let mut penalised = sums.clone();
         penalised.penalise(&penalty, ridge);
-        penalised.minimum()
+        penalised.minimum(stop)
     };
     let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect(), stop);
+    // Asked to stop before any penalty was judged, one in the middle is taken.
+    let scores = scores.unwrap_or_else(|| {
+        let middle = ridges.len() / 2;
+        (0..ridges.len()).map(|place| if place == middle { 0.0 } else { f64::INFINITY }).collect()
+    });
     let chosen = lowest(&scores);
-    let output = solve(&sums.total().quadratic(), ridges[chosen]);
+    let mut penalised = sums.into_total().quadratic();
+    penalised.penalise(&penalty, ridges[chosen]);
+    let output = penalised.last_minimum(&Bounds::new(Sign::Any, 0..0, features), stop)?;
     Ok(RandomStops {
         network: Network::new(architecture, parameters, output)?,
         scaling: scaling.clone(),
@@ -157,7 +169,13 @@ fn fit_readout(
 
 /// Sums of the output layer's features, fold by fold. The memory runs through every row of every record;
 /// rows of other folds have no target.
-fn fold_sums(columns: &Columns, drives: &[Drive], targets: &[Vec<f64>], folds: &Folds) -> FoldSums {
+fn fold_sums(
+    columns: &Columns,
+    drives: &[Drive],
+    targets: &[Vec<f64>],
+    folds: &Folds,
+    stop: StopCheck<'_>,
+) -> Result<FoldSums> {
     let of_fold = |fold: usize| {
         let mut rows = 0;
         let masked: Vec<Vec<f64>> = targets
@@ -169,8 +187,9 @@ fn fold_sums(columns: &Columns, drives: &[Drive], targets: &[Vec<f64>], folds: &
             })
             .inspect(|masked: &Vec<f64>| rows += masked.iter().filter(|y| !y.is_nan()).count())
             .collect();
-        let gram = GramOverRecords { columns: *columns, drives, targets: &masked }.gram();
+        let gram = GramOverRecords { columns: *columns, drives, targets: &masked, stop }.gram();
         Sums::new(gram, columns.count() - 1, rows)
     };
-    FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone())
+    let sums = FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone());
+    if stop.is_asked() { Err(Error::Stopped) } else { Ok(sums) }
 }

@@ -5,14 +5,15 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::network::{Layout, Network};
+use crate::network::{Architecture, Layout, Network};
 use crate::random::mix;
 use crate::training::encoding::Encoding;
 use crate::training::genetic::{self, Genetic};
 use crate::training::history::{HistoryPoint, Phase, Run};
 use crate::training::levenberg_marquardt::LevenbergMarquardt;
-use crate::training::objective::Objective;
+use crate::training::objective::{Objective, Value};
 use crate::training::options::{FitOptions, Method};
+use crate::training::soundness::{Frame, MOST_COUNTED, are_finite, require};
 use crate::training::space_dilation::{DilationOptions, SpaceDilation, Subdifferentiable};
 use crate::training::start;
 use crate::training::termination::{Stall, Termination};
@@ -45,6 +46,8 @@ pub(crate) struct TrainingRun {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Point {
     pub parameters: Vec<f64>,
+    /// Output weights there.
+    pub output: Vec<f64>,
     pub objective: f64,
     pub mean_square: f64,
 }
@@ -106,15 +109,50 @@ impl TrainingRun {
         Ok(run)
     }
 
+    /// Refuses a state of a file that no run with these options comes to.
+    pub fn check(&self, frame: &Frame) -> Result<()> {
+        let methods = |plan: &[(Method, usize)]| plan.iter().map(|step| step.0).collect::<Vec<Method>>();
+        let (all, left) = (methods(&frame.options.training.plan(0)), methods(&self.plan));
+        require(!left.is_empty() && all.ends_with(&left), "methods of a run")?;
+        let search = match &self.search {
+            Search::LevenbergMarquardt(search) => {
+                left[0] == Method::LevenbergMarquardt && search.is_sound(frame)
+            }
+            Search::Genetic { search, encoding, stall } => {
+                left[0] == Method::Genetic
+                    && encoding.is_sound(frame)
+                    && search.is_sound(encoding.bounds(), frame.options.population)
+                    && stall.is_sound()
+            }
+            Search::Subgradient { search, stall } => {
+                left[0] == Method::Subgradient
+                    && search.is_sound(frame, &dilation_options())
+                    && stall.is_sound()
+            }
+        };
+        require(search, "state of a method")?;
+        let counts = [self.epoch, self.epoch_of_method, self.evaluations_before, self.last.evaluations];
+        let steps = self.plan.iter().map(|step| step.1);
+        require(counts.into_iter().chain(steps).all(|count| count <= MOST_COUNTED), "counts of a run")?;
+        require(self.start < frame.options.starts, "number of a start")?;
+        let Point { parameters, output, objective, mean_square } = &self.best;
+        let is_point = frame.are_parameters(parameters)
+            && Network::new(*frame.architecture, parameters.clone(), output.clone()).is_ok()
+            && are_finite(&[*objective, *mean_square]);
+        require(is_point, "best point of a run")?;
+        let point = |point: &HistoryPoint| !point.train_nrmse_percent.is_nan() && point.epoch <= MOST_COUNTED;
+        let histories = self.runs.iter().all(|run| !run.history.is_empty() && run.history.iter().all(point));
+        require(!self.runs.is_empty() && self.runs.len() <= 2 && histories, "history of a run")
+    }
+
     /// One epoch of the present method. False, and nothing done, if that epoch found no way on.
     pub fn advance(&mut self, objective: &Objective, options: &FitOptions) -> Result<bool> {
         let before = self.best.objective;
         let ended = match &mut self.search {
             Search::LevenbergMarquardt(search) => {
                 let ended = search.advance(objective);
-                let value = search.value(objective);
-                let (reached, mean_square) = (value.objective, value.mean_square);
-                self.best.take_if_lower(search.parameters(), reached, mean_square);
+                let value = search.value(objective).clone();
+                self.best.take_if_lower(search.parameters(), &value);
                 ended
             }
             Search::Genetic { search, encoding, stall } => {
@@ -281,6 +319,11 @@ impl TrainingRun {
         self.evaluations_before + self.search.evaluations()
     }
 
+    /// The network at the best point, its output weights by least squares on the rows it was trained on.
+    pub fn network_as_trained(&self, architecture: Architecture) -> Result<Network> {
+        Network::new(architecture, self.best.parameters.clone(), self.best.output.clone())
+    }
+
     /// The network at the best point, its output weights by least squares on the objective's rows.
     pub fn network(&self, objective: &Objective) -> Result<Network> {
         let value = objective.value(&self.best.parameters);
@@ -300,18 +343,22 @@ impl Search {
 }
 
 impl Point {
-    fn take_if_lower(&mut self, parameters: &[f64], objective: f64, mean_square: f64) {
-        if objective < self.objective {
-            self.parameters.copy_from_slice(parameters);
-            self.objective = objective;
-            self.mean_square = mean_square;
+    /// The objective's value at some parameters.
+    fn of(parameters: Vec<f64>, value: &Value) -> Self {
+        let (objective, mean_square) = (value.objective, value.mean_square);
+        Self { parameters, output: value.output_weights().to_vec(), objective, mean_square }
+    }
+
+    fn take_if_lower(&mut self, parameters: &[f64], value: &Value) {
+        if value.objective < self.objective {
+            *self = Self::of(parameters.to_vec(), value);
         }
     }
 }
 
 fn point(objective: &Objective, parameters: Vec<f64>) -> Point {
     let value = objective.value(&parameters);
-    Point { parameters, objective: value.objective, mean_square: value.mean_square }
+    Point::of(parameters, &value)
 }
 
 fn cost<'a>(objective: &'a Objective, encoding: &'a Encoding) -> impl Fn(&[f64]) -> f64 + Sync + 'a {
@@ -346,15 +393,18 @@ fn begin(
     options: &FitOptions,
     parameters: Vec<f64>,
 ) -> Result<(Search, Point)> {
-    // The search evaluates its beginning, which is the lowest point so far.
-    let mut best =
-        Point { parameters: parameters.clone(), objective: f64::INFINITY, mean_square: f64::INFINITY };
     if method == Method::LevenbergMarquardt {
-        let mut search = LevenbergMarquardt::new(objective, parameters);
-        let value = search.value(objective);
-        (best.objective, best.mean_square) = (value.objective, value.mean_square);
+        let mut search = LevenbergMarquardt::new(objective, parameters.clone());
+        let best = Point::of(parameters, search.value(objective));
         return Ok((Search::LevenbergMarquardt(search), best));
     }
+    // The search evaluates its beginning, which is the lowest point so far.
+    let mut best = Point {
+        parameters: parameters.clone(),
+        output: Vec::new(),
+        objective: f64::INFINITY,
+        mean_square: f64::INFINITY,
+    };
     let scales = scales(objective.layout(), &parameters);
     let mut function = NetworkFunction { objective, lowest: &mut best };
     let search = SpaceDilation::new(parameters, scales, dilation_options(), &mut function)?;
@@ -392,7 +442,7 @@ impl Subdifferentiable for NetworkFunction<'_, '_> {
                 *g = 0.0;
             }
         }
-        self.lowest.take_if_lower(&parameters, value.objective, value.mean_square);
+        self.lowest.take_if_lower(&parameters, &value);
         value.objective
     }
 }

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::linear_algebra::dot;
+use crate::training::soundness::{Frame, MOST_COUNTED, are_finite};
 use crate::training::termination::{Stall, Termination};
 
 /// A function and one of its sub-gradients: writes the sub-gradient, returns the value.
@@ -170,6 +171,21 @@ impl SpaceDilation {
         })
     }
 
+    /// True if a minimisation with these settings can go on from here.
+    pub(super) fn is_sound(&self, frame: &Frame, options: &DilationOptions) -> bool {
+        let n = self.x.len();
+        let vectors = [&self.x, &self.scales, &self.gradient, &self.best.x];
+        let numbers = [self.value, self.step, self.last_move, self.best.value];
+        self.options == *options
+            && vectors.into_iter().all(|vector| frame.is_vector(vector))
+            && self.scales.iter().all(|scale| *scale > 0.0)
+            && self.transformation.len() == n * n
+            && are_finite(&self.transformation)
+            && are_finite(&numbers)
+            && self.step > 0.0
+            && self.best.iterations.max(self.best.evaluations) <= MOST_COUNTED
+    }
+
     /// The lowest point so far.
     pub fn best(&self) -> &Minimum {
         &self.best
@@ -231,9 +247,11 @@ impl SpaceDilation {
             if next == self.x {
                 return false;
             }
-            let value = f.evaluate(&next, &mut self.gradient);
-            self.best.evaluations += 1;
-            if !is_usable(value, &self.gradient) || !next.iter().all(|x| x.is_finite()) {
+            // The function is asked nothing of what is no point.
+            let is_point = next.iter().all(|x| x.is_finite());
+            let value = if is_point { f.evaluate(&next, &mut self.gradient) } else { f64::NAN };
+            self.best.evaluations += usize::from(is_point);
+            if !is_usable(value, &self.gradient) {
                 halvings += 1;
                 if halvings == MOST_HALVINGS {
                     return false;

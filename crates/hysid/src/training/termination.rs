@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::training::soundness::MOST_COUNTED;
+
 /// Why a training run ended. Not converging is an answer, not an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -55,6 +57,11 @@ impl Stall {
     /// From a value on; without the rule if `patience` is 0.
     pub fn new(value: f64, patience: usize) -> Self {
         Self { patience, reference: value, epochs: 0 }
+    }
+
+    /// True if it is one that counts epochs of values.
+    pub fn is_sound(&self) -> bool {
+        !self.reference.is_nan() && self.epochs <= MOST_COUNTED
     }
 
     /// Takes the best value after one more epoch.

@@ -9,6 +9,7 @@ use crate::classical::series::Series;
 use crate::error::Result;
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::FEWEST_ROWS;
 
 use super::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
@@ -34,6 +35,9 @@ impl Default for BoucWenOptions {
     }
 }
 
+/// Elementary operations of a row, roughly: it may take some hundred steps.
+const OPERATIONS_A_ROW: usize = 5000;
+
 impl BoucWen {
     /// Identifies a law.
     ///
@@ -44,6 +48,16 @@ impl BoucWen {
         options: &BoucWenOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
+        Self::fit_until(data, options, observer, StopCheck::never())
+    }
+
+    /// As [`BoucWen::fit`]; asked to stop in the midst of a round, with the best so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &BoucWenOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         // The rate only adds to the output, so it is no part of the memory.
         let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
@@ -52,7 +66,7 @@ impl BoucWen {
         let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
         let family = Elements::new(range, options);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
-        let found = search(&family, &series, effort, observer)?;
+        let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         law.offset = found.weights[0];
         law.elastic_stiffness = found.weights[1];
@@ -120,10 +134,13 @@ impl Family for Elements {
         &self.non_negative
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = BoucWenState::default();
         for (&Sample { x, rate, .. }, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(OPERATIONS_A_ROW) {
+                return;
+            }
             let z = law.yield_displacement * law.advance(&mut state, x);
             if !y.is_nan() {
                 let row = [1.0, x, z, rate];

@@ -11,6 +11,7 @@ use crate::classical::search::{
 use crate::classical::series::{Series, slope, work};
 use crate::error::{Error, Result};
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::FEWEST_ROWS;
 
 use crate::classical::play_weights::MOST_PLAYS;
@@ -52,6 +53,16 @@ impl GeneralizedPrandtlIshlinskii {
         options: &GeneralizedPrandtlIshlinskiiOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
+        Self::fit_until(data, options, observer, StopCheck::never())
+    }
+
+    /// As [`GeneralizedPrandtlIshlinskii::fit`]; asked to stop in the midst of a round, with the best so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &GeneralizedPrandtlIshlinskiiOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         if options.operators == 0 || options.operators > MOST_PLAYS {
             return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
@@ -62,7 +73,7 @@ impl GeneralizedPrandtlIshlinskii {
         let series = thinned(series, Memory::TurningPoints);
         let family = Plays::new(data.input_range(0), sign, lags, options);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
-        let found = search(&family, &series, effort, observer)?;
+        let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         law.offset = found.weights[0];
         law.weights = match law.weights {
@@ -166,12 +177,15 @@ impl Family for Plays {
         &self.non_negative
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 0);
         let mut plays = vec![law.initial; self.operators];
         let mut row = vec![1.0; self.non_negative.len()];
         for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(8 * plays.len()) {
+                return;
+            }
             let (left, right) = (law.left.value(sample.x), law.right.value(sample.x));
             for (index, play) in plays.iter_mut().enumerate() {
                 let r = law.spacing * index as f64;

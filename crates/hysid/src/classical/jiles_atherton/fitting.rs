@@ -7,6 +7,7 @@ use crate::classical::search::{
 use crate::classical::series::Series;
 use crate::error::Result;
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::FEWEST_ROWS;
 
 use super::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
@@ -40,12 +41,22 @@ impl JilesAtherton {
         options: &JilesAthertonOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
+        Self::fit_until(data, options, observer, StopCheck::never())
+    }
+
+    /// As [`JilesAtherton::fit`]; asked to stop in the midst of a round, with the best so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &JilesAthertonOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
         let (low, high) = data.input_range(0);
         let family = Materials::new(low.abs().max(high.abs()), options.form);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
-        let found = search(&family, &series, effort, observer)?;
+        let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         (law.offset, law.permeability, law.saturation) =
             (found.weights[0], found.weights[1], found.weights[2]);
@@ -88,10 +99,13 @@ impl Family for Materials {
         &[false; 3]
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = JilesAthertonState::default();
         for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(law.operations(&state, sample.x)) {
+                return;
+            }
             let m = law.advance(&mut state, sample.x);
             if !y.is_nan() {
                 columns.push(&[1.0, sample.x, m]);

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, StopCheck, identifiable_series, logarithmic, lowest,
+    Bounds, FoldSums, Folds, Gatherer, Penalty, Quadratic, Sign, identifiable_series, logarithmic, lowest,
 };
 use crate::classical::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
@@ -25,6 +25,7 @@ use crate::error::{Error, Result};
 use crate::operator::play;
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::{Pace, StopCheck};
 
 /// How a modified Prandtl-Ishlinskii model is fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -68,7 +69,7 @@ impl ModifiedPrandtlIshlinskii {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &ModifiedPrandtlIshlinskiiOptions) -> Result<Self> {
-        Self::fit_until(data, options, &|| false)
+        Self::fit_until(data, options, StopCheck::never())
     }
 
     /// As [`ModifiedPrandtlIshlinskii::fit`]; asked to stop, with the best prior so far and no further
@@ -76,7 +77,7 @@ impl ModifiedPrandtlIshlinskii {
     pub(crate) fn fit_until(
         data: &Dataset,
         options: &ModifiedPrandtlIshlinskiiOptions,
-        stop: &StopCheck<'_>,
+        stop: StopCheck<'_>,
     ) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
@@ -88,23 +89,31 @@ impl ModifiedPrandtlIshlinskii {
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
         let grids = thresholds::candidates(given.as_deref(), options.operators, 1.0)?;
-        let problems: Vec<Problem> =
-            grids.iter().map(|grid| Problem::new(&series, &scaling, grid, options.dead_zones)).collect();
+        let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
+        let problems = thresholds::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
         for sign in signs {
             // The convex problem tells which grid is best, outputs tell the rest.
-            let scores: Vec<f64> = problems.iter().map(|problem| problem.convex_score(sign, stop)).collect();
+            let score = |problem: &Problem| match problem.convex_score(sign, stop) {
+                Err(Error::Stopped) => Ok(f64::INFINITY),
+                score => score,
+            };
+            let scores: Vec<f64> = problems.iter().map(score).collect::<Result<_>>()?;
             let grid = lowest(&scores);
             for ridge in logarithmic(1e-7, 1e-1, RIDGES) {
                 candidates.push((grid, Prior { sign, ridge }));
             }
         }
-        let score = |&(grid, prior): &(usize, Prior)| problems[grid].score(prior, stop);
-        let scores: Vec<f64> = candidates.par_iter().map(score).collect();
+        let score = |&(grid, prior): &(usize, Prior)| match problems[grid].score(prior, stop) {
+            Err(Error::Stopped) => Ok(f64::INFINITY),
+            score => score,
+        };
+        let scores: Vec<f64> = candidates.par_iter().map(score).collect::<Result<_>>()?;
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
-        problem.refine(problem.convex_start(prior), ITERATIONS, stop).in_users_units(&grids[grid], &scaling)
+        let start = problem.convex_start(prior, stop)?;
+        problem.refine(start, ITERATIONS, stop)?.in_users_units(&grids[grid], &scaling)
     }
 }
 
@@ -143,13 +152,25 @@ struct Point {
 }
 
 impl Problem {
-    fn new(series: &[Series], scaling: &Scaling, grid: &[f64], dead_zones: usize) -> Self {
+    /// # Errors
+    /// A stop.
+    fn new(
+        series: &[Series],
+        scaling: &Scaling,
+        grid: &[f64],
+        dead_zones: usize,
+        stop: StopCheck<'_>,
+    ) -> Result<Self> {
+        let mut pace = Pace::new(stop);
         let folds = Folds::of_series(series);
         let (mut drives, mut targets, mut fold_of) = (Vec::new(), Vec::new(), Vec::new());
         for (series, of_rows) in series.iter().zip(&folds.of_rows) {
             let mut plays = vec![0.0; grid.len()];
             let outputs = scaling.scaled_output(&series.output);
             for ((sample, &fold), target) in series.samples.iter().zip(of_rows).zip(outputs) {
+                if pace.is_over(10 * grid.len()) {
+                    return Err(Error::Stopped);
+                }
                 let x = sample.x / scaling.inputs[0];
                 plays.iter_mut().zip(grid).for_each(|(play, &r)| *play = play::follow(*play, x, r));
                 if !target.is_nan() {
@@ -159,7 +180,7 @@ impl Problem {
                 }
             }
         }
-        Self { drives, targets, fold_of, folds, dead_zones }
+        Ok(Self { drives, targets, fold_of, folds, dead_zones })
     }
 
     /// Ridge on the plays among `count` parameters.
@@ -189,36 +210,46 @@ impl Problem {
         }
     }
 
-    /// Mean over the folds of the logarithm of the mean square error of outputs held out; asked to stop, as
-    /// if it were beyond all bounds.
-    fn score(&self, prior: Prior, stop: &StopCheck<'_>) -> f64 {
+    /// Mean over the folds of the logarithm of the mean square error of outputs held out.
+    ///
+    /// # Errors
+    /// A stop.
+    fn score(&self, prior: Prior, stop: StopCheck<'_>) -> Result<f64> {
         let judge = |&fold: &usize| {
-            if stop() {
-                return f64::INFINITY;
+            if stop.is_asked() {
+                return Err(Error::Stopped);
             }
             let (rest, held_out) = (self.part(|other| other != fold), self.part(|other| other == fold));
             if rest.targets.is_empty() || held_out.targets.is_empty() {
-                return 0.0;
+                return Ok(0.0);
             }
-            let mut point = rest.refine(rest.convex_start(prior), ITERATIONS_IN_VALIDATION, stop);
+            let mut point = rest.refine(rest.convex_start(prior, stop)?, ITERATIONS_IN_VALIDATION, stop)?;
             point.prior.ridge = 0.0;
-            held_out.objective(&point).max(1e-30).ln()
+            Ok(held_out.objective(&point).max(1e-30).ln())
         };
-        self.folds.judged.iter().map(judge).sum::<f64>() / self.folds.judged.len() as f64
+        let sum: f64 = self.folds.judged.iter().map(judge).sum::<Result<f64>>()?;
+        Ok(sum / self.folds.judged.len() as f64)
     }
 
     /// How well the convex problem forecasts rows held out.
-    fn convex_score(&self, sign: Sign, stop: &StopCheck<'_>) -> f64 {
-        let (sums, penalty, _) = self.convex_problem();
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_score(&self, sign: Sign, stop: StopCheck<'_>) -> Result<f64> {
+        let (sums, penalty, _) = self.convex_problem(stop)?;
         let plays = 2..self.drives[0].len();
         let bounds = Bounds::apart(sign, plays, 0..0, sums.total().features());
         let factors = logarithmic(1e-8, 1e-1, 8);
-        let scores = sums.scores(|rest| rest.path(&penalty, &factors, &bounds), stop);
-        scores[lowest(&scores)]
+        let path = |rest: &Quadratic| rest.path(&penalty, &factors, &bounds, stop);
+        let scores = sums.scores(path, stop).ok_or(Error::Stopped)?;
+        Ok(scores[lowest(&scores)])
     }
 
     /// Sums and penalty of the convex problem, and the knots of the inverse polygon.
-    fn convex_problem(&self) -> (FoldSums, Penalty, Vec<f64>) {
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_problem(&self, stop: StopCheck<'_>) -> Result<(FoldSums, Penalty, Vec<f64>)> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
         };
@@ -231,28 +262,34 @@ impl Problem {
         inner.dedup();
         let knots = [&[low], inner.as_slice(), &[high]].concat();
         let first = self.drives[0].len();
-        let mut gatherer = Gatherer::new(first + inner.len(), &self.folds);
+        let mut gatherer = Gatherer::new(first + inner.len(), &self.folds, stop);
         let mut features = vec![0.0; first + inner.len()];
         for ((drive, &y), &fold) in self.drives.iter().zip(&self.targets).zip(&self.fold_of) {
+            if gatherer.is_over(4 * features.len()) {
+                break;
+            }
             features[..first].copy_from_slice(drive);
             for (j, feature) in features[first..].iter_mut().enumerate() {
                 *feature = -hat(y, &knots[j..j + 3]);
             }
             gatherer.add(fold, &features, y);
         }
-        let sums = gatherer.finish();
+        let sums = gatherer.finish()?;
         let penalty = self.penalty(features.len(), first..features.len());
-        (sums, penalty, knots)
+        Ok((sums, penalty, knots))
     }
 
     /// Step 1.
-    fn convex_start(&self, prior: Prior) -> Point {
-        let (sums, penalty, knots) = self.convex_problem();
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_start(&self, prior: Prior, stop: StopCheck<'_>) -> Result<Point> {
+        let (sums, penalty, knots) = self.convex_problem(stop)?;
         let first = self.drives[0].len();
         let mut penalised = sums.total().quadratic();
         penalised.penalise(&penalty, prior.ridge);
         let bounds = Bounds::apart(prior.sign, 2..first, 0..0, first + knots.len() - 2);
-        let weights = penalised.minimum_within(&bounds, &[]);
+        let weights = penalised.last_minimum(&bounds, stop)?;
 
         // The inverse polygon: S takes its values z to the knots.
         let mut z = vec![knots[0]];
@@ -282,11 +319,11 @@ impl Problem {
             .windows(2)
             .map(|pair| ((value(pair[1]) - value(pair[0])) / (pair[1] - pair[0])).max(LEAST_SLOPE))
             .collect();
-        Point { hysteresis: weights[..first].to_vec(), constant: value(0.0), slopes, thresholds, prior }
+        Ok(Point { hysteresis: weights[..first].to_vec(), constant: value(0.0), slopes, thresholds, prior })
     }
 
     /// Step 2, or as much of it as there is time for.
-    fn refine(&self, start: Point, iterations: usize, stop: &StopCheck<'_>) -> Point {
+    fn refine(&self, start: Point, iterations: usize, stop: StopCheck<'_>) -> Result<Point> {
         let first = self.drives[0].len();
         let count = first + 1 + start.slopes.len();
         let penalty = self.penalty(count, count..count);
@@ -296,16 +333,22 @@ impl Problem {
         let mut objective = self.objective(&point);
         let (mut damping, mut refused) = (1e-3, 0);
         for _ in 0..iterations {
-            if stop() {
+            if stop.is_asked() {
                 break;
             }
-            let mut gatherer = Gatherer::new(count, &whole);
+            let mut gatherer = Gatherer::new(count, &whole, stop);
             let mut jacobian = vec![0.0; count];
             for (drive, &y) in self.drives.iter().zip(&self.targets) {
+                if gatherer.is_over(4 * count) {
+                    return Ok(point);
+                }
                 let residual = y - point.linearise(drive, &mut jacobian);
                 gatherer.add(0, &jacobian, residual);
             }
-            let sums = gatherer.finish().total();
+            let sums = match gatherer.finish() {
+                Err(Error::Stopped) => return Ok(point),
+                sums => sums?.into_total(),
+            };
             let gauss_newton = sums.quadratic();
             while refused < REFUSALS {
                 let mut damped = gauss_newton.clone();
@@ -321,7 +364,10 @@ impl Problem {
                 let values = point.values();
                 let shift = damped.matrix.times(&values);
                 damped.right.iter_mut().zip(shift).for_each(|(right, shift)| *right += shift);
-                let candidate = point.at(&damped.minimum_within(&bounds, &values));
+                let Some(step_to) = damped.minimum_within(&bounds, &values, stop) else {
+                    return Ok(point);
+                };
+                let candidate = point.at(&step_to);
                 let value = self.objective(&candidate);
                 if value < objective {
                     let gain = objective - value;
@@ -337,7 +383,7 @@ impl Problem {
                 break;
             }
         }
-        point
+        Ok(point)
     }
 
     /// Half the mean square error and half the penalty.

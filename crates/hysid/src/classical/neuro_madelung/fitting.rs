@@ -22,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::stop_check::{Pace, StopCheck};
 use crate::training::{FEWEST_ROWS, Termination, start::normal};
 
 use super::{Branch, NeuroMadelung, argument};
@@ -71,6 +72,16 @@ impl NeuroMadelung {
         options: &NeuroMadelungOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
+        Self::fit_until(data, options, observer, StopCheck::never())
+    }
+
+    /// As [`NeuroMadelung::fit`]; asked to stop in the midst of a round, with the best so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &NeuroMadelungOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let NeuroMadelungOptions { hidden, starts, epochs, seed, .. } = *options;
         if hidden == 0 || hidden > MOST_NEURONS {
@@ -78,11 +89,12 @@ impl NeuroMadelung {
         }
         Effort { starts, epochs, seed }.validated()?;
         let frame = frame(data, options)?;
-        let whole = Task::new(&frame, data, options)?;
+        let whole = Task::new(&frame, data, options, stop)?;
         let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
             return Training::new(&whole, &whole, options).run(&whole, observer);
         };
-        let (kept, held) = (Task::new(&frame, &kept, options)?, Task::new(&frame, &held, options)?);
+        let (kept, held) =
+            (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
         Training::new(&kept, &held, options).run(&whole, observer)
     }
 }
@@ -109,6 +121,9 @@ impl<'a> Training<'a> {
         whole: &Task<'_>,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<NeuroMadelung>> {
+        if self.walks.iter().all(|walk| walk.objective == f64::INFINITY) {
+            return Err(Error::Stopped);
+        }
         let forced = self.epochs / 2;
         let last = (self.epochs / 6).max(1);
         let mut termination = Termination::EpochsUsed;
@@ -119,7 +134,7 @@ impl<'a> Training<'a> {
                 // With the measured output at every turning point it is no error of a free run.
                 told.train_nrmse_percent = f64::NAN;
             }
-            if observer(told).is_break() {
+            if observer(told).is_break() || whole.stop.is_asked() {
                 termination = Termination::Stopped;
                 break;
             }
@@ -127,10 +142,12 @@ impl<'a> Training<'a> {
                 break;
             }
         }
-        // A training that was stopped early has not judged any free run.
+        // A training that was stopped early has not judged any free run; there may be no time for it.
         for walk in self.walks.iter_mut().filter(|walk| walk.best.is_none()) {
-            walk.set_free(self.kept);
-            walk.judge(self.held);
+            if !whole.stop.is_asked() {
+                walk.set_free(self.kept);
+                walk.judge(self.held);
+            }
         }
         self.sort();
         let best = &self.walks[0];
@@ -146,7 +163,7 @@ impl<'a> Training<'a> {
                 train_nrmse_percent: 100.0 * walk.mean_square.sqrt(),
                 ..self.progress(self.epochs + epoch, self.epochs + last)
             };
-            if observer(told) == ControlFlow::Break(()) {
+            if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
                 termination = Termination::Stopped;
             }
             if let Some(ended) = walk.ended {
@@ -182,7 +199,8 @@ impl<'a> Training<'a> {
     /// start stays before the later.
     fn sort(&mut self) {
         let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.objective, |(error, _)| *error);
-        self.walks.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
+        let is_judged = |walk: &Walk| walk.best.is_some();
+        self.walks.sort_by(|a, b| is_judged(b).cmp(&is_judged(a)).then(rank(a).total_cmp(&rank(b))));
     }
 
     fn evaluations(&self) -> usize {
@@ -225,6 +243,8 @@ struct Task<'a> {
     frame: &'a NeuroMadelung,
     series: Vec<Series>,
     hidden: usize,
+    /// Breaks sweeps off.
+    stop: StopCheck<'a>,
 }
 
 /// A turning point: the output there and its derivatives by all parameters.
@@ -238,10 +258,17 @@ struct Reached {
 struct Sweep {
     residual: Vec<f64>,
     jacobian: Vec<Vec<f64>>,
+    /// It ran over all rows.
+    is_complete: bool,
 }
 
 impl<'a> Task<'a> {
-    fn new(frame: &'a NeuroMadelung, data: &Dataset, options: &NeuroMadelungOptions) -> Result<Self> {
+    fn new(
+        frame: &'a NeuroMadelung,
+        data: &Dataset,
+        options: &NeuroMadelungOptions,
+        stop: StopCheck<'a>,
+    ) -> Result<Self> {
         // The rate is an input of the network and no part of the memory.
         let mut series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
         for series in &mut series {
@@ -252,7 +279,7 @@ impl<'a> Task<'a> {
                 *y = (*y - frame.output_mean) / frame.output_scale;
             }
         }
-        Ok(Self { frame, series, hidden: options.hidden })
+        Ok(Self { frame, series, hidden: options.hidden, stop })
     }
 
     fn inputs(&self) -> usize {
@@ -293,13 +320,15 @@ impl<'a> Task<'a> {
         measured.min_by(|a, b| a.0.x.abs().total_cmp(&b.0.x.abs())).map_or(0.0, |(_, y)| *y)
     }
 
-    /// Runs over all records; `forced` takes the measured output at turning points where there is one.
+    /// Runs over all records, unless it is asked to stop; `forced` takes the measured output at turning points where there is one.
     fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> Sweep {
         let law = self.law(parameters);
         let branch = law.branch();
         let n = parameters.len();
-        let mut sweep =
-            Sweep { residual: Vec::new(), jacobian: vec![Vec::new(); if slopes { n } else { 0 }] };
+        let jacobian = vec![Vec::new(); if slopes { n } else { 0 }];
+        let mut sweep = Sweep { residual: Vec::new(), jacobian, is_complete: false };
+        let mut pace = Pace::new(self.stop);
+        let operations = if slopes { 10 * n } else { 30 * self.hidden };
         let width = if slopes { n } else { 0 };
         for series in &self.series {
             let mut by_parameters = vec![0.0; width];
@@ -309,6 +338,9 @@ impl<'a> Task<'a> {
             let virgin = TurningPoint { x: 0.0, value: Reached { y: law.virgin_output, by_parameters } };
             let mut memory = TurningPointStack::default();
             for (sample, &measured) in series.samples.iter().zip(&series.output) {
+                if pace.is_over(operations) {
+                    return sweep;
+                }
                 // What is reached there follows from the branch.
                 memory.advance(sample.x, Reached { y: 0.0, by_parameters: Vec::new() });
                 let TurningPoint { x: x_t, value: reached } = memory.points().last().unwrap_or(&virgin);
@@ -332,6 +364,7 @@ impl<'a> Task<'a> {
                 memory.set_value(here);
             }
         }
+        sweep.is_complete = true;
         sweep
     }
 }
@@ -429,7 +462,10 @@ impl Walk {
 
     /// Remembers the parameters if they do better than any before on what was held out.
     fn judge(&mut self, held: &Task<'_>) {
-        let residual = held.sweep(&self.parameters, false, false).residual;
+        let Sweep { residual, is_complete, .. } = held.sweep(&self.parameters, false, false);
+        if !is_complete {
+            return;
+        }
         let error = dot(&residual, &residual) / residual.len() as f64;
         self.evaluations += 1;
         if self.best.as_ref().is_none_or(|(best, _)| error < *best) {
@@ -437,9 +473,15 @@ impl Walk {
         }
     }
 
-    /// The objective, which weighs the parameters as well, and the mean square error.
+    /// The objective, which weighs the parameters as well, and the mean square error; infinite if it was broken off.
     fn value(&self, task: &Task<'_>, parameters: &[f64]) -> (f64, f64) {
-        let residual = task.sweep(parameters, self.forced, false).residual;
+        if task.stop.is_asked() {
+            return (f64::INFINITY, f64::INFINITY);
+        }
+        let Sweep { residual, is_complete, .. } = task.sweep(parameters, self.forced, false);
+        if !is_complete {
+            return (f64::INFINITY, f64::INFINITY);
+        }
         let mean_square = dot(&residual, &residual) / residual.len() as f64;
         (mean_square + DECAY * dot(parameters, parameters), mean_square)
     }
@@ -448,7 +490,10 @@ impl Walk {
         if self.ended.is_some() {
             return;
         }
-        let Sweep { residual, jacobian } = task.sweep(&self.parameters, self.forced, true);
+        let Sweep { residual, jacobian, is_complete } = task.sweep(&self.parameters, self.forced, true);
+        if !is_complete {
+            return;
+        }
         self.evaluations += 1;
         let n = self.parameters.len();
         let rows = residual.len() as f64;
@@ -457,13 +502,13 @@ impl Walk {
         let matrix = Symmetric::from_fn(n, |i, j| {
             dot(&jacobian[i], &jacobian[j]) / rows + if i == j { DECAY } else { 0.0 }
         });
-        while self.damping < LARGEST_DAMPING {
+        while self.damping < LARGEST_DAMPING && !task.stop.is_asked() {
             let mut damped = matrix.clone();
             for i in 0..n {
                 damped.add_to_diagonal(i, self.damping * (matrix.diagonal(i) + 1e-6));
             }
             let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
-            if let Some(factor) = damped.cholesky() {
+            if let Some(factor) = damped.cholesky(StopCheck::never()) {
                 factor.solve(&mut step);
                 let foretold: f64 = (0..n)
                     .map(|i| step[i] * (self.damping * (matrix.diagonal(i) + 1e-6) * step[i] - gradient[i]))

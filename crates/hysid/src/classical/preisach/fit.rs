@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::classical::linear_fit::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Sign, StopCheck, identifiable_series, logarithmic,
+    Bounds, Choice, FoldSums, Folds, Gatherer, Penalty, Sign, identifiable_series, logarithmic,
 };
 use crate::classical::preisach::plane::Plane;
 use crate::classical::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
@@ -18,6 +18,7 @@ use crate::classical::turning_point_stack::{Change, TurningPointStack};
 use crate::error::{Error, Result};
 use crate::record::Dataset;
 use crate::scaling::Scaling;
+use crate::stop_check::StopCheck;
 
 /// How a Preisach model is fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,11 +49,12 @@ impl Preisach {
     /// # Errors
     /// Data that nothing can be identified from, several inputs, options outside their meaning.
     pub fn fit(data: &Dataset, options: &PreisachOptions) -> Result<Self> {
-        Self::fit_until(data, options, &|| false)
+        Self::fit_until(data, options, StopCheck::never())
     }
 
-    /// As [`Preisach::fit`]; asked to stop, with a penalty chosen by fewer folds.
-    pub(crate) fn fit_until(data: &Dataset, options: &PreisachOptions, stop: &StopCheck<'_>) -> Result<Self> {
+    /// As [`Preisach::fit`]; asked to stop, with a penalty chosen by fewer folds, and on the coarser plane that it was
+    /// chosen on.
+    pub(crate) fn fit_until(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Self> {
         let series = identifiable_series(data)?;
         let scaling = Scaling::of(data, None)?;
         let intervals = options.intervals;
@@ -63,19 +65,18 @@ impl Preisach {
         let penalties = logarithmic(1e-9, 1e2, 12);
 
         let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
-        let sums = coarse.sums(&series, &scaling);
+        let sums = coarse.sums(&series, &scaling, &Folds::of_series(&series), stop)?;
         let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
-        let fine = Problem::new(Plane::new(density.lines(intervals)));
-        let total = if intervals > INTERVALS_FOR_CHOICE {
-            fine.sums(&series, &scaling).total()
-        } else {
-            sums.total()
-        };
-        let mut penalised = total.quadratic();
-        penalised.penalise(&fine.penalty, choice.factor);
-        let bounds = Bounds::new(choice.sign, fine.reversible(), fine.features());
-        let weights = penalised.minimum_within(&bounds, &[]);
-        Self::new(fine.in_users_units(&weights, &scaling))
+        if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
+            let fine = Problem::new(Plane::new(density.lines(intervals)));
+            // Nothing is held out here, and the sums of a fine plane are gigabytes.
+            let sums = fine.sums(&series, &scaling, &Folds::none(&series), stop);
+            match sums.and_then(|sums| fine.weighted(sums, choice, &scaling, stop)) {
+                Err(Error::Stopped) => {}
+                fitted => return fitted,
+            }
+        }
+        coarse.weighted(sums, choice, &scaling, stop)
     }
 }
 
@@ -178,18 +179,46 @@ impl Problem {
         FIRST..FIRST + self.plane.intervals()
     }
 
-    fn sums(&self, series: &[Series], scaling: &Scaling) -> FoldSums {
-        let folds = Folds::of_series(series);
-        let mut gatherer = Gatherer::new(self.features(), &folds);
+    /// # Errors
+    /// A stop.
+    fn sums(
+        &self,
+        series: &[Series],
+        scaling: &Scaling,
+        folds: &Folds,
+        stop: StopCheck<'_>,
+    ) -> Result<FoldSums> {
+        let mut gatherer = Gatherer::new(self.features(), folds, stop);
         for (series, fold) in series.iter().zip(&folds.of_rows) {
             let targets = scaling.scaled_output(&series.output);
             let mut rows = Rows::new(&self.plane);
             for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+                if gatherer.is_over(4 * rows.features.len()) {
+                    break;
+                }
                 rows.advance(sample.x, sample.x / scaling.inputs[0], !target.is_nan());
                 gatherer.add(fold, &rows.features, target);
             }
         }
         gatherer.finish()
+    }
+
+    /// The model with the weights of a penalty that was chosen.
+    ///
+    /// # Errors
+    /// A stop.
+    fn weighted(
+        &self,
+        sums: FoldSums,
+        choice: Choice,
+        scaling: &Scaling,
+        stop: StopCheck<'_>,
+    ) -> Result<Preisach> {
+        let mut penalised = sums.into_total().into_quadratic();
+        penalised.penalise(&self.penalty, choice.factor);
+        let bounds = Bounds::new(choice.sign, self.reversible(), self.features());
+        let weights = penalised.last_minimum(&bounds, stop)?;
+        Preisach::new(self.in_users_units(&weights, scaling))
     }
 
     fn in_users_units(&self, weights: &[f64], scaling: &Scaling) -> PreisachWeights {

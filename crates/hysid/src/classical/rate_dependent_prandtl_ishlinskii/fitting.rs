@@ -9,6 +9,7 @@ use crate::classical::series::{Series, work};
 use crate::error::{Error, Result};
 use crate::rate::RateMethod;
 use crate::record::Dataset;
+use crate::stop_check::StopCheck;
 use crate::training::FEWEST_ROWS;
 
 use super::{PlayWeights, RateDependentPrandtlIshlinskii, Thresholds};
@@ -66,6 +67,16 @@ impl RateDependentPrandtlIshlinskii {
         options: &RateDependentPrandtlIshlinskiiOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
+        Self::fit_until(data, options, observer, StopCheck::never())
+    }
+
+    /// As [`RateDependentPrandtlIshlinskii::fit`]; asked to stop in the midst of a round, with the best so far.
+    pub(crate) fn fit_until(
+        data: &Dataset,
+        options: &RateDependentPrandtlIshlinskiiOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         if options.operators == 0 || options.operators > MOST_PLAYS {
             return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
@@ -74,7 +85,7 @@ impl RateDependentPrandtlIshlinskii {
         let family = Plays::new(&series, options);
         let series = thinned(series, Memory::EveryRow);
         let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
-        let found = search(&family, &series, effort, observer)?;
+        let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         (law.offset, law.spring) = (found.weights[0], found.weights[1]);
         law.weights = match law.weights {
@@ -166,12 +177,15 @@ impl Family for Plays {
         &self.non_negative
     }
 
-    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns) {
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let weights = law.weights.values(law.spacing, 1);
         let mut plays = vec![0.0; self.operators];
         let mut row = vec![1.0; self.non_negative.len()];
         for (&sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(8 * plays.len()) {
+                return;
+            }
             law.advance(&mut plays, sample);
             if y.is_nan() {
                 continue;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::linear_algebra::{Symmetric, dot};
+use crate::stop_check::StopCheck;
 use crate::training::Termination;
 
 use super::projection::Projection;
@@ -50,6 +51,9 @@ impl Descent {
         }
         let jacobian = self.jacobian(objective);
         self.evaluations += jacobian.len();
+        if objective.stop.is_asked() {
+            return;
+        }
         let gradient: Vec<f64> = jacobian.iter().map(|column| dot(column, &self.value.residual)).collect();
         let matrix = Symmetric::from_fn(jacobian.len(), |i, j| dot(&jacobian[i], &jacobian[j]));
         let largest = (0..gradient.len()).map(|i| matrix.diagonal(i)).fold(0.0, f64::max);
@@ -58,7 +62,7 @@ impl Descent {
             return;
         }
         let floor = LEAST_CURVATURE * largest;
-        while self.damping < LARGEST_DAMPING {
+        while self.damping < LARGEST_DAMPING && !objective.stop.is_asked() {
             if let Some((u, foretold)) = self.candidate(&matrix, &gradient, floor) {
                 let value = objective.value(&u);
                 self.evaluations += 1;
@@ -110,7 +114,7 @@ impl Descent {
                 matrix.at(i, j) + if i == j { self.damping * scale(i) } else { 0.0 }
             });
             let mut step: Vec<f64> = moving.iter().map(|&i| -gradient[i]).collect();
-            damped.cholesky()?.solve(&mut step);
+            damped.cholesky(StopCheck::never())?.solve(&mut step);
             let leaves = |i: usize, by: f64| self.u[i] <= 0.0 && by < 0.0 || self.u[i] >= 1.0 && by > 0.0;
             let staying: Vec<usize> =
                 moving.iter().zip(&step).filter(|(i, by)| !leaves(**i, **by)).map(|(i, _)| *i).collect();

@@ -1,19 +1,29 @@
 //! Weights of features by least squares, some of them not negative: theory.md (8.1).
 
 use crate::linear_algebra::{Symmetric, dot};
+use crate::stop_check::{Pace, StopCheck};
+
+/// Squared residual of what was not computed to its end.
+pub(crate) const UNFINISHED: f64 = f64::INFINITY;
 
 /// Ridge, as a share of each feature's own square: it only makes collinear features solvable.
 const RIDGE: f64 = 1e-10;
 
 /// Features of all scored rows, by columns.
 #[derive(Debug, Clone)]
-pub(crate) struct Columns {
+pub(crate) struct Columns<'a> {
     columns: Vec<Vec<f64>>,
+    pace: Pace<'a>,
 }
 
-impl Columns {
-    pub fn new(count: usize, rows: usize) -> Self {
-        Self { columns: vec![Vec::with_capacity(rows); count] }
+impl<'a> Columns<'a> {
+    pub fn new(count: usize, rows: usize, stop: StopCheck<'a>) -> Self {
+        Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
+    }
+
+    /// Counts the operations of one more row; true once asked to stop, and the columns are of no use then.
+    pub fn is_over(&mut self, operations: usize) -> bool {
+        self.pace.is_over(operations)
     }
 
     /// Appends the features of one more row.
@@ -24,8 +34,12 @@ impl Columns {
         }
     }
 
-    /// The weights that come closest to `target`.
-    pub fn project(&self, target: &[f64], non_negative: &[bool]) -> Projection {
+    /// The weights that come closest to `target`. Of columns that were not finished the residual is beyond that
+    /// of any other.
+    pub fn project(&mut self, target: &[f64], non_negative: &[bool]) -> Projection {
+        if self.pace.is_over(0) {
+            return Projection::unfinished();
+        }
         let n = self.columns.len();
         debug_assert!(self.columns.iter().all(|column| column.len() == target.len()));
         // Every column to length 1: features in different units are alike to the ridge.
@@ -66,6 +80,13 @@ pub(crate) struct Projection {
     /// Model less target.
     pub residual: Vec<f64>,
     pub square_residual: f64,
+}
+
+impl Projection {
+    /// Of features that were not computed to their end.
+    pub fn unfinished() -> Self {
+        Self { weights: Vec::new(), residual: Vec::new(), square_residual: UNFINISHED }
+    }
 }
 
 /// Minimises `wᵀG w - 2 bᵀw` with `w_i ≥ 0` where asked for, by the active-set method of Lawson and
@@ -113,7 +134,7 @@ fn solve(gram: &Symmetric, right: &[f64], free: &[bool]) -> Vec<f64> {
     let mut weights = vec![0.0; right.len()];
     let part = Symmetric::from_fn(chosen.len(), |a, b| gram.at(chosen[a], chosen[b]));
     let mut solution: Vec<f64> = chosen.iter().map(|&i| right[i]).collect();
-    if let Some(factor) = part.cholesky() {
+    if let Some(factor) = part.cholesky(StopCheck::never()) {
         factor.solve(&mut solution);
         for (&i, weight) in chosen.iter().zip(solution) {
             weights[i] = weight;
@@ -126,8 +147,8 @@ fn solve(gram: &Symmetric, right: &[f64], free: &[bool]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn columns(rows: &[[f64; 3]]) -> Columns {
-        let mut columns = Columns::new(3, rows.len());
+    fn columns(rows: &[[f64; 3]]) -> Columns<'static> {
+        let mut columns = Columns::new(3, rows.len(), StopCheck::never());
         rows.iter().for_each(|row| columns.push(row));
         columns
     }

@@ -1,0 +1,144 @@
+//! The program `hysid`: identify, simulate and judge hysteresis from the command line.
+//!
+//! Results go to stdout, everything else to stderr. Exit status: 0, 1 (data, model, input or output),
+//! 2 (usage), and after the best model so far is saved 130 (Ctrl-C), 143 (SIGTERM) or 129 (SIGHUP).
+
+mod arguments;
+mod band_coverage;
+mod cell;
+mod checkpoint;
+mod columns;
+mod commands;
+mod comparison;
+mod csv_text;
+mod data;
+mod diagnosis;
+mod errors_table;
+mod files;
+mod identification;
+mod interrupt;
+mod lines;
+mod messages;
+mod page;
+mod plot;
+mod progress;
+mod record_names;
+mod report;
+mod reproduction;
+mod table;
+mod table_run;
+mod terminal;
+mod timing;
+mod understanding;
+mod units;
+
+use std::process::ExitCode;
+
+use clap::error::{ContextValue, ErrorKind};
+
+use std::path::Path;
+
+use arguments::{Arguments, ColumnOptions, Command, RateOption};
+use columns::Roles;
+use data::Data;
+use hysid::identification::options::RateChoice;
+use hysid::record::Dataset;
+use messages::{StdoutClosed, Usage, note};
+use table::Table;
+
+/// How a command ended when nothing went wrong.
+enum Outcome {
+    /// It did all it was asked to.
+    Done,
+    /// Ctrl-C or a signal ended it early; what was found is saved.
+    Interrupted,
+}
+
+/// Does what the command line says, and gives the exit status.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::typed() {
+        Ok(arguments) => arguments,
+        Err(error) => return refuse(error),
+    };
+    let outcome = match arguments.command {
+        Command::Demo(arguments) => commands::demo::run(&arguments),
+        Command::Fit(arguments) => commands::fit::run(&arguments),
+        Command::Validate(arguments) => commands::validate::run(&arguments),
+        Command::Simulate(arguments) => commands::simulate::run(&arguments),
+        Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
+        Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
+        Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
+        Command::Generate(arguments) => commands::generate::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(interrupt::exit_status()),
+        // Whoever read the results has seen enough.
+        Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
+        Err(error) => {
+            note(format_args!("error: {error:#}"));
+            if interrupt::requested() && matches!(error.downcast_ref(), Some(hysid::Error::Stopped)) {
+                return ExitCode::from(interrupt::exit_status());
+            }
+            ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
+        }
+    }
+}
+
+/// The data in a table of this text, its columns told by their names: the way of every file that is read.
+///
+/// # Errors
+/// As for a file: one line that says what is wrong and where.
+pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
+    let table = Table::from_bytes(Path::new("text"), text)?;
+    let by_names = ColumnOptions {
+        record: None,
+        time: None,
+        input: Vec::new(),
+        output: None,
+        rate: RateOption::Choice(RateChoice::Auto),
+    };
+    let roles = Roles::detect(&table, &by_names)?;
+    Ok(Data::new(vec![table], roles)?.set)
+}
+
+/// Shows help or version where these were asked for, otherwise what is wrong with the command line,
+/// in one line.
+fn refuse(error: clap::Error) -> ExitCode {
+    match error.kind() {
+        ErrorKind::DisplayHelp
+        | ErrorKind::DisplayVersion
+        | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            // A closed pipe is no reason to complain.
+            let _ = error.print();
+            ExitCode::from(error.exit_code() as u8)
+        }
+        _ => {
+            let text = cleaned(error).render().to_string();
+            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+            let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
+            let said = said.join(" ");
+            let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
+            note(format_args!("{said} (see `hysid --help`)"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The error with the user's arguments in one line, and cut where they are long.
+fn cleaned(mut error: clap::Error) -> clap::Error {
+    let shown = |value: &ContextValue| match value {
+        ContextValue::String(text) => Some(ContextValue::String(terminal::clipped(text).into_owned())),
+        ContextValue::Strings(texts) => Some(ContextValue::Strings(
+            texts.iter().map(|text| terminal::clipped(text).into_owned()).collect(),
+        )),
+        _ => None,
+    };
+    let context: Vec<_> = error.context().filter_map(|(kind, value)| Some((kind, shown(value)?))).collect();
+    for (kind, value) in context {
+        error.insert(kind, value);
+    }
+    error
+}

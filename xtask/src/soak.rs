@@ -1,0 +1,281 @@
+//! `cargo xtask soak [KILLS]`: the program under conditions that no test has time for. It is killed at random
+//! moments, writes to a full disk, races with itself for one file, and fits every model to nasty data under a time
+//! limit. A report says what was done and what went wrong.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, ensure};
+use hysid::identification::ModelName;
+
+use crate::program;
+
+/// Fits killed unless said otherwise.
+pub const KILLS: usize = 200;
+
+/// Longest time before a kill.
+const LONGEST: Duration = Duration::from_millis(1200);
+
+/// Time limit of a fit, in seconds.
+const LIMIT: f64 = 1.0;
+
+/// Time that a fit may take beyond its limit, for reading and writing and the half second that is promised.
+const BEYOND: f64 = 1.5;
+
+/// Writers of one file.
+const WRITERS: usize = 8;
+
+/// What was done, and what went wrong.
+struct Report {
+    lines: Vec<String>,
+    faults: Vec<String>,
+}
+
+impl Report {
+    fn require(&mut self, is_so: bool, fault: impl FnOnce() -> String) {
+        if !is_so {
+            self.faults.push(fault());
+        }
+    }
+}
+
+/// The program in a folder of its own.
+struct Bench {
+    program: PathBuf,
+    folder: PathBuf,
+}
+
+pub fn run(kills: usize) -> Result<()> {
+    let program = program::build()?;
+    let folder = program::target()?.join("soak");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    fs::create_dir_all(&folder)?;
+    let bench = Bench { program, folder };
+    let mut report = Report { lines: Vec::new(), faults: Vec::new() };
+    bench.kills(kills, &mut report)?;
+    if cfg!(unix) {
+        bench.full_disk(&mut report)?;
+    }
+    bench.race(&mut report)?;
+    bench.nasty_data(&mut report)?;
+    println!("\n{}", report.lines.join("\n"));
+    report.faults.iter().for_each(|fault| println!("FAULT: {fault}"));
+    ensure!(report.faults.is_empty(), "{} faults", report.faults.len());
+    println!("no faults");
+    Ok(())
+}
+
+impl Bench {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.current_dir(&self.folder).args(arguments.split_whitespace()).stdin(Stdio::null());
+        command
+    }
+
+    fn spawn(&self, arguments: &str) -> Result<Child> {
+        let mut command = self.command(arguments);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().context("the program could not be started")
+    }
+
+    fn output(&self, arguments: &str) -> Result<Output> {
+        self.command(arguments).output().context("the program could not be started")
+    }
+
+    fn succeeds(&self, arguments: &str) -> Result<bool> {
+        Ok(self.output(arguments)?.status.success())
+    }
+
+    /// A fit is killed at random moments and resumed: whatever is there is whole.
+    fn kills(&self, kills: usize, report: &mut Report) -> Result<()> {
+        fs::write(self.path("data.csv"), record(3000, 1))?;
+        let fit = "fit data.csv --model xpnn+ --starts 2 --epochs 60 --no-report --force -o model.json";
+        let (mut resumed, mut models) = (0, 0);
+        for kill in 0..kills {
+            let has_checkpoint = self.path("state.bin").exists();
+            let arguments = match has_checkpoint && kill % 4 != 0 {
+                true => "fit data.csv --no-report --force -o model.json --resume state.bin".to_string(),
+                false => format!("{fit} --checkpoint state.bin"),
+            };
+            let mut child = self.spawn(&arguments)?;
+            thread::sleep(LONGEST.mul_f64(share(kill as u64)));
+            // One that has ended need not be killed.
+            let _ = child.kill();
+            child.wait()?;
+            if self.path("model.json").exists() {
+                models += 1;
+                let is_whole = self.succeeds("evaluate model.json data.csv")?;
+                report.require(is_whole, || format!("kill {kill}: model.json cannot be read"));
+            }
+            if self.path("state.bin").exists() && kill % 10 == 0 {
+                resumed += 1;
+                let goes_on = self.output(
+                    "fit data.csv --no-report --force -o resumed.json --resume state.bin --time-limit 0.2",
+                )?;
+                report.require(goes_on.status.success(), || format!("kill {kill}: {}", last_line(&goes_on)));
+            }
+        }
+        // A last run removes what killed ones left behind.
+        report.require(self.succeeds(&format!("{fit} --time-limit 0.2"))?, || "the last fit failed".into());
+        let left = fs::read_dir(&self.folder)?.count();
+        report.require(left < 12, || format!("{left} files are left after {kills} kills"));
+        report.lines.push(format!(
+            "{kills} kills: {models} times there was a model to read, {resumed} checkpoints were resumed, {left} files left"
+        ));
+        Ok(())
+    }
+
+    /// A file that may not grow: an error, and the old model stays.
+    fn full_disk(&self, report: &mut Report) -> Result<()> {
+        self.output("fit data.csv --model pnn --starts 1 --epochs 2 --no-report --force -o full.json")?;
+        let before = fs::read(self.path("full.json"))?;
+        let mut failed = 0;
+        for blocks in 0..6 {
+            let line = format!(
+                "ulimit -f {blocks}; exec '{}' fit data.csv --model xpnn+ --starts 1 --epochs 2 --force -o full.json",
+                self.program.display()
+            );
+            let output = Command::new("sh").current_dir(&self.folder).args(["-c", &line]).output()?;
+            let now = fs::read(self.path("full.json"))?;
+            let is_whole = self.succeeds("evaluate full.json data.csv")?;
+            report.require(is_whole, || format!("with {blocks} blocks full.json cannot be read"));
+            if !output.status.success() {
+                failed += 1;
+                let said = last_line(&output);
+                report.require(said.starts_with("error: "), || format!("with {blocks} blocks: {said}"));
+            }
+            report.require(blocks > 0 || now == before, || "a model was replaced on a full disk".into());
+        }
+        report
+            .lines
+            .push(format!("full disk: {failed} of 6 writes failed, each with an error, no model was lost"));
+        Ok(())
+    }
+
+    /// Several fits write one model: it is that of one of them.
+    fn race(&self, report: &mut Report) -> Result<()> {
+        let fit = "fit data.csv --model pnn --starts 1 --epochs 1 --no-report --force -o race.json --seed";
+        let mut writers = Vec::new();
+        for round in 0..5 * WRITERS {
+            writers.push(self.spawn(&format!("{fit} {round}"))?);
+            if writers.len() == WRITERS {
+                for mut writer in writers.drain(..) {
+                    let status = writer.wait()?;
+                    report.require(status.success(), || format!("a racing writer failed: {status}"));
+                }
+                let is_whole = self.succeeds("evaluate race.json data.csv")?;
+                report.require(is_whole, || "race.json cannot be read".into());
+            }
+        }
+        report.lines.push(format!("race: {} writers of one file, {WRITERS} at a time", 5 * WRITERS));
+        Ok(())
+    }
+
+    /// Every model on every nasty table: it ends soon after its limit, with a model or an error.
+    fn nasty_data(&self, report: &mut Report) -> Result<()> {
+        report.lines.push(format!("time limit of {LIMIT} s: longest time, models and errors"));
+        for (name, text) in nasty() {
+            fs::write(self.path("nasty.csv"), text)?;
+            let (mut longest, mut slowest, mut models, mut errors) = (0.0, "", 0, 0);
+            for model in ModelName::all().chain([ModelName::AUTO]) {
+                let model = model.name();
+                let began = Instant::now();
+                let output = self.output(&format!(
+                    "fit nasty.csv --model {model} --no-report --force -o nasty.json --time-limit {LIMIT}"
+                ))?;
+                let elapsed = began.elapsed().as_secs_f64();
+                if elapsed > longest {
+                    (longest, slowest) = (elapsed, model);
+                }
+                match output.status.code() {
+                    Some(0) => models += 1,
+                    Some(1 | 2) => errors += 1,
+                    status => report.faults.push(format!("{model} on {name}: status {status:?}")),
+                }
+                report.require(elapsed < LIMIT + BEYOND, || format!("{model} on {name} took {elapsed:.1} s"));
+            }
+            report
+                .lines
+                .push(format!("  {name:28} {longest:4.1} s ({slowest}), {models} models, {errors} errors"));
+        }
+        Ok(())
+    }
+}
+
+fn last_line(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_owned()
+}
+
+/// A number from 0 to 1, another for each number.
+fn share(number: u64) -> f64 {
+    let mixed = (number + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9) as f64 / u64::MAX as f64
+}
+
+/// A lagging output under a noisy oscillation.
+fn record(rows: u64, records: u64) -> String {
+    let mut text = String::from("record,t,x,y\n");
+    for record in 0..records {
+        let mut play: f64 = 0.0;
+        for row in 0..rows {
+            let x = (0.02 * row as f64).sin() + 0.02 * share(row + rows * record);
+            play = play.clamp(x - 0.3, x + 0.3);
+            text += &format!("{record},{},{x},{}\n", 0.01 * row as f64, 0.5 * x + play);
+        }
+    }
+    text
+}
+
+/// Tables that are hard to fit to.
+fn nasty() -> Vec<(&'static str, String)> {
+    let of = |rows: u64, x: &dyn Fn(u64) -> f64, y: &dyn Fn(u64) -> f64| {
+        let rows = (0..rows).map(|k| format!("{},{},{}\n", 0.1 * k as f64, x(k), y(k)));
+        format!("t,x,y\n{}", rows.collect::<String>())
+    };
+    let sine = |k: u64| (0.1 * k as f64).sin();
+    vec![
+        ("200,000 noisy rows", record(200_000, 1)),
+        ("3000 records", record(40, 3000)),
+        ("noise alone", of(5000, &|k| share(k), &|k| share(k + 99_991))),
+        ("values of 1e90", of(2000, &|k| 1e90 * sine(k), &|k| 1e90 * sine(k + 5))),
+        ("values of 1e-90", of(2000, &|k| 1e-90 * sine(k), &|k| 1e-90 * sine(k + 5))),
+        ("an offset of 1e12", of(2000, &|k| 1e12 + sine(k), &|k| -1e12 + sine(k + 5))),
+        ("one spike", of(3000, &|k| if k == 1500 { 1e9 } else { sine(k) }, &sine)),
+        ("two values of the input", of(3000, &|k| f64::from(u8::from(share(k) > 0.5)), &sine)),
+        (
+            "a step, then nothing",
+            of(3000, &|k| f64::from(u8::from(k > 10)), &|k| f64::from(u8::from(k > 12))),
+        ),
+        ("eleven rows", of(11, &sine, &|k| sine(k + 3))),
+    ]
+}
+
+/// The number of kills from the arguments after `soak`.
+pub fn kills(arguments: &[&str]) -> Option<usize> {
+    match arguments {
+        [] => Some(KILLS),
+        [kills] => kills.parse().ok(),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_spread() {
+        let mean = (0..1000).map(share).sum::<f64>() / 1000.0;
+        assert!((0.4..0.6).contains(&mean), "{mean}");
+        assert_eq!((kills(&[]), kills(&["3"]), kills(&["x"])), (Some(KILLS), Some(3), None));
+    }
+}
