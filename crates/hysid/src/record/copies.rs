@@ -152,7 +152,9 @@ impl<'r> Compared<'r> {
 
     fn is_like(&self, row: usize, shift: usize) -> bool {
         // A blank output differs from nothing.
-        self.differences(row, shift).zip(&self.loose).all(|(difference, loose)| !(difference.abs() > *loose))
+        self.differences(row, shift)
+            .zip(&self.loose)
+            .all(|(difference, loose)| difference.is_nan() || difference.abs() <= *loose)
     }
 
     fn whole(&self, shift: usize) -> Option<Likeness> {
