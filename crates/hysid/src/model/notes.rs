@@ -19,7 +19,8 @@ impl Model {
     /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member. Of a
     /// single network it is told before the fit.
     fn size_warning(&self) -> Option<Warning> {
-        if self.network().is_some() {
+        // Where data were held out, their error tells more.
+        if self.network().is_some() || self.provenance().validation.is_some() {
             return None;
         }
         let rows = self.provenance().samples;

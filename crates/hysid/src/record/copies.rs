@@ -169,7 +169,7 @@ impl Compared<'_> {
         // A blank output differs from nothing.
         self.differences(row, shift)
             .zip(&self.sought.loose)
-            .all(|(difference, loose)| !(difference.abs() > *loose))
+            .all(|(difference, loose)| difference.is_nan() || difference.abs() <= *loose)
     }
 
     fn whole(&self, shift: usize) -> Option<Likeness> {

@@ -112,7 +112,7 @@ const SYMBOLS: &[(&str, f64, Dimension)] = &[
     ("km", 1e3, LENGTH), ("inch in \"", 0.0254, LENGTH), ("ft '", 0.3048, LENGTH),
     ("g", 1e-3, MASS), ("kg", 1.0, MASS),
     ("N", 1.0, FORCE), ("mN", 1e-3, FORCE), ("kN", 1e3, FORCE), ("MN", 1e6, FORCE),
-    ("lbf", 4.448_221_615_260_5, FORCE), ("kip", 4448.221_615_260_5, FORCE),
+    ("lbf", 4.448_221_615_260_5, FORCE), ("kip", 4_448.221_615_260_5, FORCE),
     ("Nm", 1.0, MOMENT), ("Nmm", 1e-3, MOMENT), ("kNm", 1e3, MOMENT), ("J", 1.0, MOMENT), ("mJ", 1e-3, MOMENT),
     ("Pa", 1.0, PRESSURE), ("kPa", 1e3, PRESSURE), ("MPa", 1e6, PRESSURE), ("GPa", 1e9, PRESSURE),
     ("bar", 1e5, PRESSURE), ("psi", 6_894.757_293_168_361, PRESSURE),
