@@ -37,6 +37,8 @@ pub enum Likeness {
     NearlyEqual,
     /// Equal or nearly equal to some rows of the other.
     Part,
+    /// The other is equal or nearly equal to some of its rows.
+    Contains,
 }
 
 impl fmt::Display for Likeness {
@@ -45,6 +47,7 @@ impl fmt::Display for Likeness {
             Self::Equal => "equal to",
             Self::NearlyEqual => "nearly equal to",
             Self::Part => "a part of",
+            Self::Contains => "longer than, and contains,",
         })
     }
 }
