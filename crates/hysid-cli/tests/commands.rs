@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use workbench::{ROWS, Ran, Workbench, csv, rows, table};
+use workbench::{ROWS, Ran, Workbench, csv, rows, table, with_cell};
 
 fn json(ran: &Ran) -> Value {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
@@ -292,9 +292,10 @@ fn output_to_a_pipe_has_no_colours_and_may_be_cut_off() {
     assert!(!ran.stderr.contains('\x1b') && !ran.stdout.contains('\x1b'));
     #[cfg(unix)]
     {
+        bench.put("other.csv", with_cell(7, 2, "0.5"));
         // The reader is gone before the program writes.
         let ran =
-            bench.shell("{ sleep 0.3; hysid evaluate model.json good.csv; echo \"status $?\" >&2; } | true");
+            bench.shell("{ sleep 0.3; hysid evaluate model.json other.csv; echo \"status $?\" >&2; } | true");
         assert_eq!(ran.stderr, "status 0\n");
     }
 }

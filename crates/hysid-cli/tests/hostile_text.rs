@@ -171,7 +171,12 @@ fn many_records_and_columns_are_read_quickly_and_told_briefly() {
     }
     quickly("evaluate m.json records.csv", 20);
     quickly("diagnose records.csv --no-report", 120);
-    quickly("diagnose columns.csv --no-report", 140);
+    quickly("diagnose columns.csv --input c5 --input c7 --no-report", 140);
+    let refused = bench.run("diagnose columns.csv --no-report");
+    assert_eq!(
+        refused.stderr,
+        "error: columns.csv: 99999 columns could be inputs: name them with --input (c0, c1, c2, c3, c4, c5 and 99993 more)\n"
+    );
     quickly(
         "fit columns.csv --input c5 --input c7 -o c.json --model xpnn+ --starts 1 --epochs 1 --no-report",
         40,

@@ -13,6 +13,9 @@ import pytest
 
 import hysid
 
+pytestmark = pytest.mark.filterwarnings("ignore:.* parameters are found from:hysid.HysidWarning")
+"""Fits that take long are of large networks."""
+
 LONG = {"model": "xpnn+", "starts": 200, "epochs": 100_000, "stops": 30, "hidden": 30}
 """A fit that would take hours."""
 
@@ -166,6 +169,7 @@ def test_ctrl_c_keeps_the_best_model():
     assert ended - pressed < 5, "a second is promised; a busy machine may need longer"
 
 
+@pytest.mark.filterwarnings("ignore:.* what the model was trained on:hysid.HysidWarning")
 def test_models_are_compared(spring_and_slider):
     x, y = spring_and_slider
     names = ["masing", "jiles-atherton", "rate-dependent-prandtl-ishlinskii"]

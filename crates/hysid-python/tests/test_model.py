@@ -152,8 +152,8 @@ def test_pandas_goes_in_and_comes_out(spring_and_slider, quick_model):
     series = pandas.Series(x, index=index, name="u")
     output = quick_model.simulate(series)
     assert output.name == "y_model" and output.index.equals(index)
-    measured = pandas.Series(y, dtype="Float64")
-    measured[::2] = pandas.NA
+    measured = pandas.Series(y, dtype="Float64", index=index)
+    measured.iloc[::2] = pandas.NA
     assert quick_model.evaluate(series, measured).samples == 300
 
 

@@ -301,10 +301,9 @@ impl Dataset {
             return Vec::new();
         }
         let found = |record: &Record| {
-            let likeness = trained.records.iter().find_map(|other| {
-                let (short, long) =
-                    if record.len() <= other.len() { (record, other) } else { (other, record) };
-                likeness(short, long)
+            let likeness = trained.records.iter().find_map(|other| match record.len() <= other.len() {
+                true => likeness(record, other),
+                false => likeness(other, record).map(|_| Likeness::Contains),
             })?;
             Some(Warning::TrainedOn { record: record.name.clone(), likeness })
         };

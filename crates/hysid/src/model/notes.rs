@@ -5,6 +5,9 @@ use crate::metrics::Errors;
 use crate::model::{Ensemble, Model};
 use crate::warning::{Significant, Warning};
 
+/// Weights of a law that a row may stand for.
+const WEIGHTS_A_ROW: usize = 2;
+
 impl Model {
     /// What a user should know before relying on the model, in sentences: rows that it was not trained on, and
     /// data that could not tell candidates apart. Empty if there is nothing.
@@ -16,12 +19,16 @@ impl Model {
     /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member. Of a
     /// single network it is told before the fit.
     fn size_warning(&self) -> Option<Warning> {
-        if self.network().is_some() {
+        // Where data were held out, their error tells more.
+        if self.network().is_some() || self.provenance().validation.is_some() {
             return None;
         }
-        let members = self.ensemble().map_or(&[][..], Ensemble::members);
-        let largest = members.iter().map(Model::parameters).max();
-        Warning::of_size(largest.unwrap_or_else(|| self.parameters()), self.provenance().samples)
+        let rows = self.provenance().samples;
+        let members = self.ensemble().map_or(std::slice::from_ref(self), Ensemble::members);
+        // The weights of a law are bounded by their sign or their order, so that it takes more of them to go astray.
+        let allowed = |member: &Model| if member.network().is_some() { rows } else { WEIGHTS_A_ROW * rows };
+        let too_large = members.iter().filter(|member| member.parameters() > allowed(member));
+        too_large.map(Model::parameters).max().and_then(|parameters| Warning::of_size(parameters, rows))
     }
 
     fn warm_up_note(&self) -> Option<String> {

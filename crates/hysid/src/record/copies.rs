@@ -25,8 +25,8 @@ const SHARED: f64 = 0.9;
 /// How many times longer one unit of time is than another.
 const UNITS_OF_TIME: [f64; 5] = [1.0, 60.0, 3600.0, 1e3, 1e6];
 
-/// Of more records than this only equal ones are found: all pairs would take too long.
-const MOST_COMPARED: usize = 300;
+/// Places at which records are looked for in others; of more of them only equal records are found.
+const MOST_PLACES: usize = 5_000_000;
 
 /// How a record is like another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,6 +37,8 @@ pub enum Likeness {
     NearlyEqual,
     /// Equal or nearly equal to some rows of the other.
     Part,
+    /// The other is equal or nearly equal to some of its rows.
+    Contains,
 }
 
 impl fmt::Display for Likeness {
@@ -45,6 +47,7 @@ impl fmt::Display for Likeness {
             Self::Equal => "equal to",
             Self::NearlyEqual => "nearly equal to",
             Self::Part => "a part of",
+            Self::Contains => "longer than, and contains,",
         })
     }
 }
@@ -62,24 +65,28 @@ pub(crate) struct Copy {
 
 /// All copies among records; of each record at most one that it is a copy of.
 pub(crate) fn copies(records: &[Record]) -> Vec<Copy> {
-    if records.len() > MOST_COMPARED {
+    let pairs = || (1..records.len()).flat_map(|later| (0..later).map(move |earlier| (later, earlier)));
+    let mut places = 0;
+    let are_many = pairs().any(|(a, b)| {
+        places += 1 + records[a].len().abs_diff(records[b].len());
+        places > MOST_PLACES
+    });
+    if are_many {
         return equal_ones(records);
     }
+    let known: Vec<Sought> = records.iter().map(Sought::new).collect();
+    let mut is_copy = vec![false; records.len()];
     let mut found: Vec<Copy> = Vec::new();
-    for later in 1..records.len() {
-        for earlier in 0..later {
-            let (short, long) = if records[later].len() <= records[earlier].len() {
-                (later, earlier)
-            } else {
-                (earlier, later)
-            };
-            // A copy of a copy is found with the first.
-            if found.iter().any(|known| known.copy == short) {
-                continue;
-            }
-            if let Some(likeness) = likeness(&records[short], &records[long]) {
-                found.push(Copy { copy: short, of: long, likeness });
-            }
+    for (later, earlier) in pairs() {
+        let is_shorter = records[later].len() <= records[earlier].len();
+        let (short, long) = if is_shorter { (later, earlier) } else { (earlier, later) };
+        // A copy of a copy is found with the first.
+        if is_copy[short] {
+            continue;
+        }
+        if let Some(likeness) = known[short].likeness_to(&records[long]) {
+            is_copy[short] = true;
+            found.push(Copy { copy: short, of: long, likeness });
         }
     }
     found
@@ -96,33 +103,22 @@ fn equal_ones(records: &[Record]) -> Vec<Copy> {
 
 /// How a record is like one that is at least as long; `None` if they are two measurements.
 pub(crate) fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
-    let scored: Vec<usize> = (0..short.len()).filter(|&row| !short.output[row].is_nan()).collect();
-    if scored.len() < FEWEST || short.len() > long.len() || short.inputs.len() != long.inputs.len() {
-        return None;
-    }
-    let compared = Compared::new(short, long, &scored);
-    // The row of the largest output is found in the longer record; from there all others are compared.
-    let anchor = *scored.iter().max_by(|&&a, &&b| short.output[a].total_cmp(&short.output[b]))?;
-    let shifts = 0..=long.len() - short.len();
-    let alike =
-        shifts.filter(|shift| compared.is_like(anchor, *shift)).find_map(|shift| compared.whole(shift))?;
-    Some(if short.len() < long.len() { Likeness::Part } else { alike })
+    Sought::new(short).likeness_to(long)
 }
 
-/// Two records, and what is a difference between them.
-struct Compared<'r> {
-    short: &'r Record,
-    long: &'r Record,
-    scored: &'r [usize],
+/// A record that is looked for in others.
+struct Sought<'r> {
+    record: &'r Record,
+    scored: Vec<usize>,
     /// Differences of a single input, and of an output, that are none.
     loose: Vec<f64>,
     /// Mean square differences of a whole column that are none, inputs first.
     limits: Vec<f64>,
 }
 
-impl<'r> Compared<'r> {
-    fn new(short: &'r Record, long: &'r Record, scored: &'r [usize]) -> Self {
-        let columns = || short.inputs.iter().chain([&short.output]);
+impl<'r> Sought<'r> {
+    fn new(record: &'r Record) -> Self {
+        let columns = || record.inputs.iter().chain([&record.output]);
         let range = |column: &Vec<f64>| {
             let (low, high) = super::range(column.iter());
             high - low
@@ -134,14 +130,36 @@ impl<'r> Compared<'r> {
             values().map(|value| (value - mean).powi(2)).sum::<f64>() / count
         };
         Self {
-            short,
-            long,
-            scored,
+            record,
+            scored: (0..record.len()).filter(|&row| !record.output[row].is_nan()).collect(),
             loose: columns().map(|column| LOOSELY * range(column)).collect(),
             limits: columns().map(|column| NEARLY * NEARLY * variance(column)).collect(),
         }
     }
 
+    fn likeness_to(&self, long: &Record) -> Option<Likeness> {
+        let short = self.record;
+        let is_possible = self.scored.len() >= FEWEST
+            && short.len() <= long.len()
+            && short.inputs.len() == long.inputs.len();
+        let compared = Compared { sought: self, short, long };
+        // The row of the largest output is found in the longer record; from there all others are compared.
+        let largest = |a: &&usize, b: &&usize| short.output[**a].total_cmp(&short.output[**b]);
+        let anchor = *self.scored.iter().max_by(largest).filter(|_| is_possible)?;
+        let mut shifts = (0..=long.len() - short.len()).filter(|shift| compared.is_like(anchor, *shift));
+        let alike = shifts.find_map(|shift| compared.whole(shift))?;
+        Some(if short.len() < long.len() { Likeness::Part } else { alike })
+    }
+}
+
+/// Two records, row by row.
+struct Compared<'r> {
+    sought: &'r Sought<'r>,
+    short: &'r Record,
+    long: &'r Record,
+}
+
+impl Compared<'_> {
     /// Differences of a row of the shorter record from one so many rows later in the longer: of each input, and of the
     /// output.
     fn differences(&self, row: usize, shift: usize) -> impl Iterator<Item = f64> {
@@ -153,16 +171,16 @@ impl<'r> Compared<'r> {
     fn is_like(&self, row: usize, shift: usize) -> bool {
         // A blank output differs from nothing.
         self.differences(row, shift)
-            .zip(&self.loose)
+            .zip(&self.sought.loose)
             .all(|(difference, loose)| difference.is_nan() || difference.abs() <= *loose)
     }
 
     fn whole(&self, shift: usize) -> Option<Likeness> {
-        let step = self.scored.len().div_ceil(PROBES);
-        if !self.scored.iter().step_by(step).all(|&row| self.is_like(row, shift)) {
+        let step = self.sought.scored.len().div_ceil(PROBES);
+        if !self.sought.scored.iter().step_by(step).all(|&row| self.is_like(row, shift)) {
             return None;
         }
-        let mut sums = vec![0.0; self.limits.len()];
+        let mut sums = vec![0.0; self.sought.limits.len()];
         let mut shared = 0;
         for row in 0..self.short.len() {
             for (sum, difference) in sums.iter_mut().zip(self.differences(row, shift)) {
@@ -176,9 +194,12 @@ impl<'r> Compared<'r> {
         let rows = self.short.len() as f64;
         let counts =
             (0..sums.len()).map(|column| if column + 1 == sums.len() { shared as f64 } else { rows });
-        let is_near =
-            sums.iter().zip(&self.limits).zip(counts).all(|((sum, limit), count)| *sum <= limit * count);
-        let is_shared = shared >= FEWEST && shared as f64 >= SHARED * self.scored.len() as f64;
+        let is_near = sums
+            .iter()
+            .zip(&self.sought.limits)
+            .zip(counts)
+            .all(|((sum, limit), count)| *sum <= limit * count);
+        let is_shared = shared >= FEWEST && shared as f64 >= SHARED * self.sought.scored.len() as f64;
         let is_equal = sums.iter().all(|sum| *sum == 0.0);
         (is_near && is_shared && (is_equal || self.is_as_fast(shift))).then_some(if is_equal {
             Likeness::Equal
@@ -267,7 +288,7 @@ mod tests {
     fn equal_ones_are_found_among_very_many() {
         let many: Vec<Record> =
             (0..400).map(|k| record(20, 1.0 + 0.01 * f64::from(k % 350), 0.0, 1)).collect();
-        let found = copies(&many);
+        let found = equal_ones(&many);
         assert_eq!(found.len(), 50);
         assert_eq!(found[0], Copy { copy: 350, of: 0, likeness: Likeness::Equal });
     }
