@@ -64,7 +64,7 @@ fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
         }
         let value = match bytes.below(7) {
             0 => json!(bytes.number()),
-            1 => json!(bytes.byte() % 2 == 0),
+            1 => json!(bytes.byte().is_multiple_of(2)),
             2 => json!([bytes.ordinary().abs(), 1.0 + bytes.ordinary().abs()]),
             3 => json!(bytes.one_of(&[
                 "hybrid",

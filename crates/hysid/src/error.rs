@@ -1,5 +1,6 @@
 //! What can be wrong with what a caller hands in.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use crate::warning::Significant;
@@ -15,13 +16,13 @@ pub enum Error {
     #[error(transparent)]
     Data(#[from] DataError),
     /// An architecture, parameter or option outside its meaning.
-    #[error("{0}")]
+    #[error("{}", one_line(.0))]
     Option(String),
     /// A model file that cannot be used.
-    #[error("{0}")]
+    #[error("{}", one_line(.0))]
     ModelFile(String),
     /// A checkpoint that cannot be used.
-    #[error("{0}")]
+    #[error("{}", one_line(.0))]
     Checkpoint(String),
     /// More memory than there is.
     #[error(
@@ -160,7 +161,7 @@ pub enum DataProblem {
 
 impl fmt::Display for DataError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "record \"{}\"", self.record)?;
+        write!(f, "record \"{}\"", one_line(&self.record))?;
         if let Some(row) = self.row {
             write!(f, ", row {}", row + 1)?;
         }
@@ -172,3 +173,37 @@ impl fmt::Display for DataError {
 }
 
 impl std::error::Error for DataError {}
+
+/// The text with visible signs in the place of control characters, which names in files may have.
+fn one_line(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\n' => shown.push_str("\\n"),
+            '\r' => shown.push_str("\\r"),
+            '\t' => shown.push_str("\\t"),
+            '\0'..='\x7f' if letter.is_control() => shown.push_str(&format!("\\x{:02x}", letter as u32)),
+            control if control.is_control() => shown.extend(control.escape_unicode()),
+            plain => shown.push(plain),
+        }
+    }
+    shown.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_one_line_whatever_the_names() {
+        let error = "xp\n\x1b".parse::<crate::identification::ModelName>().unwrap_err().to_string();
+        assert!(error.starts_with("model `xp\\n\\x1b` is unknown"), "{error}");
+        let problem = DataProblem::Empty;
+        let record = "a\u{9b}b".to_string();
+        let error = DataError { record, row: None, channel: None, problem }.to_string();
+        assert_eq!(error, "record \"a\\u{9b}b\": has no rows");
+    }
+}

@@ -234,25 +234,26 @@ impl Preprocessing {
 
     /// The first input as the model sees it.
     pub fn input(&self, x: f64) -> f64 {
-        let x = limited(x) - self.origin(0);
+        let x = x - self.origin(0);
         self.companding.map_or(x, |scale| (x / scale).asinh())
     }
 
     /// Any input as the model sees it; the first counts as 0.
     pub(crate) fn input_as_seen(&self, input: usize, value: f64) -> f64 {
-        if input == 0 { self.input(value) } else { limited(value) - self.origin(input) }
+        if input == 0 { self.input(value) } else { value - self.origin(input) }
     }
 
     /// The rate as the model sees it.
     pub fn rate(&self, rate: f64) -> f64 {
-        let rate = limited(rate);
         self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
     }
 
     /// All inputs of a sample as the model sees them, into `seen`.
     pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
         seen.clear();
-        seen.extend(inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, value)));
+        seen.extend(
+            inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, limited(value))),
+        );
         if let Some(scales) = self.history {
             seen.extend(past.take(limited(inputs[0]) - self.origin(0), scales));
         }
@@ -324,7 +325,7 @@ impl Preprocessing {
 }
 
 /// A value of the user's as a model takes it, so that nothing overflows: records have no larger ones.
-fn limited(value: f64) -> f64 {
+pub(crate) fn limited(value: f64) -> f64 {
     value.clamp(-LARGEST_VALUE, LARGEST_VALUE)
 }
 

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::model::ensemble::{Council, Excursion};
 use crate::model::{Body, Model};
 use crate::network::Simulator;
-use crate::preprocessing::Past;
+use crate::preprocessing::{Past, limited};
 
 /// A model that is run sample by sample. Fed with the rates that [`Model::simulate`] would use, it
 /// gives the same outputs to the last bit.
@@ -131,7 +131,7 @@ impl State {
     fn advance(&mut self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> f64 {
         let elapsed = self.elapsed(time);
         let rate = self.rate(model, inputs, elapsed, rate);
-        let seen_rate = rate.map(|rate| model.preprocessing.rate(rate));
+        let seen_rate = rate.map(|rate| model.preprocessing.rate(limited(rate)));
         model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
         let y = match (&model.body, &mut self.memory) {
             (Body::Network { scaling, .. }, Memory::Network(simulator, u)) => {
