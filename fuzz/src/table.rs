@@ -34,5 +34,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
         table("record,x,y", "\t", "\n"),
         b"# a remark\n\nx,y\n1,\n2,0.5\n".to_vec(),
         b"{\"format\": 1}".to_vec(),
+        // A letter of two bytes, cut by a delimiter.
+        b"x,y\n1\xc9,\xb72\n".to_vec(),
     ]
 }
