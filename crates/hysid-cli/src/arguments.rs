@@ -62,17 +62,17 @@ pub enum Command {
     Demo(Demo),
     /// Identify a model from measured data
     Fit(Box<Fit>),
-    /// Run a model freely over data: their columns and `<output>_model`
+    /// Simulate a model: writes the columns of the data and `<output>_model`
     Simulate(Simulate),
     /// Errors of a model's free run against measured data
     Evaluate(Evaluate),
-    /// How well does a model predict data it was not fitted to? Cross-validation, fold by fold
+    /// Cross-validate a model: its error on data that it was not fitted to, fold by fold
     Validate(Box<Validate>),
     /// Fit every model to the same data and compare them on data that none has seen
     Compare(Compare),
     /// What kind of hysteresis is this? Properties of measured data or of a model, each with its evidence
     Diagnose(Diagnose),
-    /// Run the paper's experiments and set our figures beside its own
+    /// Run the paper's experiments and compare the results with the paper's
     Reproduce(Reproduce),
     /// Write the data of a synthetic specimen, to train and to test on
     Generate(Generate),
@@ -123,7 +123,7 @@ pub struct ColumnOptions {
 /// How the units of a table and of a model are taken.
 #[derive(Debug, Clone, Args)]
 pub struct UnitOptions {
-    /// Take the numbers as they are, whatever units the names of table and model tell. Otherwise known units are
+    /// Use the numbers unchanged, whatever units the column names state. Otherwise known units are
     /// converted to those of the model, and others that differ are refused
     #[arg(long, help_heading = "Columns")]
     pub same_units: bool,
@@ -197,8 +197,8 @@ pub struct Validate {
     /// Tables of measured data: CSV with a header line
     #[arg(value_name = "DATA.csv", required = true)]
     pub data: Vec<PathBuf>,
-    /// Parts that records are dealt to, each held out in turn, at most; a single record is cut in time into five,
-    /// whatever is said here
+    /// Maximum number of folds that the records are divided into; a single record always gives five,
+    /// cut in time
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
     /// Which columns are what.
@@ -225,12 +225,12 @@ pub struct Validate {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Model and training")]
 pub struct TrainingOptions {
-    /// auto: what does best on data held out, alone or together; or a network (pnn, gpnn, preisach-nn,
+    /// auto: cross-validates all models and combines the best; or a network (pnn, gpnn, preisach-nn,
     /// xpnn, also epnn, or xpnn+), or another model: see `hysid compare`
     #[arg(long, value_name = "MODEL", default_value = "auto", value_parser = model)]
     pub model: ModelName,
-    /// Models that answer together, at most; 1 for a single small one. Of a model that is named, so many
-    /// starts answer together [default: 32 for auto, otherwise 1]
+    /// Maximum ensemble size; 1 gives a single small model. With a named model, the number of random
+    /// starts that are combined [default: 32 for auto, otherwise 1]
     #[arg(long, value_name = "N", value_parser = members)]
     pub members: Option<usize>,
     /// Stop neurons of a network [default: 10]
@@ -245,18 +245,18 @@ pub struct TrainingOptions {
     /// Stops do not deteriorate, whatever the family
     #[arg(long)]
     pub no_deterioration: bool,
-    /// Spread the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
-    /// 0.1; 0 for never [default: what validates best for auto, otherwise never]
+    /// Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as
+    /// 0.1; 0 for off [default: chosen by cross-validation for auto, otherwise off]
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub companding: Option<f64>,
     /// The same for the rate, as a share of the rates that are common [default: as above]
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub rate_companding: Option<f64>,
-    /// The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops
+    /// Add the running peak and the travelled path of the input as inputs, for xpnn+ and random-stops
     #[arg(long)]
     pub history: bool,
     /// Rows at the beginning of each record that drive the memory and are not trained on, where records do
-    /// not begin in the virgin state [default: what validates best for auto, otherwise 0]
+    /// not begin in the virgin state [default: chosen by cross-validation for auto, otherwise 0]
     #[arg(long, value_name = "ROWS", value_parser = whole::<usize>)]
     pub warm_up: Option<usize>,
     /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
@@ -285,7 +285,7 @@ pub struct TrainingOptions {
     #[arg(long, value_name = "FRACTION", value_parser = fraction)]
     pub validation: Option<f64>,
     /// Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in the
-    /// paper [default: 1e-6, left out where cross-validation finds that it does harm; chosen by
+    /// paper [default: 1e-6, nearly 0 where that lowers the cross-validation error; chosen by
     /// cross-validation for auto]
     #[arg(long, value_name = "PENALTY", value_parser = penalty)]
     pub ridge: Option<f64>,
@@ -304,7 +304,7 @@ pub struct RivalOptions {
     /// Thresholds of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii in the unit of the input, such as 0.1,0.2,0.5
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = threshold, allow_hyphen_values = true)]
     pub thresholds: Option<Vec<f64>>,
-    /// Sign of the weights of plays or cells: any, non-negative or non-positive [default: what validates best]
+    /// Sign of the weights of plays or cells: any, non-negative or non-positive [default: cross-validated]
     #[arg(long, value_name = "SIGN", value_parser = sign())]
     pub sign: Option<Sign>,
     /// Dead zones on each side of modified-prandtl-ishlinskii [default: 6]

@@ -90,9 +90,9 @@ pub fn print(lines: &[(String, String)]) {
 pub fn choice(options: &AutoOptions) -> String {
     match &options.only {
         Some(request) => format!(": {} of {}", options.members, request.model().name()),
-        None if options.members == 1 => ": one model, chosen by what it predicts of data held out".into(),
+        None if options.members == 1 => ": one model, chosen by cross-validation".into(),
         None => {
-            format!(": at most {} models, chosen by what they predict of data held out", options.members)
+            format!(": at most {} models, chosen by cross-validation", options.members)
         }
     }
 }

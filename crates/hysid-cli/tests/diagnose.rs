@@ -242,11 +242,11 @@ fn further_inputs_and_useless_options_are_told() {
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
     let ran = succeeds(&bench, "diagnose further.csv --input temperature --rate central --no-report");
     assert!(ran.stdout.contains("y over temperature"), "{}", ran.stdout);
-    assert!(ran.stderr.contains("warning: diagnose has no use for --rate"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("warning: diagnose ignores --rate"), "{}", ran.stderr);
 
     let ran = succeeds(&bench, "diagnose model.json --time t --smoothing false --no-report");
     for option in ["--time", "--smoothing"] {
-        let told = format!("warning: the diagnosis of a model has no use for {option}\n");
+        let told = format!("warning: the diagnosis of a model ignores {option}\n");
         assert!(ran.stderr.contains(&told), "{}", ran.stderr);
     }
 }

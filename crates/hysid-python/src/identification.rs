@@ -64,7 +64,7 @@ impl Request {
     /// Options that the model has no use for, and data that it is not made for, in words.
     fn warnings(&self, data: &Dataset) -> Vec<String> {
         let trained_by = self.chosen.trained_by();
-        let useless = |option| format!("{trained_by} has no use for {option}");
+        let useless = |option| format!("{trained_by} ignores {option}");
         let mut warnings: Vec<String> = self.chosen.useless().into_iter().map(useless).collect();
         warnings.extend(self.request.cautions(&data.set));
         warnings

@@ -113,7 +113,7 @@ impl fmt::Display for Warning {
             Self::SameMeasurement { copy, of, likeness } => write!(
                 f,
                 "record \"{copy}\" is {likeness} record \"{of}\": they count as one measurement and are held out together \
-                 (leave one out: it weighs twice in the fit)"
+                 (remove one of them: the fit counts the same data twice)"
             ),
             Self::TrainedOn { record, likeness } => write!(
                 f,
@@ -122,7 +122,7 @@ impl fmt::Display for Warning {
             Self::RowsOutOfOrder { record } => write!(
                 f,
                 "record \"{record}\": the input jumps at random from row to row: are the rows in the order of time? (a model \
-                 with memory needs them so; a shuffled split, such as ShuffleSplit, destroys it)"
+                 with memory needs that order; a shuffled split, such as ShuffleSplit, destroys it)"
             ),
             Self::MoreParametersThanRows { parameters, rows } => write!(
                 f,

@@ -69,7 +69,7 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
         ));
     }
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
-        warning("diagnose has no use for --rate: speeds are those between turning points");
+        warning("diagnose ignores --rate: speeds are those between turning points");
     }
     let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
@@ -102,7 +102,7 @@ fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
     let diagnosed = DiagnosedModel::of(path, &model)?;
     understanding::print(&diagnosed.understood());
     for option in useless_for_models(&arguments.columns, &arguments.options()) {
-        warning(format_args!("the diagnosis of a model has no use for {option}"));
+        warning(format_args!("the diagnosis of a model ignores {option}"));
     }
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };
     Ok(Told { text, page: (!arguments.no_report).then(|| diagnosed.page()) })

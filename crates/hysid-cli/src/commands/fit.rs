@@ -145,7 +145,7 @@ pub fn request(chosen: &ChosenOptions, rate: &RateOption, roles: &Roles) -> Resu
 /// Warns of options that the model makes no use of.
 pub fn warn_of_useless(chosen: &ChosenOptions) {
     for option in chosen.useless() {
-        warning(format_args!("{} has no use for --{}", chosen.trained_by(), option.replace('_', "-")));
+        warning(format_args!("{} ignores --{}", chosen.trained_by(), option.replace('_', "-")));
     }
 }
 

@@ -72,15 +72,15 @@ fn voices(
         "members",
         "share (%)",
         "error alone (% of std)",
-        "error of all without it",
+        "error of the ensemble without it",
         "ns per sample",
         "parameters",
     ];
     let (low, high) = ensemble.range();
     let words = format!(
-        "Members of a candidate are fits from different random starts. Each kind answers by the weighted median of \
-         its candidates, and all by that of the kinds; a share is what a candidate counts in it. Errors are of free \
-         runs on data held out, geometric means over what was held out. If all are worse without a candidate, that \
+        "Members of a candidate are fits from different random starts. Candidates are combined by a weighted \
+         median in each kind, then over the kinds; a share is a candidate's weight in it. Errors are of free \
+         runs on data held out, geometric means over the folds. If the ensemble is worse without a candidate, that \
          is what it adds. Where two numbers stand, the first is of rows where the first input has not left the range \
          that was fitted to (here {} to {}), the second of those after it has. The cost was measured here, on one \
          thread.",

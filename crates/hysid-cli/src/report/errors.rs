@@ -7,7 +7,7 @@ use crate::page::{note, number, section as section_of, table};
 
 /// Error in percent of the standard deviation below which a model may be called so.
 const GRADES: [(f64, &str); 4] = [
-    (1.0, "hardly told from the measurement"),
+    (1.0, "almost equal to the measurement"),
     (5.0, "a close match"),
     (15.0, "a match with visible differences"),
     (40.0, "the rough shape only"),
@@ -24,7 +24,7 @@ pub fn verdict(report: &Report) -> String {
     let provenance = report.model.provenance();
     let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
     let behind = provenance.train_after_warm_up.as_ref();
-    parts.extend(behind.map(|errors| format!("{} on these without the warm-up", judged(errors))));
+    parts.extend(behind.map(|errors| format!("{} on its training data without the warm-up", judged(errors))));
     parts.push(match &provenance.validation {
         Some(errors) => {
             format!("{} on data held out (cross-validation)", judged(errors))
@@ -88,7 +88,7 @@ fn explanation(report: &Report) -> String {
     let mut text = String::from(
         "All errors are those of a free run: the model sees the input only, from the virgin state at the \
          start of each record. RMSE is the root of the mean square error; NRMSE is the same in percent of \
-         the measured output's standard deviation or range; fit is 100 % less the former. ",
+         the measured output's standard deviation or range; fit is 100 % minus the NRMSE in % of std. ",
     );
     let provenance = report.model.provenance();
     text += match (&provenance.validation, &provenance.selection) {

@@ -93,8 +93,8 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
-    Without a choice of `model`, candidates are judged by what they predict of data held out, and those that do
-    best answer together: that is the most accurate, and takes minutes. One named model takes seconds.
+    Without a choice of `model`, models are cross-validated, and the best are combined in an ensemble: that is the
+    most accurate, and takes some ten seconds to a minute. One named model takes seconds.
 
     Every option has the name that it has on the command line of the program `hysid`; ``None`` is its default.
     The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the fit, warns, and

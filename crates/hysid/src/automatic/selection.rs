@@ -147,7 +147,7 @@ impl Selection {
                     Some(format!("{} {}", best.name, percent(best.error_percent)))
                 };
                 let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
-                format!("{ensemble}; alone {}", bests.join(", "))
+                format!("{ensemble}; the best of each kind alone: {}", bests.join(", "))
             }
         };
         format!("cross-validated error, geometric mean of {} folds, in % of std: {errors}", self.folds.len())

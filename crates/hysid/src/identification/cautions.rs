@@ -14,7 +14,7 @@ impl Request {
         let model = self.model();
         let mut cautions = Vec::new();
         if self.rate().is_some() && !model.uses_rate() {
-            cautions.push(format!("{} has no use for the rate (xpnn and xpnn+ have)", model.name()));
+            cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()));
         }
         cautions.extend(far_from_zero(model, data));
         cautions.extend(self.larger_than(data).map(|warning| warning.to_string()));
@@ -81,6 +81,6 @@ mod tests {
             ..crate::classical::identification::ClassicalOptions::of(rival)
         };
         let cautions = Request::Classical(options).cautions(&data(0.0));
-        assert_eq!(cautions, ["preisach has no use for the rate (xpnn and xpnn+ have)"]);
+        assert_eq!(cautions, ["preisach ignores the rate (xpnn and xpnn+ use it)"]);
     }
 }

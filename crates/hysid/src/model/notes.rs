@@ -50,8 +50,8 @@ impl Model {
         self.provenance().selection.as_ref().is_some_and(one_loop).then(|| {
             format!(
                 "one loop: all reversals of {} lie at the ends of its range, so the data do not show what smaller loops \
-                 look like; the models were also weighed by how their kinds predicted smaller loops in generated cases, \
-                 and the band is wider (to know, measure loops of three amplitudes or more)",
+                 look like; the weights also use how well each kind predicted smaller loops in synthetic cases, \
+                 and the band is wider (to improve this, measure loops of three or more amplitudes)",
                 self.names().inputs[0]
             )
         })
@@ -64,7 +64,7 @@ fn why(warm_up: WarmUp) -> String {
         return String::new();
     };
     format!(
-        ", because a quick model predicts the rows behind them to {:.3} % of std when not trained on them, and to {:.3} % \
+        ", because the error of a quick model on the later rows is {:.3} % of std when not trained on them, and {:.3} % \
          when trained on them",
         Significant(without),
         Significant(with)
