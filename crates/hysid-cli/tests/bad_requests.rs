@@ -77,12 +77,19 @@ fn model_files() {
     );
 }
 
+/// Rows of two inputs that go up and down, and the output.
+fn two_inputs() -> Vec<Vec<String>> {
+    let mut rows = rows();
+    rows.iter_mut().for_each(|row| row[0] = format!("{:.4}", (2.0 * row[0].parse::<f64>().unwrap()).cos()));
+    rows
+}
+
 #[test]
 fn columns() {
     let bench = Workbench::with_model();
     bench.put("other.csv", csv("t,a,b", ",", "\n", &rows()));
     bench.put("no-time.csv", csv("k,x,y", ",", "\n", &rows()));
-    bench.put("inputs.csv", csv("x1,x2,y", ",", "\n", &rows()));
+    bench.put("inputs.csv", csv("x1,x2,y", ",", "\n", &two_inputs()));
     bench.put("blank.csv", with_column(2, |_| String::new()));
     bench.put("simulated.csv", csv("t,x,y_model", ",", "\n", &rows()));
     check_runs(

@@ -44,7 +44,12 @@ fn data(bench: &Workbench, rows: usize, inputs: usize) -> Dataset {
     Dataset::new(ColumnNames::plain(inputs), vec![record]).unwrap()
 }
 
-/// Peak of the program's memory in bytes, less that of a small fit.
+/// Names all inputs.
+fn named(inputs: usize) -> String {
+    (0..inputs).map(|c| format!(" --input x{c}")).collect()
+}
+
+/// Peak of the program's memory in bytes.
 fn peak(bench: &Workbench, options: &str) -> f64 {
     let mut child = bench
         .command(&format!("fit data.csv --no-report --force -o model.json --threads 2 {options}"))
@@ -54,13 +59,17 @@ fn peak(bench: &Workbench, options: &str) -> f64 {
         .unwrap();
     let status = format!("/proc/{}/status", child.id());
     let mut peak: f64 = 0.0;
-    while child.try_wait().unwrap().is_none() {
+    let status_code = loop {
+        if let Some(code) = child.try_wait().unwrap() {
+            break code;
+        }
         let text = fs::read_to_string(&status).unwrap_or_default();
         let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let kilobytes = line.and_then(|line| line.trim().strip_suffix(" kB")?.trim().parse::<f64>().ok());
         peak = peak.max(1024.0 * kilobytes.unwrap_or_default());
         std::thread::sleep(Duration::from_millis(2));
-    }
+    };
+    assert!(status_code.success(), "{options}: {status_code}");
     peak
 }
 
@@ -85,7 +94,7 @@ fn estimates_are_near_to_what_is_taken() {
             .collect();
         // What the program takes anyway.
         let base = peak(&bench, "--model pnn --starts 1 --epochs 1 --input x0 --rate none");
-        let taken = peak(&bench, &format!("{} --time-limit 20", flags.join(" "))) - base;
+        let taken = peak(&bench, &format!("{}{} --time-limit 20", flags.join(" "), named(inputs))) - base;
         let ratio = estimate / taken;
         eprintln!("{options}: {:.0} MB estimated, {:.0} MB taken", estimate / 1e6, taken / 1e6);
         assert!((1.0 / FACTOR..FACTOR).contains(&ratio), "{options}: {estimate:.2e} of {taken:.2e} bytes");
@@ -115,6 +124,6 @@ fn what_needs_more_than_there_is_is_refused_at_once() {
 fn few_rows_of_many_inputs_take_little() {
     let bench = Workbench::new();
     data(&bench, 50, 99);
-    let taken = peak(&bench, "--model xpnn+ --starts 2 --epochs 2 --time-limit 20");
+    let taken = peak(&bench, &format!("--model xpnn+ --starts 2 --epochs 2 --time-limit 20{}", named(99)));
     assert!(taken < 200e6, "{taken:.2e} bytes");
 }

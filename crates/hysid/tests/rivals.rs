@@ -93,13 +93,23 @@ fn fits_without_rounds_end_when_they_are_told_to() {
         assert_eq!(whole.provenance().termination, Termination::Converged);
 
         let mut asked_again = 0;
-        let cut = identify(&data(), &request, &mut |_| {
-            asked_again += 1;
-            ControlFlow::Break(())
-        });
-        let cut = cut.unwrap().model;
-        assert_eq!(asked_again, 1, "{rival:?}: who has said stop is not asked again");
-        assert_eq!(cut.provenance().termination, Termination::Stopped);
+        let mut stopped_at = |call: usize| {
+            asked_again = 0;
+            identify(&data(), &request, &mut |_| {
+                asked_again += 1;
+                if asked_again >= call { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+        };
+        // At the first call there may be no model yet.
+        match stopped_at(1) {
+            Ok(cut) => assert_eq!(cut.model.provenance().termination, Termination::Stopped),
+            Err(error) => assert!(matches!(error, Error::Stopped), "{rival:?}: {error}"),
+        }
+        let cut = stopped_at(asked).unwrap().model;
+        assert!(asked_again <= asked, "{rival:?}: who has said stop is not asked again");
+        // Threads may ask less often the second time.
+        let expected = if asked_again == asked { Termination::Stopped } else { Termination::Converged };
+        assert_eq!(cut.provenance().termination, expected);
         let error = |model: &Model| model.evaluate(&data()).unwrap().nrmse_std_percent.unwrap();
         assert!(error(&cut) < 60.0, "{rival:?}: {} %, not {} %", error(&cut), error(&whole));
     }

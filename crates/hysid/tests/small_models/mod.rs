@@ -9,10 +9,13 @@ use hysid::rate::RateMethod;
 use hysid::record::Record;
 use hysid::training::FitOptions;
 
-/// A play-like output that lags behind its input, so that every model has something to find.
+/// A play-like output that lags behind its input, so that every model has something to find. Another name is
+/// another measurement.
 pub fn record(rows: usize, name: &str) -> Record {
+    let letters: u32 = name.bytes().map(u32::from).sum();
+    let pace = 0.19 + 0.004 * f64::from((letters + 1) % 7);
     let x: Vec<f64> =
-        (0..rows).map(|k| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
+        (0..rows).map(|k| (pace * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs())).collect();
     let mut stop = Stop::new(0.25).unwrap();
     let y = x.iter().map(|x| 20.0 + 3.0 * x - 1.8 * stop.step(*x)).collect();
     let time = (0..rows).map(|k| 0.1 * k as f64).collect();
