@@ -195,7 +195,7 @@ def test_members_share_out_the_whole(quick_ensemble):
     assert {one.name for one in members} <= set(told)
     assert f"auto of {len(members)}" in repr(quick_ensemble)
     assert "the weighted median of" in quick_ensemble._repr_html_()
-    assert "on data held out" in quick_ensemble._repr_html_()
+    assert "cross-validated error" in quick_ensemble._repr_html_()
 
 
 def test_a_single_model_has_no_members_and_no_band(quick_model, spring_and_slider):
@@ -219,8 +219,9 @@ def test_a_band_widens_with_its_probability_and_holds_what_is_measured(quick_ens
     assert ((low < output) & (output < high)).all()
     wide = quick_ensemble.predict(x, probability=0.99)
     assert (wide.low <= low).all() and (wide.high >= high).all() and (wide.high > high).any()
-    # The members have been trained on these very rows, so more of them than promised must be held.
-    assert np.mean((low <= y) & (y <= high)) > 0.9
+    # The members have been trained on these very rows, so about as many of them as promised must be held.
+    held = [np.mean((band.low <= y) & (y <= band.high)) for band in (quick_ensemble.predict(x), wide)]
+    assert 0.85 < held[0] < held[1]
     twice = quick_ensemble.predict(np.concatenate([x, x]), records=np.repeat(["a", "b"], len(x)))
     assert np.array_equal(twice.low, np.concatenate([low, low]))
     series = quick_ensemble.predict(pandas.Series(x, index=range(7, 607)))

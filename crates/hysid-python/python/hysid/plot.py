@@ -205,8 +205,8 @@ def convergence(model: Model, *, ax: Axes | None = None) -> Axes:
     Returns
     -------
     Axes
-        Error in percent of the output's standard deviation over epochs: thin the starts, which were trained
-        on a part of the data, thick what was trained on all.
+        Error in percent of the output's standard deviation over epochs: thin the fits to a part of the data,
+        which tell the validation error, thick what was trained on all.
 
     Raises
     ------
@@ -223,7 +223,7 @@ def convergence(model: Model, *, ax: Axes | None = None) -> Axes:
         epochs = [point["epoch"] for point in run["history"]]
         error = [point["train_nrmse_percent"] for point in run["history"]]
         if run["phase"] == "starts":
-            ax.plot(epochs, error, color="0.6", linewidth=0.8, label="starts")
+            ax.plot(epochs, error, color="0.6", linewidth=0.8, label="a part of the data")
         else:
             ax.plot(epochs, error, color="tab:red", linewidth=2.0, label=f"all data, {run['method']}")
     ax.set(xlabel="epoch", ylabel="training error, % of std", yscale="log")
