@@ -9,22 +9,22 @@ pub fn section(report: &Report) -> String {
     let Some(band) = report.model.band() else { return String::new() };
     let (inside, outside) = band.rows();
     let beyond = match outside {
-        0 => "none beyond it, where the same is taken for want of better".to_string(),
+        0 => "none beyond it, where the same width is used".to_string(),
         rows => format!("{rows} beyond it"),
     };
     let calibration = format!(
-        "How far off the model may be was found on {} held out from the fit: {inside} inside the range that was \
-         fitted to, {beyond}.",
-        count(inside + outside, "row")
+        "The band was calibrated on {} of rows held out from the fit: {inside} inside the range that was fitted to, \
+         {beyond}. A row that was in several folds counts once for each.",
+        count(inside + outside, "prediction")
     );
     let probability = number(100.0 * BAND, 3);
     let headings = ["data".into(), "samples".into(), format!("within the {probability} % band (%)")];
     let rows: Vec<Vec<String>> = report.sets.iter().filter_map(row).collect();
     let words = format!(
-        "The band is wider where the members disagree, and beyond the trained range if the model was worse there. It \
-         was made to hold {probability} % of the rows held out (split conformal prediction), and does so for others \
-         as far as these are like them and the members disagree there as they did then. How many of the training \
-         data lie within says little, since they were fitted to. Other probabilities: hysid simulate --band."
+        "The band is wider where the members disagree, and beyond the trained range if the error was larger there. It \
+         is calibrated to hold {probability} % of the rows held out (split conformal prediction); it holds as many new \
+         rows if they resemble these. The share of the training rows says little, because the model was fitted to \
+         them. Other probabilities: hysid simulate --band."
     );
     section_of("The prediction band", &(paragraph(&calibration) + &table(&headings, &rows) + &note(&words)))
 }

@@ -124,7 +124,11 @@ impl Selection {
             self.candidates.iter().filter(|one| one.kind == kind).map(|one| one.members).sum()
         };
         let parts = kinds.iter().filter(|kind| count(kind) > 0);
-        let parts: Vec<String> = parts.map(|kind| format!("{} {kind}", count(kind))).collect();
+        let part = |kind: &&str| match (count(kind), *kind) {
+            (1, "networks") => "1 network".into(),
+            (count, kind) => format!("{count} {kind}"),
+        };
+        let parts: Vec<String> = parts.map(part).collect();
         let most = self.candidates.iter().max_by(|a, b| a.share.inside.total_cmp(&b.share.inside));
         let leading = most.map_or_else(String::new, |one| format!("; the largest weight has {}", one.name));
         format!("the weighted median of {}{leading}", parts.join(", "))
