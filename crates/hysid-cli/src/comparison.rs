@@ -207,9 +207,8 @@ pub fn table(rows: &[Row], tested: bool) -> String {
         let [model, test, train, parameters, fit, simulate] = cells;
         let test = if tested { format!("{test:>9}") } else { String::new() };
         // A long name has a line of its own.
-        let model = if model.chars().count() < NAME { model.to_string() } else { format!("{model}\n") };
-        let name =
-            if model.ends_with('\n') { format!("{model}{:NAME$}", "") } else { format!("{model:<NAME$}") };
+        let is_long = model.chars().count() >= NAME;
+        let name = if is_long { format!("{model}\n{:NAME$}", "") } else { format!("{model:<NAME$}") };
         format!("{name}{test}{train:>8}{parameters:>11}{fit:>7}{simulate:>10}\n")
     };
     let mut text = line(HEADINGS);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use anyhow::Result;
+use hysid::error::escaped;
 use serde::Serialize;
 
 /// Letters of a name or a cell that are shown.
@@ -24,21 +25,7 @@ fn is_hidden(letter: char) -> bool {
 
 /// The text with visible signs in the place of control characters, such as `\n` and `\x1b`: always one line.
 pub fn visible(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_hidden) {
-        return text.into();
-    }
-    let mut shown = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '\n' => shown.push_str("\\n"),
-            '\r' => shown.push_str("\\r"),
-            '\t' => shown.push_str("\\t"),
-            '\0'..='\x7f' if is_hidden(letter) => shown.push_str(&format!("\\x{:02x}", letter as u32)),
-            hidden if is_hidden(hidden) => shown.extend(hidden.escape_unicode()),
-            plain => shown.push(plain),
-        }
-    }
-    shown.into()
+    escaped(text, is_hidden)
 }
 
 /// A name or a cell of a file: visible, and cut where it is long.

@@ -140,9 +140,14 @@ const FITS_EXPECTED: usize = 200;
 
 /// What is fitted to the data, each from its first start.
 pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<Request> {
+    wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
+}
+
+/// The candidates: all that suit the data, or the one model that was asked for.
+fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     match &options.only {
-        Some(request) => vec![(**request).clone()],
-        None => candidates(data, options).iter().map(|candidate| candidate.request(0)).collect(),
+        Some(request) => vec![Candidate::alone(request)],
+        None => candidates(data, options),
     }
 }
 
@@ -155,10 +160,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     if options.members == 0 || options.members > MOST_MEMBERS {
         return Err(Error::Option(format!("{} members: choose 1 to {MOST_MEMBERS}", options.members)));
     }
-    let candidates = match &options.only {
-        Some(request) => vec![Candidate::alone(request)],
-        None => candidates(data, options),
-    };
+    let candidates = wanted(data, options);
     let Some(first) = candidates.first() else {
         let advice = "no candidate is left by these decisions: take one of them back";
         return Err(Error::Option(advice.into()));

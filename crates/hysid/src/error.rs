@@ -176,18 +176,23 @@ impl std::error::Error for DataError {}
 
 /// The text with visible signs in the place of control characters, which names in files may have.
 fn one_line(text: &str) -> Cow<'_, str> {
-    if !text.contains(char::is_control) {
+    escaped(text, char::is_control)
+}
+
+/// The text with visible signs, such as `\n` and `\x1b`, in the place of the letters that are hidden.
+pub fn escaped(text: &str, is_hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&is_hidden) {
         return text.into();
     }
     let mut shown = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
+            plain if !is_hidden(plain) => shown.push(plain),
             '\n' => shown.push_str("\\n"),
             '\r' => shown.push_str("\\r"),
             '\t' => shown.push_str("\\t"),
-            '\0'..='\x7f' if letter.is_control() => shown.push_str(&format!("\\x{:02x}", letter as u32)),
-            control if control.is_control() => shown.extend(control.escape_unicode()),
-            plain => shown.push(plain),
+            '\0'..='\x7f' => shown.push_str(&format!("\\x{:02x}", letter as u32)),
+            hidden => shown.extend(hidden.escape_unicode()),
         }
     }
     shown.into()

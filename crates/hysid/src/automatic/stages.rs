@@ -104,9 +104,13 @@ impl Stages<'_, '_, '_> {
     fn is_hopeful(&self, place: usize, folds: &[usize], best: Option<Score>) -> bool {
         let trial = &self.trials[place];
         let Some(predicted) = trial.predicted_so_far(folds) else { return false };
-        let score = Score::of(&predicted, self.bench.folds, |fold| folds.contains(&fold));
-        let score = score.with_prior(trial.prior(self.evidence));
-        best.is_none_or(|best| is_within(score, best, HOPELESS))
+        best.is_none_or(|best| is_within(self.score(trial, &predicted, folds), best, HOPELESS))
+    }
+
+    /// Of what a candidate predicts on some folds, with what is known of it beforehand.
+    fn score(&self, trial: &Trial, predicted: &[Vec<f64>], folds: &[usize]) -> Score {
+        let score = Score::of(predicted, self.bench.folds, |fold| folds.contains(&fold));
+        score.with_prior(trial.prior(self.evidence))
     }
 
     /// The best networks so far with other penalties, unless the user has decided.
@@ -148,8 +152,7 @@ impl Stages<'_, '_, '_> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return };
         let is_worth_more = |trial: &Trial| {
-            let score = Score::of(&trial.predicted, self.bench.folds, |_| true);
-            let score = score.with_prior(trial.prior(self.evidence));
+            let score = self.score(trial, &trial.predicted, &all);
             trial.is_complete() && trial.candidate.is_random() && is_within(score, best, WORTH_MORE_STARTS)
         };
         let places: Vec<usize> =
@@ -173,10 +176,7 @@ impl Stages<'_, '_, '_> {
     /// The lowest scores of any candidate so far, on some folds.
     fn best(&self, folds: &[usize]) -> Option<Score> {
         let complete = self.trials.iter().filter(|trial| trial.is_complete());
-        let scores = complete.map(|trial| {
-            let score = Score::of(&trial.predicted, self.bench.folds, |fold| folds.contains(&fold));
-            score.with_prior(trial.prior(self.evidence))
-        });
+        let scores = complete.map(|trial| self.score(trial, &trial.predicted, folds));
         scores.reduce(|a, b| Score { inside: a.inside.min(b.inside), outside: a.outside.min(b.outside) })
     }
 }

@@ -22,36 +22,34 @@ impl Request {
 
 /// The variants of a law with these options.
 pub(crate) fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
-    let (degradation, differential_form, logarithmic_thresholds): (&[bool], &[bool], &[bool]) =
-        match options.model {
-            Rival::BoucWen => (&[false, true], &[false], &[false]),
-            Rival::JilesAtherton => (&[false], &[false, true], &[false]),
-            Rival::RateDependentPrandtlIshlinskii => (&[false], &[false], &[false, true]),
-            _ => (&[false], &[false], &[false]),
-        };
-    let with_rate = options.model.uses_rate() && options.rate.is_some();
-    let rates = match (with_rate, options.model.needs_rate() || options.model == Rival::RandomStops) {
-        (false, _) => vec![None],
-        (true, true) => vec![options.rate],
-        (true, false) => vec![None, options.rate],
+    let rate = options.rate.filter(|_| options.model.uses_rate());
+    let needs_rate = options.model.needs_rate() || options.model == Rival::RandomStops;
+    let without_rate = ClassicalOptions { rate: None, ..options.clone() };
+    let with_rate = rate.map(|rate| ClassicalOptions { rate: Some(rate), ..options.clone() });
+    let by_rate = match with_rate {
+        Some(with_rate) if needs_rate => vec![with_rate],
+        Some(with_rate) => vec![without_rate, with_rate],
+        None => vec![without_rate],
     };
-    let mut all = Vec::new();
-    for &rate in &rates {
-        for &degradation in degradation {
-            for &differential_form in differential_form {
-                for &logarithmic_thresholds in logarithmic_thresholds {
-                    all.push(ClassicalOptions {
-                        rate,
-                        degradation,
-                        differential_form,
-                        logarithmic_thresholds,
-                        ..options.clone()
-                    });
-                }
-            }
-        }
+    by_rate.iter().flat_map(terms).collect()
+}
+
+/// A law with and without the term, or the form, that it can have.
+fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
+    let either = |term: fn(&mut ClassicalOptions) -> &mut bool| {
+        let with = |is_there| {
+            let mut options = options.clone();
+            *term(&mut options) = is_there;
+            options
+        };
+        vec![with(false), with(true)]
+    };
+    match options.model {
+        Rival::BoucWen => either(|options| &mut options.degradation),
+        Rival::JilesAtherton => either(|options| &mut options.differential_form),
+        Rival::RateDependentPrandtlIshlinskii => either(|options| &mut options.logarithmic_thresholds),
+        _ => vec![options.clone()],
     }
-    all
 }
 
 #[cfg(test)]

@@ -26,10 +26,11 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
 
     /// Tells the progress. After it has said stop it is not asked again.
     pub fn tell(&self, progress: &Progress) -> ControlFlow<()> {
+        let mut told = self.told();
+        // It may have said stop to another thread that was waited for.
         if self.is_over() {
             return ControlFlow::Break(());
         }
-        let mut told = self.told();
         told.last = progress.without_state();
         let flow = (told.observer)(progress);
         if flow.is_break() {
