@@ -78,13 +78,16 @@ fn with_coverage(request: &Request) -> Result<()> {
     let host = host()?;
     let manifest = fuzz.join("coverage").join("Cargo.toml");
     let (manifest, found) = (manifest.to_string_lossy(), found.to_string_lossy());
-    let corpus = fuzz.join("corpus").join(target);
-    let corpus = corpus.to_string_lossy();
+    let corpus = Some(fuzz.join("corpus").join(target)).filter(|folder| folder.is_dir());
+    let corpus = corpus.as_ref().map(|folder| folder.to_string_lossy());
     let (time, seed) = (format!("-max_total_time={seconds}"), format!("-seed={seed}"));
     // With a target triple the flags leave build scripts alone.
     let mut arguments = vec!["run", "--release", "--manifest-path", &manifest, "--target", &host, "--"];
-    arguments.extend([found.as_ref(), corpus.as_ref(), &time, &seed, "-timeout=30", "-rss_limit_mb=4000"]);
-    cargo(&arguments, &[("RUSTFLAGS", COVERAGE), ("HYSID_FUZZ_TARGET", target)])
+    let limits = ["-timeout=30", "-rss_limit_mb=4000"];
+    arguments.extend([found.as_ref()].into_iter().chain(corpus.as_deref()));
+    arguments.extend([time.as_str(), &seed].into_iter().chain(limits));
+    let variables = [("RUSTFLAGS", COVERAGE), ("HYSID_FUZZ_TARGET", target), ("HYSID_FUZZ_SEEDS", &found)];
+    cargo(&arguments, &variables)
 }
 
 /// The triple of this machine.

@@ -171,12 +171,17 @@ fn seconds_to_match(protocol: &Protocol, seed: u64, hybrid: &Training) -> Result
         }
         // Seeds of other repetitions are not used twice.
         let options = protocol.options(Trainer::LevenbergMarquardt, seed + start * 1_000_003);
-        fit(&protocol.train, &options, &mut |progress| {
+        let fitted = fit(&protocol.train, &options, &mut |progress| {
             if progress.train_nrmse_percent <= target {
                 reached = Some(began.elapsed().as_secs_f64());
             }
             if reached.is_some() || over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })?;
+        });
+        match fitted {
+            // The time of the hybrid ended before this start had a model.
+            Ok(_) | Err(hysid::Error::Stopped) => {}
+            Err(error) => return Err(error.into()),
+        }
     }
     Ok(reached)
 }

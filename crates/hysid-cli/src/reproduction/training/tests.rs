@@ -53,6 +53,16 @@ fn levenberg_marquardt_is_timed_against_the_hybrid() {
 }
 
 #[test]
+fn time_that_ends_before_there_is_a_model_reaches_nothing() {
+    let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
+    for seconds in [1e-9, 1e-4, 1e-3] {
+        let mut hybrid = repetition_of([1e-12; 4], None).trainings.remove(2);
+        hybrid.seconds = seconds;
+        assert_eq!(seconds_to_match(&protocol, 3, &hybrid).unwrap(), None, "{seconds} s");
+    }
+}
+
+#[test]
 fn a_short_comparison_makes_a_chapter() {
     let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
     let chapter = compared(&protocol).unwrap().expect("nobody interrupts");
