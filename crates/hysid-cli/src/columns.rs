@@ -5,7 +5,7 @@ mod guess;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use anyhow::{Result, anyhow, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use hysid::identification::options::RateChoice;
 use hysid::model::Model;
 use hysid::rate::RateMethod;
@@ -40,6 +40,7 @@ pub struct Roles {
 impl Roles {
     /// Finds the roles in a table from options and names.
     pub fn detect(table: &Table, options: &ColumnOptions) -> Result<Self> {
+        table.require_columns()?;
         let rate = match &options.rate {
             RateOption::Column(name) => Some(name.clone()),
             _ => None,
@@ -111,20 +112,19 @@ impl Roles {
     /// `scored` tells if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnOptions, scored: bool) -> Result<Self> {
         let names = model.names();
-        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| {
-            match given {
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
             Some(name) => require(table, name, option).map(|()| name.clone()),
             None if table.column(trained).is_some() => Ok(trained.to_string()),
             None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
-            None => in_another_unit(table, trained).cloned().ok_or_else(|| {
-                anyhow!(
+            None => {
+                table.require_columns()?;
+                bail!(
                     "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
                     table.file,
                     clipped(trained),
                     listed(&table.header)
                 )
-            }),
-        }
+            }
         };
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {

@@ -80,6 +80,29 @@ fn records_of_a_long_table_are_simulated_as_if_each_were_alone() {
 }
 
 #[test]
+fn the_input_alone_is_enough_to_simulate() {
+    let bench = Workbench::new();
+    bench.put("good.csv", table());
+    let fit = "fit good.csv -o m.json --no-report --model pnn --starts 1 --epochs 2";
+    assert_eq!(bench.run(fit).status, Some(0));
+    let place = table().lines().next().unwrap().split(',').position(|name| name == "x").unwrap();
+    let alone: String =
+        table().lines().map(|line| format!("{}\n", line.split(',').nth(place).unwrap())).collect();
+    bench.put("alone.csv", &alone);
+    let (whole, alone) = (bench.run("simulate m.json good.csv"), bench.run("simulate m.json alone.csv"));
+    assert_eq!((whole.status, alone.status), (Some(0), Some(0)), "{}", alone.stderr);
+    assert!(alone.stdout.starts_with("x,y_model\n"), "{}", alone.stdout);
+    assert_eq!(last_cells(&whole.stdout), last_cells(&alone.stdout));
+    // A table of one column that is not the input was separated by something else.
+    bench.put("bars.csv", "t|x|y\n0|1|2\n");
+    for command in ["simulate m.json bars.csv", "evaluate m.json bars.csv", "evaluate m.json alone.csv"] {
+        let ran = bench.run(command);
+        assert_eq!(ran.status, Some(1));
+        assert!(ran.stderr.contains("line 1: there is only one column"), "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn errors_of_a_long_table_are_those_of_its_rows() {
     let bench = bench();
     bench.put("long.csv", long(',', plain));

@@ -17,19 +17,21 @@ pub struct Head {
     pub delimiter: u8,
     /// Names of the columns, without surrounding blanks.
     pub header: Vec<String>,
+    /// Line of the header, counted from 1.
+    line: u64,
     places: HashMap<String, usize>,
 }
 
 impl Head {
     /// Of a file whose header was not read yet.
     pub fn nameless(file: String) -> Self {
-        Self { file, delimiter: b',', header: Vec::new(), places: HashMap::new() }
+        Self { file, delimiter: b',', header: Vec::new(), line: 1, places: HashMap::new() }
     }
 
     /// Of the first row of a table.
     ///
     /// # Errors
-    /// A row of numbers, a single column, a column without a name, two of the same name.
+    /// A row of numbers, a column without a name, two of the same name.
     pub fn new(file: &str, delimiter: u8, row: &Row<'_>, is_commented: bool) -> Result<Self> {
         let line = row.line;
         if cell::all_numbers(row.cells()) {
@@ -39,12 +41,6 @@ impl Head {
             );
         }
         let header: Vec<String> = row.cells().map(|name| name.trim().to_string()).collect();
-        if let [name] = header.as_slice() {
-            bail!(
-                "{file}, line {line}: there is only one column, \"{}\" (separate columns by comma, semicolon or tab)",
-                clipped(name)
-            );
-        }
         let mut places = HashMap::with_capacity(header.len());
         for (index, name) in header.iter().enumerate() {
             ensure!(!name.is_empty(), "{file}, line {line}: column {} has no name", index + 1);
@@ -54,7 +50,23 @@ impl Head {
                 clipped(name)
             );
         }
-        Ok(Self { file: file.into(), delimiter, header, places })
+        Ok(Self { file: file.into(), delimiter, header, line, places })
+    }
+
+    /// Refuses a single column where more are needed: it is likely to be several, separated by something else.
+    ///
+    /// # Errors
+    /// The table has one column.
+    pub fn require_columns(&self) -> Result<()> {
+        if let [name] = self.header.as_slice() {
+            bail!(
+                "{}, line {}: there is only one column, \"{}\" (separate columns by comma, semicolon or tab)",
+                self.file,
+                self.line,
+                clipped(name)
+            );
+        }
+        Ok(())
     }
 
     /// Place of a column.
