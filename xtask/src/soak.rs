@@ -6,7 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 use hysid::identification::ModelName;
@@ -16,8 +16,8 @@ use crate::program;
 /// Fits killed unless said otherwise.
 pub const KILLS: usize = 200;
 
-/// Longest time before a kill.
-const LONGEST: Duration = Duration::from_millis(1200);
+/// Longest time before a kill, of the time that the fit takes.
+const LONGEST: f64 = 1.2;
 
 /// Time limit of a fit, in seconds.
 const LIMIT: f64 = 1.0;
@@ -97,9 +97,12 @@ impl Bench {
 
     /// A fit is killed at random moments and resumed: whatever is there is whole.
     fn kills(&self, kills: usize, report: &mut Report) -> Result<()> {
-        fs::write(self.path("data.csv"), record(3000, 1))?;
-        let fit = "fit data.csv --model xpnn+ --starts 2 --epochs 60 --no-report --force -o model.json";
-        let (mut resumed, mut models) = (0, 0);
+        fs::write(self.path("data.csv"), record(1000, 1))?;
+        let fit = "fit data.csv --model xpnn+ --starts 2 --epochs 30 --no-report --force -o model.json";
+        let began = Instant::now();
+        report.require(self.succeeds(fit)?, || "the fit that is to be killed failed".into());
+        let undisturbed = began.elapsed();
+        let (mut resumed, mut finished) = (0, 0);
         for kill in 0..kills {
             let has_checkpoint = self.path("state.bin").exists();
             let arguments = match has_checkpoint && kill % 4 != 0 {
@@ -107,15 +110,15 @@ impl Bench {
                 false => format!("{fit} --checkpoint state.bin"),
             };
             let mut child = self.spawn(&arguments)?;
-            thread::sleep(LONGEST.mul_f64(share(kill as u64)));
+            // Every other one in the last tenth, where files are written.
+            let share = share(kill as u64);
+            let share = if kill % 2 == 0 { LONGEST * share } else { 0.95 + 0.1 * share };
+            thread::sleep(undisturbed.mul_f64(share));
             // One that has ended need not be killed.
             let _ = child.kill();
-            child.wait()?;
-            if self.path("model.json").exists() {
-                models += 1;
-                let is_whole = self.succeeds("evaluate model.json data.csv")?;
-                report.require(is_whole, || format!("kill {kill}: model.json cannot be read"));
-            }
+            finished += usize::from(child.wait()?.success());
+            let is_whole = self.succeeds("evaluate model.json data.csv")?;
+            report.require(is_whole, || format!("kill {kill}: model.json cannot be read"));
             if self.path("state.bin").exists() && kill % 10 == 0 {
                 resumed += 1;
                 let goes_on = self.output(
@@ -125,12 +128,20 @@ impl Bench {
             }
         }
         // A last run removes what killed ones left behind.
-        report.require(self.succeeds(&format!("{fit} --time-limit 0.2"))?, || "the last fit failed".into());
-        let left = fs::read_dir(&self.folder)?.count();
-        report.require(left < 12, || format!("{left} files are left after {kills} kills"));
+        let last = format!("{fit} --checkpoint state.bin --time-limit 0.2");
+        report.require(self.succeeds(&last)?, || "the last fit failed".into());
+        self.require_no_partial_files("kills", report)?;
         report.lines.push(format!(
-            "{kills} kills: {models} times there was a model to read, {resumed} checkpoints were resumed, {left} files left"
+            "{kills} kills: {finished} came too late, {resumed} checkpoints were resumed, no partial file is left"
         ));
+        Ok(())
+    }
+
+    fn require_no_partial_files(&self, after: &str, report: &mut Report) -> Result<()> {
+        for entry in fs::read_dir(&self.folder)? {
+            let name = entry?.file_name().to_string_lossy().into_owned();
+            report.require(!name.ends_with(".hysid-partial"), || format!("{name} is left after {after}"));
+        }
         Ok(())
     }
 
@@ -176,6 +187,7 @@ impl Bench {
                 report.require(is_whole, || "race.json cannot be read".into());
             }
         }
+        self.require_no_partial_files("the race", report)?;
         report.lines.push(format!("race: {} writers of one file, {WRITERS} at a time", 5 * WRITERS));
         Ok(())
     }

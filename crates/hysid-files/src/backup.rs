@@ -31,7 +31,12 @@ pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
     let folder = folder_of(target);
     let linked = builder(&beginning).make_in(folder, |name| fs::hard_link(target, name));
     match linked {
-        Ok(copy) => copy.persist(&path).map_err(|error| error.error)?,
+        Ok(copy) => {
+            let name = copy.path().to_path_buf();
+            copy.persist(&path).map_err(|error| error.error)?;
+            // Renaming does nothing if both names are of one file: another writer may have kept it just now.
+            let _ = fs::remove_file(name);
+        }
         // Not every file system has hard links.
         Err(_) => {
             let mut copy = builder(&beginning).tempfile_in(folder).map_err(plain)?;
@@ -47,4 +52,20 @@ pub(crate) fn keep(target: &Path) -> io::Result<PathBuf> {
 /// True if both files have the same content.
 pub(crate) fn are_same(a: &Path, b: &Path) -> io::Result<bool> {
     Ok(fs::metadata(a)?.len() == fs::metadata(b)?.len() && fs::read(a)? == fs::read(b)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_another_writer_kept_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("m.json");
+        fs::write(&target, "new").unwrap();
+        assert_eq!(keep(&target).unwrap(), path_of(&target));
+        keep(&target).unwrap();
+        assert_eq!(fs::read_to_string(path_of(&target)).unwrap(), "new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
 }
