@@ -169,7 +169,7 @@ pub struct Fit {
     /// What can be chosen of models that are no networks.
     #[command(flatten)]
     pub rival: RivalOptions,
-    /// Stop after this time and keep the best model so far
+    /// Stop the search after this time and keep the best model so far; reading and writing files is not counted
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Store the state of the fit in this file, every few seconds and at the end; for a single network, such as

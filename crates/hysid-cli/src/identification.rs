@@ -76,11 +76,12 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
         return Err(Usage(format!("{} {hindrance}", request.model().name())).into());
     }
     let summary = Summary::of(&data.set);
-    interrupt::listen(to_ctrl_c)?;
     let understood = understanding::understanding(data, &summary, request, &model);
-    understanding::print(&understood);
     let mut warnings = data_warnings(data, &summary);
     warnings.extend(request.cautions(&data.set));
+    // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
+    interrupt::listen(to_ctrl_c)?;
+    understanding::print(&understood);
     warnings.iter().for_each(warning);
     Ok(Said { understood, warnings })
 }
