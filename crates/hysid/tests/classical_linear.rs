@@ -1,21 +1,21 @@
 //! The classical models that are linear in their weights: against each other, against published values,
 //! and against the memory laws they must obey or break.
 
-use hysid::classical::linear_fit::Sign;
-use hysid::classical::masing::{Masing, MasingOptions, MasingParts};
-use hysid::classical::modified_prandtl_ishlinskii::{
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::error::{DataProblem, Error};
+use hysid::fit::network::random_stops::{RandomStopsOptions, fit_random_stops};
+use hysid::law::linear_fit::Sign;
+use hysid::law::masing::{Masing, MasingOptions, MasingParts};
+use hysid::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, ModifiedPrandtlIshlinskiiOptions,
 };
-use hysid::classical::prandtl_ishlinskii::{PrandtlIshlinskii, PrandtlIshlinskiiOptions};
-use hysid::classical::preisach::{Preisach, PreisachOptions, PreisachWeights};
-use hysid::classical::series::run;
-use hysid::classical::turning_point_stack::TurningPointStack;
-use hysid::classical::{Law, Sample};
-use hysid::error::{DataProblem, Error};
+use hysid::law::prandtl_ishlinskii::{PrandtlIshlinskii, PrandtlIshlinskiiOptions};
+use hysid::law::preisach::{Preisach, PreisachOptions, PreisachWeights};
+use hysid::law::series::run;
+use hysid::law::turning_point_stack::TurningPointStack;
+use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
 use hysid::plant::Ferromagnet;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::random_stops::{RandomStopsOptions, fit_random_stops};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

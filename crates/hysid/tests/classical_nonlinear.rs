@@ -5,22 +5,22 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::classical::bouc_wen::{BoucWen, BoucWenOptions, Degradation};
-use hysid::classical::generalized_prandtl_ishlinskii::{
+use hysid::data::metrics::ErrorSums;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::law::bouc_wen::{BoucWen, BoucWenOptions, Degradation};
+use hysid::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, GeneralizedPrandtlIshlinskiiOptions, PlayWeights,
 };
-use hysid::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm, JilesAthertonOptions};
-use hysid::classical::neuro_madelung::{NeuroMadelung, NeuroMadelungOptions};
-use hysid::classical::rate_dependent_prandtl_ishlinskii::{
+use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm, JilesAthertonOptions};
+use hysid::law::neuro_madelung::{NeuroMadelung, NeuroMadelungOptions};
+use hysid::law::rate_dependent_prandtl_ishlinskii::{
     RateDependentPrandtlIshlinskii, RateDependentPrandtlIshlinskiiOptions, ThresholdForm, Thresholds,
 };
-use hysid::classical::search::SearchProgress;
-use hysid::classical::series::{Series, run};
-use hysid::classical::{Law, Sample};
-use hysid::metrics::ErrorSums;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::Termination;
+use hysid::law::search::SearchProgress;
+use hysid::law::series::{Series, run};
+use hysid::law::{Law, Sample};
+use hysid::termination::Termination;
 
 // ------------------------------------------------------------------------------- paths and laws
 
