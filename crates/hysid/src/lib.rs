@@ -27,8 +27,10 @@
 //! ```
 //!
 //! The library does no input or output, keeps no global state and has no unsafe code. Where to find
-//! what: [`record`] holds measured data, [`operator`] the elements of memory, [`network`] the family
-//! of networks, [`training`] identifies one, [`model`] is the result.
+//! what, each room using only those before it: [`data`] holds measured records, [`operator`] the elements of memory,
+//! [`network`] the family of networks, [`law`] the classical models, [`options`] what can be asked for, [`model`] the
+//! result, [`validation`] the folds, [`fit`] identifies; [`diagnosis`] tells what kind of hysteresis it is, and
+//! [`plant`] makes data.
 
 pub mod data;
 pub mod diagnosis;

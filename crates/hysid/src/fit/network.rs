@@ -136,7 +136,7 @@ pub struct Fit {
 /// Identifies a network.
 ///
 /// `observer` is told of every epoch and may stop the fit by breaking: the best model so far is then
-/// returned, with [`Termination::Stopped`]. It is also asked in the midst of long epochs, so that it is obeyed
+/// returned, with [`Termination::Stopped`](crate::termination::Termination::Stopped). It is also asked in the midst of long epochs, so that it is obeyed
 /// soon; what such an epoch has not finished is thrown away. The result depends on data, options and seed only, not on
 /// the number of threads.
 ///

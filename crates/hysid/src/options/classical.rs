@@ -10,23 +10,23 @@ use crate::options::shaping::{Origin, Shaping};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rival {
-    /// [`Masing`].
+    /// [`Masing`](crate::law::masing::Masing).
     Masing,
-    /// [`PrandtlIshlinskii`].
+    /// [`PrandtlIshlinskii`](crate::law::prandtl_ishlinskii::PrandtlIshlinskii).
     PrandtlIshlinskii,
-    /// [`ModifiedPrandtlIshlinskii`].
+    /// [`ModifiedPrandtlIshlinskii`](crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii).
     ModifiedPrandtlIshlinskii,
-    /// [`GeneralizedPrandtlIshlinskii`].
+    /// [`GeneralizedPrandtlIshlinskii`](crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii).
     GeneralizedPrandtlIshlinskii,
-    /// [`RateDependentPrandtlIshlinskii`].
+    /// [`RateDependentPrandtlIshlinskii`](crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii).
     RateDependentPrandtlIshlinskii,
-    /// [`Preisach`].
+    /// [`Preisach`](crate::law::preisach::Preisach).
     Preisach,
-    /// [`NeuroMadelung`].
+    /// [`NeuroMadelung`](crate::law::neuro_madelung::NeuroMadelung).
     NeuroMadelung,
-    /// [`BoucWen`].
+    /// [`BoucWen`](crate::law::bouc_wen::BoucWen).
     BoucWen,
-    /// [`JilesAtherton`].
+    /// [`JilesAtherton`](crate::law::jiles_atherton::JilesAtherton).
     JilesAtherton,
     /// Random deteriorating stops and a ridge: a network whose stops are not trained,
     /// [`crate::fit::network::random_stops`].
