@@ -9,8 +9,8 @@ mod validate;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
-use crate::law::search::SearchProgress;
 use crate::model::preprocessing::Seen;
 use crate::model::{Body, Found, Model};
 use crate::options::classical::{ClassicalOptions, Rival};

@@ -7,15 +7,13 @@
 pub mod bouc_wen;
 pub mod generalized_prandtl_ishlinskii;
 pub mod jiles_atherton;
-pub mod linear_fit;
 pub mod masing;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
-mod play_weights;
+pub(crate) mod play_weights;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
 pub mod rate_dependent_prandtl_ishlinskii;
-pub mod search;
 pub mod series;
 pub(crate) mod thresholds;
 pub mod turning_point_stack;

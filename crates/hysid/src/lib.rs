@@ -46,7 +46,7 @@ pub mod plant;
 mod random;
 pub mod significant;
 pub mod simd;
-mod stop_check;
+pub mod stop_check;
 pub mod termination;
 pub mod validation;
 

@@ -24,7 +24,7 @@ use std::ops::ControlFlow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::law::search::SearchProgress;
+use crate::fit::law::search::SearchProgress;
 use crate::model::Model;
 use crate::model::history::Phase;
 use crate::model::preprocessing::Seen;

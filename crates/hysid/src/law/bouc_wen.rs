@@ -14,14 +14,12 @@
 //! Foliente.
 
 mod degradation;
-mod fitting;
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::{Dimension, Law, Parameter, Sample};
 pub use degradation::Degradation;
-pub use fitting::BoucWenOptions;
 
 /// Longest part of the input moved in one step of Runge and Kutta, in yield displacements, where the
 /// element answers as fast as itself.
@@ -139,7 +137,7 @@ impl BoucWen {
     }
 
     /// Takes the next input and gives `z`, in yield displacements.
-    fn advance(&self, state: &mut BoucWenState, x: f64) -> f64 {
+    pub(crate) fn advance(&self, state: &mut BoucWenState, x: f64) -> f64 {
         let by = (x - state.x) / self.yield_displacement;
         state.x = x;
         if by != 0.0 {

@@ -12,14 +12,11 @@
 //! return-point memory. Source: Al Janaideh, Rakheja and Su (2010, 2011); form of the eleven parameters
 //! as in the program of Basaeri et al. (2019).
 
-mod fitting;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::{Dimension, Law, Parameter, Sample};
-pub use fitting::GeneralizedPrandtlIshlinskiiOptions;
 
 /// Largest magnitude of what an envelope is made of: sums of weighted plays stay finite.
 const LARGEST: f64 = 1e100;

@@ -13,13 +13,10 @@
 //! Ours are the guards of (8.25): where the feedback `α` would make the susceptibility infinite it is
 //! limited. The field is moved in small parts of `a` and `k`, so that the sampling does not matter.
 
-mod fitting;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::{Dimension, Law, Parameter, Sample};
-pub use fitting::JilesAthertonOptions;
 
 /// Longest part of the field moved in one step of Runge and Kutta, as a share of the smaller of `a` and
 /// `k`.
@@ -38,7 +35,7 @@ const LEAST_PINNING: f64 = 0.02;
 const LARGEST_FEEDBACK: f64 = 0.98;
 
 /// Bounds of `c`.
-const C_BOUNDS: (f64, f64) = (0.0, 0.99);
+pub(crate) const C_BOUNDS: (f64, f64) = (0.0, 0.99);
 
 /// Which differential equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -102,7 +99,7 @@ impl JilesAtherton {
     }
 
     /// Elementary operations, roughly, that [`Self::advance`] takes.
-    fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
+    pub(crate) fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
         let end = SATURATED * (self.a + self.k + self.coupling);
         let travel = (h - state.h).abs().min(2.0 * end);
         let parts = (travel / (LONGEST_PART * self.a.min(self.k))).min(MOST_PARTS);
@@ -110,7 +107,7 @@ impl JilesAtherton {
     }
 
     /// Takes the next field and gives `M/M_s`.
-    fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
+    pub(crate) fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
         let direction = (h - state.h).signum();
         let end = SATURATED * (self.a + self.k + self.coupling);
         let (from, to) = ((direction * state.h).clamp(-end, end), (direction * h).clamp(-end, end));

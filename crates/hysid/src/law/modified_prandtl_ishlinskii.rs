@@ -10,15 +10,12 @@
 //! are; they still wipe out. Source: Kuhnen, "Modeling, identification and compensation of complex
 //! hysteretic nonlinearities", European Journal of Control (2003).
 
-mod fit;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::thresholds::check_weights;
 use crate::law::{Dimension, Law, Parameter, Sample};
-pub use fit::ModifiedPrandtlIshlinskiiOptions;
 
 /// A modified Prandtl-Ishlinskii model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,7 +29,7 @@ pub struct ModifiedPrandtlIshlinskii {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "DeadZoneParts", into = "DeadZoneParts")]
 pub struct DeadZones {
-    parts: DeadZoneParts,
+    pub(crate) parts: DeadZoneParts,
 }
 
 /// What a sum of dead zones consists of.
@@ -121,7 +118,7 @@ impl DeadZones {
 
 /// `S_r(z)`
 #[inline(always)]
-fn dead_zone(z: f64, r: f64) -> f64 {
+pub(crate) fn dead_zone(z: f64, r: f64) -> f64 {
     if r > 0.0 { (z - r).max(0.0) } else { (z - r).min(0.0) }
 }
 

@@ -15,14 +15,11 @@
 //! Source: Farrokh and Dizaji 2016, of whom the inputs of the network are known; its form, the
 //! factor `x - x_t` and the training are ours.
 
-mod fitting;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
-pub use fitting::NeuroMadelungOptions;
 
 /// The output may leave the range that was trained on by so many of these ranges. A chain of wrong
 /// branches, each beginning at the end of the one before, can otherwise grow beyond all bounds; a
@@ -56,9 +53,9 @@ pub struct NeuroMadelung {
 
 /// The network and what surrounds it, as training sees it: all scaled.
 #[derive(Debug, Clone, Copy)]
-struct Branch<'a> {
-    hidden: &'a [f64],
-    output: &'a [f64],
+pub(crate) struct Branch<'a> {
+    pub(crate) hidden: &'a [f64],
+    pub(crate) output: &'a [f64],
     /// Range of the output in training.
     low: f64,
     high: f64,
@@ -66,12 +63,12 @@ struct Branch<'a> {
 
 impl Branch<'_> {
     /// Bias and weights of a neuron.
-    fn run(&self) -> usize {
+    pub(crate) fn run(&self) -> usize {
         self.hidden.len() / (self.output.len() - 1).max(1)
     }
 
     /// The output on the branch that began at `(x_t, y_t)`; `inputs` is `x, x_t, y_t[, x']`.
-    fn value(&self, inputs: &[f64]) -> f64 {
+    pub(crate) fn value(&self, inputs: &[f64]) -> f64 {
         let seen = self.seen(inputs);
         let seen = &seen[..inputs.len()];
         let mut slope = self.output[0];
@@ -83,19 +80,19 @@ impl Branch<'_> {
 
     /// What the network sees: inputs within the ranges that it was trained on. Beyond them a branch goes
     /// on with the slope that its chord has at the edge.
-    fn seen(&self, inputs: &[f64]) -> [f64; 4] {
+    pub(crate) fn seen(&self, inputs: &[f64]) -> [f64; 4] {
         let rate = inputs.get(3).copied().unwrap_or(0.0);
         let unit = |value: f64| value.clamp(-1.0, 1.0);
         [unit(inputs[0]), unit(inputs[1]), inputs[2].clamp(self.low, self.high), unit(rate)]
     }
 
-    fn limited(&self, y: f64) -> f64 {
+    pub(crate) fn limited(&self, y: f64) -> f64 {
         let beyond = BEYOND * (self.high - self.low);
         y.clamp(self.low - beyond, self.high + beyond)
     }
 }
 
-fn argument(neuron: &[f64], inputs: &[f64]) -> f64 {
+pub(crate) fn argument(neuron: &[f64], inputs: &[f64]) -> f64 {
     neuron[0] + neuron[1..].iter().zip(inputs).map(|(weight, input)| weight * input).sum::<f64>()
 }
 
@@ -129,18 +126,18 @@ impl NeuroMadelung {
     }
 
     /// Inputs of the network.
-    fn inputs(&self) -> usize {
+    pub(crate) fn inputs(&self) -> usize {
         3 + usize::from(self.rate_scale.is_some())
     }
 
-    fn branch(&self) -> Branch<'_> {
+    pub(crate) fn branch(&self) -> Branch<'_> {
         let scaled = |y: f64| (y - self.output_mean) / self.output_scale;
         let (low, high) = (scaled(self.output_range.0), scaled(self.output_range.1));
         Branch { hidden: &self.hidden, output: &self.output, low, high }
     }
 
     /// The scaled input and rate.
-    fn scaled(&self, sample: Sample) -> (f64, f64) {
+    pub(crate) fn scaled(&self, sample: Sample) -> (f64, f64) {
         let limited = |value: f64| value.clamp(-LARGEST_INPUT, LARGEST_INPUT);
         let rate = self.rate_scale.map_or(0.0, |scale| limited(sample.rate / scale));
         (limited(sample.x / self.input_scale), rate)
@@ -186,4 +183,4 @@ impl Law for NeuroMadelung {
 }
 
 /// Weights may not be larger: products with scaled inputs and sums of them stay finite.
-const LARGEST_WEIGHT: f64 = 1e6;
+pub(crate) const LARGEST_WEIGHT: f64 = 1e6;

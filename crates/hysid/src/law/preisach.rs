@@ -12,8 +12,7 @@
 //! The model wipes out and is congruent, and every model that does is one of these (Mayergoyz).
 
 mod everett;
-mod fit;
-mod plane;
+pub(crate) mod plane;
 
 use serde::{Deserialize, Serialize};
 
@@ -22,11 +21,10 @@ use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use everett::Everett;
-pub use fit::PreisachOptions;
 use plane::Plane;
 
 /// Most intervals of each axis.
-const MOST_INTERVALS: usize = 200;
+pub(crate) const MOST_INTERVALS: usize = 200;
 
 /// A Preisach model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

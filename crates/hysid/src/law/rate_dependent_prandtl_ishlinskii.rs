@@ -11,14 +11,11 @@
 //! At one rate it is a Prandtl-Ishlinskii model, with return-point memory at that rate only. Source: Al
 //! Janaideh, Rakheja and Su; that all thresholds of the logarithmic form share one factor is our reading.
 
-mod fitting;
-
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::{Dimension, Law, Parameter, Sample};
-pub use fitting::{RateDependentPrandtlIshlinskiiOptions, ThresholdForm};
 
 /// How the thresholds grow with the rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -104,7 +101,7 @@ impl RateDependentPrandtlIshlinskii {
     }
 
     /// Moves the plays to the next input.
-    fn advance(&self, plays: &mut [f64], sample: Sample) {
+    pub(crate) fn advance(&self, plays: &mut [f64], sample: Sample) {
         let (added, factor) = self.thresholds.growth(sample.rate);
         for (index, play) in plays.iter_mut().enumerate() {
             let r = self.spacing * (index + 1) as f64 * factor + added;

@@ -10,14 +10,13 @@ use serde_json::{Map, Value};
 
 use crate::data::rate::RateMethod;
 use crate::error::{Error, Result};
-use crate::law::linear_fit::Sign;
-use crate::law::search::MOST_EPOCHS;
 use crate::network::{Family, Sizes};
 use crate::options::auto::{AutoOptions, MOST_MEMBERS};
+use crate::options::classical::Sign;
 use crate::options::classical::{ClassicalOptions, Rival};
-use crate::options::network::PENALTIES;
 use crate::options::network::POPULATIONS;
 use crate::options::network::{FitOptions, Trainer};
+use crate::options::network::{MOST_EPOCHS, PENALTIES};
 use crate::options::shaping::Shaping;
 use crate::options::{ModelName, Request};
 

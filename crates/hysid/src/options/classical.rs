@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::rate::RateMethod;
-use crate::law::linear_fit::Sign;
 use crate::options::shaping::{Origin, Shaping};
 
 /// The models that are no networks of the family.
@@ -169,4 +168,22 @@ impl ClassicalOptions {
             seed: 1,
         }
     }
+}
+
+/// Sign that weights may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sign {
+    /// Any sign.
+    Any,
+    /// At least 0: the output lags behind the input, as that of magnets and actuators.
+    NonNegative,
+    /// At most 0, beside a reversible part that rises: the output runs ahead, as a force behind a
+    /// displacement does where energy is lost.
+    NonPositive,
+}
+
+impl Sign {
+    /// All of them; the strictest last.
+    pub const ALL: [Sign; 3] = [Sign::Any, Sign::NonNegative, Sign::NonPositive];
 }

@@ -8,7 +8,6 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::law::search::{MOST_EPOCHS, MOST_STARTS};
 use crate::network::{Architecture, Family, Sizes};
 use crate::options::shaping::{HISTORY_INPUTS, Shaping};
 
@@ -245,6 +244,12 @@ impl FitOptions {
 
 /// Fewest and most individuals.
 pub const POPULATIONS: RangeInclusive<usize> = 4..=100_000;
+
+/// Most epochs of a start.
+pub(crate) const MOST_EPOCHS: usize = 1_000_000;
+
+/// Most starts.
+pub(crate) const MOST_STARTS: usize = 10_000;
 
 /// Penalties on the weights, in scaled units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

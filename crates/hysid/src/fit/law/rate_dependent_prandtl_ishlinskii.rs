@@ -5,14 +5,17 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::law::play_weights::MOST_PLAYS;
-use crate::law::search::{
+use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
+use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, work};
 use crate::stop_check::StopCheck;
 
-use super::{PlayWeights, RateDependentPrandtlIshlinskii, Thresholds};
+use crate::fit::law::Identify;
+use crate::law::rate_dependent_prandtl_ishlinskii::{
+    PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
+};
 
 /// Which form the thresholds have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,21 +60,10 @@ impl Default for RateDependentPrandtlIshlinskiiOptions {
     }
 }
 
-impl RateDependentPrandtlIshlinskii {
-    /// Identifies a model.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from or without a rate, no operator or no start.
-    pub fn fit(
-        data: &Dataset,
-        options: &RateDependentPrandtlIshlinskiiOptions,
-        observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
-        Self::fit_until(data, options, observer, StopCheck::never())
-    }
+impl Identify for RateDependentPrandtlIshlinskii {
+    type Options = RateDependentPrandtlIshlinskiiOptions;
 
-    /// As [`RateDependentPrandtlIshlinskii::fit`]; asked to stop in the midst of a round, with the best so far.
-    pub(crate) fn fit_until(
+    fn identify(
         data: &Dataset,
         options: &RateDependentPrandtlIshlinskiiOptions,
         observer: &mut SearchObserver<'_>,

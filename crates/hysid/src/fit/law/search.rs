@@ -24,17 +24,14 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::law::series::Series;
+use crate::options::network::MOST_EPOCHS;
+use crate::options::network::MOST_STARTS;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use descent::Descent;
 pub(crate) use projection::Columns;
 use projection::{Projection, UNFINISHED};
 
-/// Most epochs of a start.
-pub(crate) const MOST_EPOCHS: usize = 1_000_000;
-
-/// Most starts.
-pub(crate) const MOST_STARTS: usize = 10_000;
 pub(crate) use rows::{Memory, spread, thinned};
 
 /// Random points looked at for each start.
@@ -135,6 +132,13 @@ pub struct Identified<L> {
     pub evaluations: usize,
     /// Why the search ended.
     pub termination: Termination,
+}
+
+impl<L> Identified<L> {
+    /// A law found by linear least squares, without rounds.
+    pub(crate) fn by_least_squares(law: L) -> Self {
+        Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination: Termination::Converged }
+    }
 }
 
 /// How much is searched.

@@ -19,7 +19,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
+use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::linear_algebra::{Symmetric, dot};
@@ -27,7 +27,8 @@ use crate::random::normal;
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
-use super::{Branch, NeuroMadelung, argument};
+use crate::fit::law::Identify;
+use crate::law::neuro_madelung::{Branch, NeuroMadelung, argument};
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
@@ -64,21 +65,10 @@ impl Default for NeuroMadelungOptions {
     }
 }
 
-impl NeuroMadelung {
-    /// Trains a model.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from, a rate that cannot be computed, no neuron or no start.
-    pub fn fit(
-        data: &Dataset,
-        options: &NeuroMadelungOptions,
-        observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
-        Self::fit_until(data, options, observer, StopCheck::never())
-    }
+impl Identify for NeuroMadelung {
+    type Options = NeuroMadelungOptions;
 
-    /// As [`NeuroMadelung::fit`]; asked to stop in the midst of a round, with the best so far.
-    pub(crate) fn fit_until(
+    fn identify(
         data: &Dataset,
         options: &NeuroMadelungOptions,
         observer: &mut SearchObserver<'_>,
@@ -515,7 +505,7 @@ impl Walk {
                 let foretold: f64 = (0..n)
                     .map(|i| step[i] * (self.damping * (matrix.diagonal(i) + 1e-6) * step[i] - gradient[i]))
                     .sum();
-                let limit = super::LARGEST_WEIGHT;
+                let limit = crate::law::neuro_madelung::LARGEST_WEIGHT;
                 let there: Vec<f64> =
                     self.parameters.iter().zip(&step).map(|(p, by)| (p + by).clamp(-limit, limit)).collect();
                 let (objective, mean_square) = self.value(task, &there);

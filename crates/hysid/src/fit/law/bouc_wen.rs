@@ -5,14 +5,15 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::law::Sample;
-use crate::law::search::{
+use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
+use crate::law::Sample;
 use crate::law::series::Series;
 use crate::stop_check::StopCheck;
 
-use super::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
+use crate::fit::law::Identify;
+use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 
 /// How a Bouc-Wen law is identified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,21 +39,10 @@ impl Default for BoucWenOptions {
 /// Elementary operations of a row, roughly: it may take some hundred steps.
 const OPERATIONS_A_ROW: usize = 5000;
 
-impl BoucWen {
-    /// Identifies a law.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from, a rate that cannot be computed, or no start.
-    pub fn fit(
-        data: &Dataset,
-        options: &BoucWenOptions,
-        observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
-        Self::fit_until(data, options, observer, StopCheck::never())
-    }
+impl Identify for BoucWen {
+    type Options = BoucWenOptions;
 
-    /// As [`BoucWen::fit`]; asked to stop in the midst of a round, with the best so far.
-    pub(crate) fn fit_until(
+    fn identify(
         data: &Dataset,
         options: &BoucWenOptions,
         observer: &mut SearchObserver<'_>,

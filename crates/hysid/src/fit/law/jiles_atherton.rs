@@ -4,13 +4,14 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::law::search::{
+use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::series::Series;
 use crate::stop_check::StopCheck;
 
-use super::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
+use crate::fit::law::Identify;
+use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 
 /// How a Jiles-Atherton law is identified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,21 +32,10 @@ impl Default for JilesAthertonOptions {
     }
 }
 
-impl JilesAtherton {
-    /// Identifies a law.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from, or no start.
-    pub fn fit(
-        data: &Dataset,
-        options: &JilesAthertonOptions,
-        observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
-        Self::fit_until(data, options, observer, StopCheck::never())
-    }
+impl Identify for JilesAtherton {
+    type Options = JilesAthertonOptions;
 
-    /// As [`JilesAtherton::fit`]; asked to stop in the midst of a round, with the best so far.
-    pub(crate) fn fit_until(
+    fn identify(
         data: &Dataset,
         options: &JilesAthertonOptions,
         observer: &mut SearchObserver<'_>,

@@ -12,13 +12,13 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{DataProblem, Error, Result};
 use crate::law::series::Series;
 use crate::linear_algebra::{Batch, Gram, Symmetric};
+use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Blocks that the rows are cut into for cross-validation.
@@ -337,24 +337,6 @@ impl<'a> Gatherer<'a> {
         }
         Ok(FoldSums { folds: self.folds, judged: self.judged })
     }
-}
-
-/// Sign that weights may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sign {
-    /// Any sign.
-    Any,
-    /// At least 0: the output lags behind the input, as that of magnets and actuators.
-    NonNegative,
-    /// At most 0, beside a reversible part that rises: the output runs ahead, as a force behind a
-    /// displacement does where energy is lost.
-    NonPositive,
-}
-
-impl Sign {
-    /// All of them; the strictest last.
-    pub const ALL: [Sign; 3] = [Sign::Any, Sign::NonNegative, Sign::NonPositive];
 }
 
 /// Which weights are bounded, and how.

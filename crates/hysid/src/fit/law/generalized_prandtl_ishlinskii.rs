@@ -8,7 +8,7 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::law::search::{
+use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::series::{Series, slope, work};
@@ -16,7 +16,8 @@ use crate::stop_check::StopCheck;
 
 use crate::law::play_weights::MOST_PLAYS;
 
-use super::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
+use crate::fit::law::Identify;
+use crate::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
 
 /// An envelope rises by at least this share of its full height over the range of the input: otherwise
 /// it would leap where the input leaves the range.
@@ -43,21 +44,10 @@ impl Default for GeneralizedPrandtlIshlinskiiOptions {
     }
 }
 
-impl GeneralizedPrandtlIshlinskii {
-    /// Identifies a model.
-    ///
-    /// # Errors
-    /// Data that nothing can be identified from, no operator or no start.
-    pub fn fit(
-        data: &Dataset,
-        options: &GeneralizedPrandtlIshlinskiiOptions,
-        observer: &mut SearchObserver<'_>,
-    ) -> Result<Identified<Self>> {
-        Self::fit_until(data, options, observer, StopCheck::never())
-    }
+impl Identify for GeneralizedPrandtlIshlinskii {
+    type Options = GeneralizedPrandtlIshlinskiiOptions;
 
-    /// As [`GeneralizedPrandtlIshlinskii::fit`]; asked to stop in the midst of a round, with the best so far.
-    pub(crate) fn fit_until(
+    fn identify(
         data: &Dataset,
         options: &GeneralizedPrandtlIshlinskiiOptions,
         observer: &mut SearchObserver<'_>,
