@@ -1,7 +1,6 @@
 //! Identification of any model by its name: a network of the family, or one of its rivals.
 
 pub mod auto;
-mod cautions;
 pub mod law;
 mod memory_need;
 pub mod network;

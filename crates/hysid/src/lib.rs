@@ -32,25 +32,17 @@
 //! result, [`validation`] the folds, [`fit`] identifies; [`diagnosis`] tells what kind of hysteresis it is, and
 //! [`plant`] makes data.
 
-pub mod data;
-pub mod diagnosis;
-pub mod error;
 pub mod fit;
-pub mod law;
-mod linear_algebra;
-pub mod model;
-pub mod network;
-pub mod operator;
-pub mod options;
-pub mod plant;
 mod random;
-pub mod significant;
-pub mod simd;
-pub mod stop_check;
-pub mod termination;
 pub mod validation;
 
-pub use error::{Error, Result};
+pub(crate) use hysid_core::linear_algebra;
+pub use hysid_core::{Error, Result};
+pub use hysid_core::{
+    data, error, law, model, network, operator, options, significant, simd, stop_check, termination,
+};
+pub use hysid_diagnosis as diagnosis;
+pub use hysid_specimens as plant;
 
 /// The examples of the README, compiled and run by the tests.
 #[cfg(doctest)]

@@ -196,7 +196,7 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         all.extend(next);
     }
     all.extend(searched_laws(options).into_iter().map(Request::Classical).map(of(Kind::Classical)));
-    all.retain(|candidate| options.allows(candidate, data));
+    all.retain(|candidate| is_allowed(candidate, data, options));
     all
 }
 
@@ -336,28 +336,26 @@ fn of_network(
     }
 }
 
-impl AutoOptions {
-    /// False for a candidate that does not fit the data or contradicts what the user has decided.
-    fn allows(&self, candidate: &Candidate, data: &Dataset) -> bool {
-        let request = &candidate.request;
-        let (shaping, deteriorates) = match request {
-            Request::Network(options) => (options.shaping, !options.no_deterioration),
-            Request::Classical(options) => {
-                (options.shaping, options.deterioration == Some(true) || options.degradation)
-            }
-            Request::Auto(_) => return false,
-        };
-        let is_network = matches!(request, Request::Network(_));
-        let relaxes = matches!(request, Request::Network(options) if options.sizes.relaxation > 0);
-        let is_random_stops = request.model() == ModelName::Rival(Rival::RandomStops);
-        let takes_history = request.model().takes_further_inputs();
-        request.model().hindrance(data, request.rate()).is_none()
-            && (!shaping.history || takes_history)
-            && self.deterioration.is_none_or(|wanted| wanted == deteriorates)
-            && (!self.always_rate || request.rate().is_some())
-            && self.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
-            && self.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
-            && self.history.is_none_or(|wanted| wanted == shaping.history)
-            && (data.names().inputs.len() == 1 || is_network || is_random_stops)
-    }
+/// False for a candidate that does not fit the data or contradicts what the user has decided.
+fn is_allowed(candidate: &Candidate, data: &Dataset, decided: &AutoOptions) -> bool {
+    let request = &candidate.request;
+    let (shaping, deteriorates) = match request {
+        Request::Network(options) => (options.shaping, !options.no_deterioration),
+        Request::Classical(options) => {
+            (options.shaping, options.deterioration == Some(true) || options.degradation)
+        }
+        Request::Auto(_) => return false,
+    };
+    let is_network = matches!(request, Request::Network(_));
+    let relaxes = matches!(request, Request::Network(options) if options.sizes.relaxation > 0);
+    let is_random_stops = request.model() == ModelName::Rival(Rival::RandomStops);
+    let takes_history = request.model().takes_further_inputs();
+    request.model().hindrance(data, request.rate()).is_none()
+        && (!shaping.history || takes_history)
+        && decided.deterioration.is_none_or(|wanted| wanted == deteriorates)
+        && (!decided.always_rate || request.rate().is_some())
+        && decided.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
+        && decided.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
+        && decided.history.is_none_or(|wanted| wanted == shaping.history)
+        && (data.names().inputs.len() == 1 || is_network || is_random_stops)
 }

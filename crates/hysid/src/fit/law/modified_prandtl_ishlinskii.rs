@@ -430,14 +430,12 @@ impl Point {
                 self.slopes[j + 1] - self.slopes[j]
             }
         });
-        DeadZones {
-            parts: DeadZoneParts {
-                constant: self.constant,
-                linear: self.slopes[negative],
-                weights: weights.collect(),
-                thresholds: self.thresholds.clone(),
-            },
-        }
+        DeadZones::unchecked(DeadZoneParts {
+            constant: self.constant,
+            linear: self.slopes[negative],
+            weights: weights.collect(),
+            thresholds: self.thresholds.clone(),
+        })
     }
 
     /// Output of a row, and its derivatives by plays, constant and slopes.

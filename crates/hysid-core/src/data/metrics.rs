@@ -1,0 +1,146 @@
+//! Errors of a free run against a measured output, theory.md section 5. Every error is in the
+//! user's unit, or in percent of something that is named.
+
+use serde::{Deserialize, Serialize};
+
+/// Errors over all scored rows together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Name of the output.
+    pub output: String,
+    /// Scored rows.
+    pub samples: usize,
+    /// Records with at least one scored row.
+    pub records: usize,
+    /// Mean square error in the output's unit squared: theory.md (5.1).
+    pub mse: f64,
+    /// Root of `mse`, in the output's unit: theory.md (5.2).
+    pub rmse: f64,
+    /// `rmse` in percent of the measured output's standard deviation: theory.md (5.3). `None` if
+    /// the output does not vary.
+    pub nrmse_std_percent: Option<f64>,
+    /// `rmse` in percent of the measured output's range: theory.md (5.4). `None` if it does not
+    /// vary.
+    pub nrmse_range_percent: Option<f64>,
+    /// 100 - `nrmse_std_percent`: theory.md (5.5).
+    pub fit_percent: Option<f64>,
+    /// Largest absolute error in the output's unit: theory.md (5.6).
+    pub max_abs_error: f64,
+}
+
+/// A measured row and the error there.
+#[derive(Debug, Clone, Copy)]
+pub struct ScoredRow {
+    pub measured: f64,
+    /// Squared error; the mean of several, where the row was simulated more than once.
+    pub square_error: f64,
+    /// Largest magnitude of the error.
+    pub largest: f64,
+}
+
+impl ScoredRow {
+    /// A row that was simulated once.
+    pub fn once(measured: f64, error: f64) -> Self {
+        Self { measured, square_error: error * error, largest: error.abs() }
+    }
+}
+
+/// Gathers errors record by record, in one pass and constant memory.
+#[derive(Debug, Clone, Default)]
+pub struct ErrorSums {
+    samples: usize,
+    records: usize,
+    /// The present record has a scored row.
+    is_scored: bool,
+    square_error: f64,
+    largest: f64,
+    mean: f64,
+    square_deviation: f64,
+    low: f64,
+    high: f64,
+}
+
+impl ErrorSums {
+    /// Adds a record; rows whose measured output is NaN are passed over.
+    pub fn add(&mut self, measured: &[f64], simulated: &[f64]) {
+        self.add_rows(measured, simulated);
+        self.end_record();
+    }
+
+    /// Adds rows of a record that comes block by block.
+    pub fn add_rows(&mut self, measured: &[f64], simulated: &[f64]) {
+        let rows = measured.iter().zip(simulated).filter(|(y, _)| !y.is_nan());
+        rows.for_each(|(&y, &model)| self.add_row(ScoredRow::once(y, model - y)));
+    }
+
+    /// Ends a record that came block by block.
+    pub fn end_record(&mut self) {
+        self.records += usize::from(std::mem::take(&mut self.is_scored));
+    }
+
+    /// Adds a scored row.
+    pub fn add_row(&mut self, ScoredRow { measured: y, square_error, largest }: ScoredRow) {
+        if self.samples == 0 {
+            (self.low, self.high) = (y, y);
+        }
+        self.is_scored = true;
+        self.samples += 1;
+        self.square_error += square_error;
+        self.largest = self.largest.max(largest);
+        self.low = self.low.min(y);
+        self.high = self.high.max(y);
+        // Welford's running variance: no cancellation for a large mean.
+        let deviation = y - self.mean;
+        self.mean += deviation / self.samples as f64;
+        self.square_deviation += deviation * (y - self.mean);
+    }
+
+    /// The errors so far; `None` if no row was scored.
+    pub fn errors(&self, output: &str) -> Option<Errors> {
+        if self.samples == 0 {
+            return None;
+        }
+        let n = self.samples as f64;
+        let rmse = (self.square_error / n).sqrt();
+        let percent_of = |scale: f64| (scale > 0.0).then(|| 100.0 * rmse / scale);
+        let nrmse_std_percent = percent_of((self.square_deviation / n).sqrt());
+        Some(Errors {
+            output: output.to_string(),
+            samples: self.samples,
+            records: self.records,
+            mse: self.square_error / n,
+            rmse,
+            nrmse_std_percent,
+            nrmse_range_percent: percent_of(self.high - self.low),
+            fit_percent: nrmse_std_percent.map(|nrmse| 100.0 - nrmse),
+            max_abs_error: self.largest,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_a_hand_computed_case() {
+        let mut sums = ErrorSums::default();
+        sums.add(&[1e6, f64::NAN, 1e6 + 2.0], &[1e6 + 1.0, 5.0, 1e6 + 2.0]);
+        sums.add(&[1e6 + 4.0, f64::NAN], &[1e6 + 1.0, 0.0]);
+        sums.add(&[f64::NAN], &[0.0]);
+        let errors = sums.errors("F_N").unwrap();
+        assert_eq!((errors.samples, errors.records), (3, 2));
+        approx::assert_relative_eq!(errors.mse, 10.0 / 3.0);
+        approx::assert_relative_eq!(errors.nrmse_std_percent.unwrap(), 100.0 * (10.0f64 / 8.0).sqrt());
+        approx::assert_relative_eq!(errors.nrmse_range_percent.unwrap(), 25.0 * (10.0f64 / 3.0).sqrt());
+        assert_eq!(errors.max_abs_error, 3.0);
+    }
+
+    #[test]
+    fn a_constant_output_has_no_relative_error() {
+        let mut sums = ErrorSums::default();
+        assert_eq!(sums.errors("y"), None);
+        sums.add(&[2.0, 2.0], &[2.0, 3.0]);
+        assert_eq!(sums.errors("y").unwrap().nrmse_std_percent, None);
+    }
+}

@@ -1,0 +1,401 @@
+//! Dense linear algebra of the training loop: the Gram matrix of many rows, and the Cholesky
+//! factor of a symmetric matrix.
+
+mod blocked_cholesky;
+
+use pulp::{Simd, WithSimd};
+
+use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
+
+/// Rows of a [`Batch`]: its columns stay in the second-level cache.
+const BATCH: usize = 256;
+
+/// Columns of a [`Batch`] come in multiples of this, the edge of the kernel's tiles.
+const TILE: usize = 4;
+
+/// Some rows of a tall matrix, stored by columns.
+#[derive(Debug, Clone)]
+pub struct Batch {
+    columns: usize,
+    rows: usize,
+    data: Vec<f64>,
+}
+
+impl Batch {
+    pub fn new(columns: usize) -> Self {
+        Self { columns, rows: 0, data: vec![0.0; columns.next_multiple_of(TILE) * BATCH] }
+    }
+
+    pub fn free(&self) -> usize {
+        BATCH - self.rows
+    }
+
+    /// Appends rows, given by columns; there must be room for them.
+    #[inline(always)]
+    pub fn append(&mut self, columns: &[impl AsRef<[f64]>], rows: usize) {
+        for (column, values) in self.data.chunks_exact_mut(BATCH).zip(columns) {
+            column[self.rows..self.rows + rows].copy_from_slice(&values.as_ref()[..rows]);
+        }
+        self.rows += rows;
+    }
+
+    /// Empties the batch. Rows beyond those appended are zero when it is used.
+    fn clear(&mut self) {
+        self.rows = 0;
+    }
+
+    fn zero_rest(&mut self) {
+        for column in self.data.chunks_exact_mut(BATCH) {
+            column[self.rows..].fill(0.0);
+        }
+    }
+}
+
+/// `AᵀA` of a tall matrix `A`, gathered batch by batch: its lower triangle.
+#[derive(Debug, Clone)]
+pub struct Gram {
+    n: usize,
+    stride: usize,
+    data: Vec<f64>,
+}
+
+impl Gram {
+    pub fn new(n: usize) -> Self {
+        let stride = n.next_multiple_of(TILE);
+        Self { n, stride, data: vec![0.0; stride * stride] }
+    }
+
+    /// Scalar product of columns `row` and `column`.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        let (row, column) = (row.max(column), row.min(column));
+        debug_assert!(row < self.n);
+        self.data[row * self.stride + column]
+    }
+
+    /// Adds a batch's rows, and empties it, with the widest instruction set of this machine.
+    pub fn gather(&mut self, batch: &mut Batch, pace: &mut Pace<'_>) {
+        simd::run(AddBatch { gram: self, batch, pace });
+    }
+
+    /// Adds `factor` times another Gram matrix of the same columns: 1 for the rows of both, -1 to take
+    /// rows out again.
+    pub fn add_multiple(&mut self, other: &Gram, factor: f64) {
+        debug_assert_eq!(self.n, other.n);
+        self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += factor * b);
+    }
+
+    /// Adds a batch's rows, and empties it; only in part once the pace is over.
+    #[inline(always)]
+    pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch, pace: &mut Pace<'_>) {
+        debug_assert_eq!(batch.columns, self.n);
+        if batch.rows == 0 {
+            return;
+        }
+        batch.zero_rest();
+        let columns = |first: usize| -> [&[S::f64s]; TILE] {
+            std::array::from_fn(|k| {
+                S::as_simd_f64s(&batch.data[(first + k) * BATCH..(first + k + 1) * BATCH]).0
+            })
+        };
+        for first in (0..self.stride).step_by(TILE) {
+            if pace.is_over(first * TILE * BATCH / 4) {
+                break;
+            }
+            let left = columns(first);
+            for second in (0..=first).step_by(TILE) {
+                let right = columns(second);
+                if S::REGISTER_COUNT >= 32 {
+                    self.add_tile::<S, TILE>(simd, first, left, second, right);
+                } else {
+                    let halves = [[right[0], right[1]], [right[2], right[3]]];
+                    self.add_tile::<S, 2>(simd, first, left, second, halves[0]);
+                    self.add_tile::<S, 2>(simd, first, left, second + 2, halves[1]);
+                }
+            }
+        }
+        batch.clear();
+    }
+
+    /// Scalar products of four columns with `N` others, all sums in registers.
+    #[inline(always)]
+    fn add_tile<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        first: usize,
+        left: [&[S::f64s]; TILE],
+        second: usize,
+        right: [&[S::f64s]; N],
+    ) {
+        let length = BATCH / S::F64_LANES;
+        let left = left.map(|column| &column[..length]);
+        let right = right.map(|column| &column[..length]);
+        let mut sums = [[simd.splat_f64s(0.0); N]; TILE];
+        for k in 0..length {
+            let b: [S::f64s; N] = std::array::from_fn(|j| right[j][k]);
+            for (sums, left) in sums.iter_mut().zip(left) {
+                for j in 0..N {
+                    sums[j] = simd.mul_add_e_f64s(left[k], b[j], sums[j]);
+                }
+            }
+        }
+        for (i, sums) in sums.into_iter().enumerate() {
+            for (j, sum) in sums.into_iter().enumerate() {
+                self.data[(first + i) * self.stride + second + j] += simd.reduce_sum_f64s(sum);
+            }
+        }
+    }
+}
+
+struct AddBatch<'a, 's> {
+    gram: &'a mut Gram,
+    batch: &'a mut Batch,
+    pace: &'a mut Pace<'s>,
+}
+
+impl WithSimd for AddBatch<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.gram.add(simd, self.batch, self.pace);
+    }
+}
+
+/// A symmetric matrix by rows, of which the lower triangle counts.
+#[derive(Debug, Clone)]
+pub struct Symmetric {
+    n: usize,
+    data: Vec<f64>,
+}
+
+impl Symmetric {
+    pub fn from_fn(n: usize, mut value: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut data = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                data[i * n + j] = value(i, j);
+            }
+        }
+        Self { n, data }
+    }
+
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.data[i * self.n + i]
+    }
+
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.data[row.max(column) * self.n + row.min(column)]
+    }
+
+    /// Adds to the entry of `row` and `column`, which is also that of `column` and `row`.
+    pub fn add_at(&mut self, row: usize, column: usize, value: f64) {
+        self.data[row.max(column) * self.n + row.min(column)] += value;
+    }
+
+    /// The matrix of some rows and columns, given in rising order.
+    pub fn select(&self, chosen: &[usize]) -> Self {
+        let mut data = vec![0.0; chosen.len() * chosen.len()];
+        for (k, &i) in chosen.iter().enumerate() {
+            let (row, from) = (&mut data[k * chosen.len()..], &self.data[i * self.n..]);
+            for (to, &j) in row[..=k].iter_mut().zip(chosen) {
+                *to = from[j];
+            }
+        }
+        Self { n: chosen.len(), data }
+    }
+
+    /// The product with a vector.
+    pub fn times(&self, v: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.n];
+        for i in 0..self.n {
+            let row = &self.data[i * self.n..i * self.n + i];
+            product[i] += dot(row, &v[..i]) + self.diagonal(i) * v[i];
+            for (product, a) in product.iter_mut().zip(row) {
+                *product += a * v[i];
+            }
+        }
+        product
+    }
+
+    pub fn add_to_diagonal(&mut self, i: usize, value: f64) {
+        self.data[i * self.n + i] += value;
+    }
+
+    /// `self -= W Wᵀ` for a matrix with one row of `columns` numbers for each row of `self`; only in part once
+    /// asked to stop.
+    pub fn subtract_product(&mut self, w: &[f64], columns: usize, stop: StopCheck<'_>) {
+        let mut pace = Pace::new(stop);
+        for i in 0..self.n {
+            if pace.is_over(i * columns) {
+                return;
+            }
+            for j in 0..=i {
+                let (a, b) = (&w[i * columns..(i + 1) * columns], &w[j * columns..(j + 1) * columns]);
+                self.data[i * self.n + j] -= dot(a, b);
+            }
+        }
+    }
+
+    /// Cholesky factor `L` with `self = L Lᵀ`; `None` unless positive definite to rounding, and once asked to
+    /// stop.
+    pub fn cholesky(mut self, stop: StopCheck<'_>) -> Option<Cholesky> {
+        let n = self.n;
+        if n >= blocked_cholesky::WORTH_BLOCKS {
+            let data = blocked_cholesky::factorise(self.data, n, stop)?;
+            return Some(Cholesky { n, data });
+        }
+        for i in 0..n {
+            let (done, rest) = self.data.split_at_mut(i * n);
+            let row = &mut rest[..=i];
+            for j in 0..i {
+                let other = &done[j * n..=j * n + j];
+                row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
+            }
+            let pivot = row[i] - dot(&row[..i], &row[..i]);
+            if pivot.is_nan() || pivot <= row[i].abs() * 1e-15 {
+                return None;
+            }
+            row[i] = pivot.sqrt();
+        }
+        Some(Cholesky { n, data: self.data })
+    }
+}
+
+/// A lower triangular factor.
+#[derive(Debug, Clone)]
+pub struct Cholesky {
+    n: usize,
+    data: Vec<f64>,
+}
+
+impl Cholesky {
+    /// Of no rows.
+    pub fn empty() -> Self {
+        Self { n: 0, data: Vec::new() }
+    }
+
+    /// `L⁻¹ b`, in place.
+    pub fn solve_lower(&self, b: &mut [f64]) {
+        for i in 0..self.n {
+            let row = &self.data[i * self.n..i * self.n + i];
+            b[i] = (b[i] - dot(row, &b[..i])) / self.data[i * self.n + i];
+        }
+    }
+
+    /// `(L Lᵀ)⁻¹ b`, in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        self.solve_lower(b);
+        for i in (0..self.n).rev() {
+            b[i] /= self.data[i * self.n + i];
+            let (before, rest) = b.split_at_mut(i);
+            for (b, l) in before.iter_mut().zip(&self.data[i * self.n..]) {
+                *b -= l * rest[0];
+            }
+        }
+    }
+}
+
+/// Scalar product, in eight partial sums so that it becomes SIMD code.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, a_rest) = a.as_chunks::<8>();
+    let (b, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for l in 0..8 {
+            sums[l] += a[l] * b[l];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd;
+
+    fn value(row: usize, column: usize) -> f64 {
+        ((row * 31 + column * 17) as f64 * 0.7).sin() + if row % 7 == column % 7 { 1.0 } else { 0.0 }
+    }
+
+    struct Fill<'a>(&'a mut Gram, usize);
+
+    impl pulp::WithSimd for Fill<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let n = self.0.n;
+            let (mut batch, mut pace) = (Batch::new(n), Pace::new(StopCheck::never()));
+            for row in 0..self.1 {
+                if batch.free() == 0 {
+                    self.0.add(simd, &mut batch, &mut pace);
+                }
+                let columns: Vec<[f64; 1]> = (0..n).map(|column| [value(row, column)]).collect();
+                batch.append(&columns, 1);
+            }
+            self.0.add(simd, &mut batch, &mut pace);
+        }
+    }
+
+    #[test]
+    fn gram_is_the_matrix_of_scalar_products() {
+        for (n, rows) in [(1, 1), (5, 700), (13, 256), (8, 257)] {
+            let mut widest = Gram::new(n);
+            simd::run(Fill(&mut widest, rows));
+            let mut scalar = Gram::new(n);
+            pulp::WithSimd::with_simd(Fill(&mut scalar, rows), pulp::Scalar::new());
+            for i in 0..n {
+                for j in 0..n {
+                    let exact: f64 = (0..rows).map(|row| value(row, i) * value(row, j)).sum();
+                    approx::assert_relative_eq!(widest.at(i, j), exact, epsilon = 1e-10);
+                    approx::assert_relative_eq!(scalar.at(i, j), exact, epsilon = 1e-10);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn cholesky_solves_and_refuses() {
+        for n in [1, 37, blocked_cholesky::WORTH_BLOCKS, 331] {
+            cholesky_solves(n);
+        }
+        for n in [2, blocked_cholesky::WORTH_BLOCKS + 3] {
+            let indefinite = Symmetric::from_fn(n, |i, j| if i == j { 1.0 } else { 2.0 });
+            assert!(indefinite.cholesky(StopCheck::never()).is_none());
+            let mut poisoned = Symmetric::from_fn(n, |i, j| f64::from(i == j));
+            poisoned.add_at(n - 1, 0, f64::NAN);
+            assert!(poisoned.cholesky(StopCheck::never()).is_none());
+        }
+    }
+
+    fn cholesky_solves(n: usize) {
+        let product = |i: usize, j: usize| (0..n + 23).map(|row| value(row, i) * value(row, j)).sum::<f64>();
+        let entry = |i: usize, j: usize| product(i, j) + if i == j { 3.0 } else { 0.0 };
+        let matrix = Symmetric::from_fn(n, entry);
+        let exact: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
+        let mut b = matrix.times(&exact);
+        for i in [0, n / 2, n - 1] {
+            let product: f64 = (0..n).map(|j| entry(i, j) * exact[j]).sum();
+            approx::assert_relative_eq!(b[i], product, max_relative = 1e-11, epsilon = 1e-9);
+        }
+        matrix.clone().cholesky(StopCheck::never()).unwrap().solve(&mut b);
+        for (found, exact) in b.iter().zip(&exact) {
+            approx::assert_relative_eq!(found, exact, epsilon = 1e-7);
+        }
+    }
+
+    #[test]
+    fn rows_can_be_taken_out_of_a_gram_matrix() {
+        let n = 6;
+        let (mut all, mut some) = (Gram::new(n), Gram::new(n));
+        simd::run(Fill(&mut all, 40));
+        simd::run(Fill(&mut some, 15));
+        all.add_multiple(&some, -1.0);
+        let exact: f64 = (15..40).map(|row| value(row, 4) * value(row, 2)).sum();
+        approx::assert_relative_eq!(all.at(2, 4), exact, epsilon = 1e-10);
+        let matrix = Symmetric::from_fn(n, |i, j| (10 * i + j) as f64);
+        let part = matrix.select(&[1, 4, 5]);
+        assert_eq!((part.at(0, 2), part.at(2, 1), part.n), (51.0, 54.0, 3));
+    }
+}

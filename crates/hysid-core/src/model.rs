@@ -1,0 +1,530 @@
+//! A fitted model: a network with its scaling, a classical law, or an ensemble of both; what it was trained
+//! on and how. It simulates in the user's units.
+
+mod band;
+mod ensemble;
+mod file;
+pub mod history;
+mod notes;
+pub mod preprocessing;
+mod ranges;
+mod runner;
+pub mod selection;
+mod simulation;
+mod stepper;
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::metrics::{ErrorSums, Errors};
+use crate::data::rate::RateMethod;
+use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
+use crate::data::warning::Warning;
+use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
+use crate::law::{Classical, Law};
+use crate::model::history::Run;
+use crate::model::preprocessing::Preprocessing;
+use crate::model::selection::Selection;
+use crate::network::Network;
+use crate::network::scaling::Scaling;
+use crate::options::classical::Rival;
+use crate::options::network::Regularisation;
+use crate::options::{ModelName, Request};
+use crate::termination::Termination;
+
+pub use band::{BAND_PROBABILITIES, Band, Prediction};
+pub use band::{HeldOutRow, disagreement};
+pub use ensemble::{Council, Excursion, Votes};
+pub use ensemble::{Ensemble, Group, Speaker, Voice, Weights};
+pub use file::FORMAT_VERSION;
+use ranges::Ranges;
+use runner::{Runner, Spread};
+pub use simulation::Simulation;
+pub use stepper::Stepper;
+
+/// A fitted model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    body: Body,
+    preprocessing: Preprocessing,
+    rate: Option<RateMethod>,
+    names: ColumnNames,
+    trained: TrainedRanges,
+    band: Option<Band>,
+    provenance: Provenance,
+}
+
+/// What simulates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Body {
+    /// A network in scaled units, and the factors to the user's.
+    Network {
+        /// The network.
+        network: Network,
+        /// Factors between the user's units and the network's.
+        scaling: Scaling,
+    },
+    /// A classical law in the user's units.
+    Law(Classical),
+    /// Several models that answer together.
+    Ensemble(Ensemble),
+}
+
+impl Body {
+    /// Parameters that were found from the data.
+    fn parameters(&self) -> usize {
+        match self {
+            Self::Network { network, .. } => network.architecture().parameters(),
+            Self::Law(law) => law.parameters().len(),
+            Self::Ensemble(ensemble) => ensemble.members().iter().map(|member| member.parameters()).sum(),
+        }
+    }
+
+    /// True if it needs the time between samples, apart from any rate.
+    fn needs_steps(&self) -> bool {
+        match self {
+            Self::Network { network, .. } => network.architecture().relaxation > 0,
+            Self::Law(_) => false,
+            Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.needs_time()),
+        }
+    }
+}
+
+/// Errors of free runs over all records that have an output.
+fn errors(mut runner: Runner<'_>, data: &Dataset) -> Result<Errors> {
+    let mut sums = ErrorSums::default();
+    for record in data.records().iter().filter(|record| record.scored() > 0) {
+        sums.add(record.output(), &runner.record(&record.excitation())?);
+    }
+    sums.errors(&data.names().output)
+        .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
+}
+
+/// Fingerprints of the records, unless there are very many.
+fn remembered(data: &Dataset) -> Vec<String> {
+    if data.records().len() > MOST_REMEMBERED {
+        return Vec::new();
+    }
+    data.records().iter().filter_map(|record| record.fingerprint().text()).collect()
+}
+
+/// Rows at the beginning of each record that a body was not trained on.
+fn warm_up(body: &Body, options: &Request) -> usize {
+    match (options, body) {
+        (Request::Network(options), _) => options.shaping.warm_up,
+        (Request::Classical(options), _) => options.shaping.warm_up,
+        (Request::Auto(_), Body::Ensemble(ensemble)) => {
+            ensemble.members().iter().map(Model::warm_up).max().unwrap_or_default()
+        }
+        (Request::Auto(_), Body::Network { .. } | Body::Law(_)) => 0,
+    }
+}
+
+/// The rows behind so many of each record; `None` for no rows, and where none with an output is left.
+fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
+    let behind = (rows > 0).then(|| data.clone().warmed_up(rows))?;
+    (behind.scored() > 0).then_some(behind)
+}
+
+/// Smallest and largest values seen in training, in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainedRanges {
+    /// Of each input.
+    pub inputs: Vec<(f64, f64)>,
+    /// Of the rate of the first input, if the model has one.
+    pub rate: Option<(f64, f64)>,
+    /// Of the output.
+    pub output: (f64, f64),
+    /// The records by their [`Fingerprint`]s, of at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<String>,
+}
+
+/// Of more records than this a model does not remember which they were.
+pub const MOST_REMEMBERED: usize = 1000;
+impl TrainedRanges {
+    /// Refuses ranges of a file that are none.
+    fn check(&self) -> Result<()> {
+        let is_range =
+            |&(low, high): &(f64, f64), most: f64| low <= high && low.abs().max(high.abs()) <= most;
+        let values = self.inputs.iter().chain([&self.output]).all(|range| is_range(range, LARGEST_VALUE));
+        if values && self.rate.iter().all(|range| is_range(range, f64::MAX)) {
+            return Ok(());
+        }
+        Err(Error::Option("a range that it was trained on is none".into()))
+    }
+}
+
+/// How a model came about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// What was asked for.
+    pub options: Request,
+    /// Rows with an output.
+    pub samples: usize,
+    /// Records.
+    pub records: usize,
+    /// The start that became the model, counted from 0.
+    pub chosen_start: usize,
+    /// Why the last training run ended.
+    pub termination: Termination,
+    /// Errors of the model on all data it was trained on: what [`Model::evaluate`] gives for them. The rows of
+    /// a warm-up count here.
+    pub train: Errors,
+    /// The same without the rows of the warm-up, which the model was not trained on; `None` without a warm-up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub train_after_warm_up: Option<Errors>,
+    /// Errors on data held out, of models that were identified in the same way without them; `None` if none
+    /// were held out.
+    pub validation: Option<Errors>,
+    /// Penalties that a network was trained with; `None` for other models and in files of before version 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penalties: Option<Regularisation>,
+    /// Every training run.
+    pub runs: Vec<Run>,
+    /// How the candidates did that it was chosen from; `None` where there was no choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub selection: Option<Selection>,
+}
+
+impl Provenance {
+    /// Errors on the rows that the model was trained on.
+    pub fn trained_error(&self) -> &Errors {
+        self.train_after_warm_up.as_ref().unwrap_or(&self.train)
+    }
+}
+
+/// How a model was found; what its data add to it makes the [`Provenance`].
+#[derive(Debug, Clone)]
+pub struct Found {
+    pub options: Request,
+    pub chosen_start: usize,
+    pub termination: Termination,
+    pub validation: Option<Errors>,
+    pub penalties: Option<Regularisation>,
+    pub runs: Vec<Run>,
+    pub selection: Option<Selection>,
+}
+
+impl Found {
+    /// What the data add.
+    fn on(self, data: &Dataset, train: Errors, train_after_warm_up: Option<Errors>) -> Provenance {
+        let Self { options, chosen_start, termination, validation, penalties, runs, selection } = self;
+        Provenance {
+            options,
+            samples: data.scored(),
+            records: data.records().len(),
+            chosen_start,
+            termination,
+            train,
+            train_after_warm_up,
+            validation,
+            penalties,
+            runs,
+            selection,
+        }
+    }
+}
+
+impl From<Provenance> for Found {
+    fn from(known: Provenance) -> Self {
+        let Provenance { options, chosen_start, termination, validation, penalties, runs, selection, .. } =
+            known;
+        Self { options, chosen_start, termination, validation, penalties, runs, selection }
+    }
+}
+
+impl Model {
+    /// A model of these data, whose body was trained on them after the preprocessing.
+    pub fn new(
+        body: Body,
+        preprocessing: Preprocessing,
+        rate: Option<RateMethod>,
+        data: &Dataset,
+        found: Found,
+    ) -> Result<Self> {
+        let uses_rate = match &body {
+            Body::Network { network, .. } => network.architecture().rate,
+            Body::Law(_) => found.options.model().uses_rate(),
+            Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
+        };
+        let rate = rate.filter(|_| uses_rate);
+        let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), data)?;
+        let train_after_warm_up = match behind(data, warm_up(&body, &found.options)) {
+            Some(behind) => Some(errors(Runner::of_body(&body, Some(&preprocessing), rate), &behind)?),
+            None => None,
+        };
+        let provenance = found.on(data, train, train_after_warm_up);
+        let mut model = Self {
+            body,
+            preprocessing,
+            rate,
+            names: data.names().clone(),
+            trained: TrainedRanges {
+                inputs: (0..data.names().inputs.len()).map(|input| data.input_range(input)).collect(),
+                rate: None,
+                output: data.output_range(),
+                records: remembered(data),
+            },
+            band: None,
+            provenance,
+        };
+        if let Some(method) = rate {
+            let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+            for record in data.records() {
+                for rate in method.rate(record)? {
+                    range = (range.0.min(rate), range.1.max(rate));
+                }
+            }
+            model.trained.rate = Some(range);
+        } else if let Body::Network { scaling, .. } = &mut model.body {
+            scaling.rate = None;
+        }
+        Ok(model)
+    }
+
+    /// Reads a model file's text.
+    ///
+    /// # Errors
+    /// Text that is cut off, damaged, edited, of a later version, or no model at all.
+    pub fn from_json(text: &str) -> Result<Self> {
+        file::read(text)
+    }
+
+    /// The text of the model file.
+    pub fn to_json(&self) -> String {
+        file::write(self)
+    }
+
+    /// Which model it is.
+    pub fn name(&self) -> ModelName {
+        self.provenance.options.model()
+    }
+
+    /// What simulates.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The network, in scaled units; `None` for a classical law or an ensemble.
+    pub fn network(&self) -> Option<&Network> {
+        match &self.body {
+            Body::Network { network, .. } => Some(network),
+            Body::Law(_) | Body::Ensemble(_) => None,
+        }
+    }
+
+    /// The ensemble; `None` for a single model.
+    pub fn ensemble(&self) -> Option<&Ensemble> {
+        match &self.body {
+            Body::Ensemble(ensemble) => Some(ensemble),
+            Body::Network { .. } | Body::Law(_) => None,
+        }
+    }
+
+    /// How the model sees its input.
+    pub fn preprocessing(&self) -> &Preprocessing {
+        &self.preprocessing
+    }
+
+    /// Number of inputs of a record.
+    pub(crate) fn inputs(&self) -> usize {
+        match &self.body {
+            Body::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
+            Body::Law(_) => 1,
+            Body::Ensemble(ensemble) => ensemble.members()[0].inputs(),
+        }
+    }
+
+    /// Factors between the user's units and the network's; `None` for all that is no network.
+    pub fn scaling(&self) -> Option<&Scaling> {
+        match &self.body {
+            Body::Network { scaling, .. } => Some(scaling),
+            Body::Law(_) | Body::Ensemble(_) => None,
+        }
+    }
+
+    /// Number of parameters that were found from the data.
+    pub fn parameters(&self) -> usize {
+        match (&self.body, self.name()) {
+            // All others are random.
+            (Body::Network { network, .. }, ModelName::Rival(Rival::RandomStops)) => network.output().len(),
+            (body, _) => body.parameters(),
+        }
+    }
+
+    /// How the rate is found; `None` for a model without rate.
+    pub fn rate(&self) -> Option<RateMethod> {
+        self.rate
+    }
+
+    /// Names of the columns it was trained on.
+    pub fn names(&self) -> &ColumnNames {
+        &self.names
+    }
+
+    /// Ranges of the training data.
+    pub fn trained_ranges(&self) -> &TrainedRanges {
+        &self.trained
+    }
+
+    /// How it came about.
+    pub fn provenance(&self) -> &Provenance {
+        &self.provenance
+    }
+
+    /// True if the model needs time stamps.
+    pub fn needs_time(&self) -> bool {
+        self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
+    }
+
+    /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
+    /// record's own output is not looked at.
+    ///
+    /// # Errors
+    /// A record without what the model needs: its number of inputs, time stamps, a given rate.
+    pub fn simulate(&self, record: &Record) -> Result<Vec<f64>> {
+        self.response(&record.excitation())
+    }
+
+    /// As [`Model::simulate`], of an excitation that is read where it lies.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn response(&self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
+        self.check_time(excitation)?;
+        Runner::of_model(self).record(excitation)
+    }
+
+    /// A free run over records that come block by block.
+    pub fn simulation(&self) -> Simulation<'_> {
+        Simulation::new(self, None)
+    }
+
+    /// The same with a band of this probability.
+    ///
+    /// # Errors
+    /// As [`Model::predict`]: a probability outside its bounds, and a model without a band.
+    pub fn simulation_with_band(&self, probability: f64) -> Result<Simulation<'_>> {
+        Ok(Simulation::new(self, Some((self.checked_band(probability)?, probability))))
+    }
+
+    /// Free run over a record with a band that holds the measured output with this probability, 0.5 to 0.99,
+    /// as far as new data are like those held out in training.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
+    pub fn predict(&self, excitation: &Excitation<'_>, probability: f64) -> Result<Prediction> {
+        let band = self.checked_band(probability)?;
+        self.check_time(excitation)?;
+        let mut output = vec![0.0; excitation.len()];
+        let mut spreads = vec![Spread::default(); excitation.len()];
+        Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
+        Ok(Prediction::of(Some((band, probability)), output, &spreads))
+    }
+
+    fn checked_band(&self, probability: f64) -> Result<&Band> {
+        Band::check(probability)?;
+        self.band.as_ref().ok_or_else(|| {
+            Error::Option(format!(
+                "this model of {} has no band: `--model auto` calibrates one where the data are enough to hold some out",
+                self.name().name()
+            ))
+        })
+    }
+
+    /// The calibrated band, if there is one.
+    pub fn band(&self) -> Option<&Band> {
+        self.band.as_ref()
+    }
+
+    pub fn with_provenance(mut self, provenance: Provenance) -> Self {
+        self.provenance = provenance;
+        self
+    }
+
+    /// With the ranges of these data, where it was trained on more than them.
+    pub fn trained_on(self, data: &Dataset) -> Result<Self> {
+        let Self { body, preprocessing, rate, band, provenance, .. } = self;
+        Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
+    }
+
+    pub fn with_band(mut self, band: Option<Band>) -> Self {
+        self.band = band;
+        self
+    }
+
+    /// Errors of free runs over all records.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`], and data without any output.
+    pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
+        data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
+        errors(Runner::of_model(self), data)
+    }
+
+    /// Rows at the beginning of each record that drove the memory in training and were not trained on.
+    pub fn warm_up(&self) -> usize {
+        warm_up(&self.body, &self.provenance.options)
+    }
+
+    /// As [`Model::evaluate`], of the rows behind the warm-up alone; `None` for a model without a warm-up, and
+    /// where no row with an output is left.
+    ///
+    /// # Errors
+    /// As [`Model::evaluate`].
+    pub fn evaluate_after_warm_up(&self, data: &Dataset) -> Result<Option<Errors>> {
+        behind(data, self.warm_up()).map(|behind| self.evaluate(&behind)).transpose()
+    }
+
+    fn check_time(&self, excitation: &Excitation<'_>) -> Result<()> {
+        if self.needs_time() && excitation.time().is_none() {
+            return Err(excitation.defect(None, Some(Channel::Time), DataProblem::NoTimeForModel));
+        }
+        Ok(())
+    }
+
+    /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.
+    pub fn stepper(&self) -> Stepper<'_> {
+        Stepper::new(Cow::Borrowed(self))
+    }
+
+    /// As [`Model::stepper`], of a model that it keeps.
+    pub fn into_stepper(self) -> Stepper<'static> {
+        Stepper::new(Cow::Owned(self))
+    }
+
+    fn forget_records(&mut self) {
+        self.trained.records.clear();
+    }
+
+    /// True if a record with this fingerprint was trained on, as far as the model remembers.
+    pub fn was_trained_on(&self, record: &Fingerprint) -> bool {
+        record.text().is_some_and(|text| self.trained.records.contains(&text))
+    }
+
+    /// Warns of records that the model was trained on, to the last bit.
+    pub fn known_records(&self, data: &Dataset) -> Vec<Warning> {
+        let known = data.records().iter().filter(|record| self.was_trained_on(&record.fingerprint()));
+        let warning =
+            |record: &Record| Warning::TrainedOn { record: record.name().into(), likeness: Likeness::Equal };
+        known.map(warning).collect()
+    }
+
+    /// Warns of inputs and rates beyond what the model was trained on.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn range_warnings(&self, data: &Dataset) -> Result<Vec<Warning>> {
+        let mut ranges = Ranges::of(self);
+        for record in data.records() {
+            let rate = self.rate.map(|method| method.rate(record)).transpose()?;
+            let inputs: Vec<&[f64]> = record.inputs().iter().map(Vec::as_slice).collect();
+            ranges.take(&inputs, rate.as_deref());
+        }
+        Ok(ranges.warnings())
+    }
+}

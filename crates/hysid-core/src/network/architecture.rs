@@ -1,0 +1,268 @@
+//! Which parts a network has: one family, many names.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+
+/// The networks of the paper, and ours. All are [`Architecture`]s with parts switched off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Family {
+    /// Prandtl neural network: stops of x, linear readout.
+    #[serde(rename = "pnn")]
+    Pnn,
+    /// Generalized Prandtl neural network: deteriorating stops of x, linear readout.
+    #[serde(rename = "gpnn")]
+    Gpnn,
+    /// Preisach neural network: stops of x and a tanh layer.
+    #[serde(rename = "preisach-nn")]
+    PreisachNn,
+    /// Extended Preisach neural network (XPNN, EPNN): deteriorating stops of x and its rate, and a
+    /// tanh layer.
+    #[serde(rename = "xpnn")]
+    Xpnn,
+    /// Beyond the paper: XPNN with relaxation neurons, a direct linear path and further inputs.
+    #[serde(rename = "xpnn+")]
+    XpnnPlus,
+}
+
+impl Family {
+    /// All families.
+    pub const ALL: [Family; 5] =
+        [Family::Pnn, Family::Gpnn, Family::PreisachNn, Family::Xpnn, Family::XpnnPlus];
+
+    /// The name on the command line and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Family::Pnn => "pnn",
+            Family::Gpnn => "gpnn",
+            Family::PreisachNn => "preisach-nn",
+            Family::Xpnn => "xpnn",
+            Family::XpnnPlus => "xpnn+",
+        }
+    }
+
+    /// True if the family's stops see the rate of the input.
+    pub fn uses_rate(self) -> bool {
+        matches!(self, Family::Xpnn | Family::XpnnPlus)
+    }
+
+    /// True if the family's stops deteriorate.
+    pub fn deteriorates(self) -> bool {
+        matches!(self, Family::Gpnn | Family::Xpnn | Family::XpnnPlus)
+    }
+
+    /// True if the family takes more than one input.
+    pub fn takes_further_inputs(self) -> bool {
+        self == Family::XpnnPlus
+    }
+}
+
+impl std::str::FromStr for Family {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        let known = if name == "epnn" { "xpnn" } else { name };
+        Family::ALL.into_iter().find(|family| family.name() == known).ok_or_else(|| {
+            let names = Family::ALL.map(Family::name).join(", ");
+            Error::Option(format!("model `{name}` is unknown: choose one of {names}"))
+        })
+    }
+}
+
+/// Sizes that the user chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Sizes {
+    /// Stop neurons.
+    pub stops: usize,
+    /// Tanh neurons, where the family has a tanh layer.
+    pub hidden: usize,
+    /// Relaxation neurons of each input, where the family has any and there is time.
+    pub relaxation: usize,
+}
+
+impl Default for Sizes {
+    fn default() -> Self {
+        Self { stops: 10, hidden: 10, relaxation: 4 }
+    }
+}
+
+/// The parts of a network of the family, theory.md (2.1) to (2.6).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Architecture {
+    /// Input channels, without the rate.
+    pub inputs: usize,
+    /// The rate of the first input is a channel too.
+    pub rate: bool,
+    /// Stop neurons.
+    pub stops: usize,
+    /// The stops deteriorate.
+    pub deterioration: bool,
+    /// One linear neuron beside the stops.
+    pub linear: bool,
+    /// Relaxation neurons of each input channel.
+    pub relaxation: usize,
+    /// Tanh neurons; 0 for a linear readout of the memory layer.
+    pub hidden: usize,
+    /// The memory layer also goes straight to the output, past the tanh layer.
+    pub direct: bool,
+    /// The output has a constant.
+    pub constant: bool,
+}
+
+/// Largest number of neurons of one kind.
+const MOST_NEURONS: usize = 1000;
+
+/// Largest number of input channels.
+const MOST_INPUTS: usize = 100;
+
+impl Architecture {
+    /// The architecture of a family, for `inputs` channels, with or without a rate, with or without
+    /// time (without time there is nothing to relax in).
+    ///
+    /// # Errors
+    /// No stops or hidden neurons where the family needs them, more than 1000 of one kind, further
+    /// inputs for a family that takes one.
+    pub fn new(family: Family, sizes: Sizes, inputs: usize, rate: bool, time: bool) -> Result<Self> {
+        let neural = !matches!(family, Family::Pnn | Family::Gpnn);
+        if inputs != 1 && !family.takes_further_inputs() {
+            return Err(Error::Option(format!(
+                "{} takes one input, not {inputs}: use xpnn+, or name one with --input",
+                family.name()
+            )));
+        }
+        if neural && sizes.hidden == 0 {
+            return Err(Error::Option(format!(
+                "{} needs at least one hidden neuron (pnn and gpnn have none)",
+                family.name()
+            )));
+        }
+        let plus = family == Family::XpnnPlus;
+        let architecture = Self {
+            inputs,
+            rate: rate && family.uses_rate(),
+            stops: sizes.stops,
+            deterioration: family.deteriorates(),
+            linear: neural,
+            relaxation: if plus && time { sizes.relaxation } else { 0 },
+            hidden: if neural { sizes.hidden } else { 0 },
+            direct: plus,
+            constant: true,
+        };
+        architecture.check()?;
+        Ok(architecture)
+    }
+
+    /// Refuses numbers of parts that make no network, or one beyond reason.
+    ///
+    /// # Errors
+    /// No stop, no input, more than 100 inputs, more than 1000 neurons of a kind.
+    pub fn check(&self) -> Result<()> {
+        if self.stops == 0 {
+            return Err(Error::Option("a network needs at least one stop".into()));
+        }
+        if self.inputs == 0 || self.inputs > MOST_INPUTS {
+            return Err(Error::Option(format!("{} inputs: a network takes 1 to {MOST_INPUTS}", self.inputs)));
+        }
+        for (count, kind) in
+            [(self.stops, "stops"), (self.hidden, "hidden neurons"), (self.relaxation, "relaxation neurons")]
+        {
+            if count > MOST_NEURONS {
+                return Err(Error::Option(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// Channels that the stops see: the first input, its rate, the further inputs.
+    pub fn channels(&self) -> usize {
+        self.inputs + usize::from(self.rate)
+    }
+
+    /// Relaxation neurons of all inputs together.
+    pub fn relaxation_neurons(&self) -> usize {
+        self.relaxation * self.inputs
+    }
+
+    /// Neurons of the memory layer: linear, stops, relaxation, in this order.
+    pub fn memory_neurons(&self) -> usize {
+        usize::from(self.linear) + self.stops + self.relaxation_neurons()
+    }
+
+    /// True if the memory layer goes straight to the output.
+    pub fn has_direct_path(&self) -> bool {
+        self.direct || self.hidden == 0
+    }
+
+    /// Output weights, found by least squares: constant, tanh neurons, direct path, in this order.
+    pub fn output_weights(&self) -> usize {
+        let direct = if self.has_direct_path() { self.memory_neurons() } else { 0 };
+        usize::from(self.constant) + self.hidden + direct
+    }
+
+    /// Number of parameters found by search: all but the output weights, theory.md (2.8).
+    pub fn searched_parameters(&self) -> usize {
+        let memory = self.stops * (self.channels() + usize::from(self.deterioration))
+            + if self.linear { self.channels() } else { 0 }
+            + self.relaxation_neurons();
+        memory + self.hidden * (1 + self.memory_neurons())
+    }
+
+    /// Number of all parameters, the output weights included.
+    pub fn parameters(&self) -> usize {
+        self.searched_parameters() + self.output_weights()
+    }
+
+    /// The paper's count of free parameters, theory.md (2.7): connection weights of a network with x
+    /// and its rate; it leaves out the output weights and forgets the β of the stops.
+    pub fn paper_count(stops: usize, hidden: usize) -> usize {
+        stops * hidden + 2 * (stops + hidden + 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn xpnn(stops: usize, hidden: usize, rate: bool) -> Architecture {
+        let sizes = Sizes { stops, hidden, relaxation: 0 };
+        Architecture::new(Family::Xpnn, sizes, 1, rate, rate).unwrap()
+    }
+
+    #[test]
+    fn the_papers_count_is_ours_without_the_betas() {
+        for stops in 1..12 {
+            for hidden in 1..12 {
+                let ours = xpnn(stops, hidden, true).searched_parameters();
+                assert_eq!(ours, stops * hidden + 3 * stops + 2 * hidden + 2);
+                assert_eq!(Architecture::paper_count(stops, hidden), ours - stops);
+                let without_rate = xpnn(stops, hidden, false).searched_parameters();
+                assert_eq!(without_rate, stops * hidden + stops + 2 * hidden + 1 + stops);
+            }
+        }
+        assert_eq!(xpnn(10, 10, true).searched_parameters(), 152);
+    }
+
+    #[test]
+    fn prandtl_networks_have_two_and_three_parameters_a_stop() {
+        let sizes = Sizes { stops: 7, hidden: 9, relaxation: 3 };
+        let constant = 1;
+        let pnn = Architecture::new(Family::Pnn, sizes, 1, true, true).unwrap();
+        assert_eq!(pnn.parameters(), 2 * 7 + constant);
+        let gpnn = Architecture::new(Family::Gpnn, sizes, 1, true, true).unwrap();
+        assert_eq!(gpnn.parameters(), 3 * 7 + constant);
+    }
+
+    #[test]
+    fn families_have_their_parts() {
+        let sizes = Sizes { stops: 3, hidden: 2, relaxation: 4 };
+        let of = |family| Architecture::new(family, sizes, 1, true, true).unwrap();
+        assert!(!of(Family::PreisachNn).rate && !of(Family::PreisachNn).deterioration);
+        assert_eq!(of(Family::Xpnn).relaxation, 0);
+        assert_eq!(of(Family::XpnnPlus).memory_neurons(), 1 + 3 + 4);
+        assert_eq!(of(Family::XpnnPlus).output_weights(), 1 + 2 + 8);
+        assert_eq!("epnn".parse::<Family>().unwrap(), Family::Xpnn);
+        assert!(Architecture::new(Family::Xpnn, sizes, 2, true, true).is_err());
+        assert!(Architecture::new(Family::XpnnPlus, sizes, 2, true, true).is_ok());
+    }
+}

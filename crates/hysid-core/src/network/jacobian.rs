@@ -1,0 +1,256 @@
+//! Exact derivatives of the output by every parameter found by search, and the Gram matrix that
+//! gathers all that least squares needs of them.
+//!
+//! ```text
+//! q_j = ∂y/∂z_j = Σ_i c_i (1 - h_i²) U_ij + d_j      theory.md (2.11)
+//! ```
+//!
+//! The derivative by a parameter of a memory neuron is `q_j` times that of its output, theory.md
+//! (2.9) and (2.10).
+
+use pulp::{Simd, WithSimd};
+
+use crate::linear_algebra::{Batch, Gram};
+use crate::network::memory::{BLOCK, Row};
+use crate::network::readout::{Backward, Readout};
+use crate::network::sweep::{Block, Drive, TakeBlock, Walk};
+use crate::network::{Architecture, Layout, Network};
+use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
+
+/// Output and Jacobian of a network over a record.
+#[derive(Debug, Clone)]
+pub struct Linearised {
+    /// Scaled output of each row.
+    pub output: Vec<f64>,
+    /// Derivative of the output by each parameter in the order of [`Layout`], output weights held:
+    /// one column of all rows for each parameter. At a kink of a stop, one of the two one-sided
+    /// derivatives (a sub-gradient).
+    pub jacobian: Vec<Vec<f64>>,
+}
+
+impl Network {
+    /// Output and exact Jacobian over a record, from the virgin state. It holds rows times parameters
+    /// numbers: meant for analysis; training gathers what it needs without storing it.
+    ///
+    /// # Panics
+    /// If the drive's channels are not those of the architecture.
+    pub fn linearise(&self, drive: &Drive) -> Linearised {
+        let p = self.parameters.len();
+        let columns = Columns {
+            architecture: &self.architecture,
+            parameters: &self.parameters,
+            output: Some(&self.output),
+        };
+        let target = vec![0.0; drive.len()];
+        let rows = RowsOverRecords {
+            columns,
+            first: columns.count() - p,
+            drives: std::slice::from_ref(drive),
+            targets: &[target],
+            stop: StopCheck::never(),
+        };
+        let jacobian = rows.columns();
+        let mut output = vec![0.0; drive.len()];
+        let u: Vec<&[f64]> = drive.channels.iter().map(Vec::as_slice).collect();
+        self.simulator().run(&u, &drive.steps, &mut output);
+        Linearised { output, jacobian }
+    }
+}
+
+/// What is computed for every row that has a target: features, target and, if output weights are
+/// given, the Jacobian; in this order, as columns.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns<'a> {
+    pub architecture: &'a Architecture,
+    pub parameters: &'a [f64],
+    pub output: Option<&'a [f64]>,
+}
+
+impl<'a> Columns<'a> {
+    /// Number of columns.
+    pub fn count(&self) -> usize {
+        let jacobian = if self.output.is_some() { self.parameters.len() } else { 0 };
+        self.architecture.output_weights() + 1 + jacobian
+    }
+
+    fn walk(&self, stop: StopCheck<'a>) -> Walk<'a> {
+        Walk {
+            architecture: self.architecture,
+            parameters: self.parameters,
+            with_slopes: self.output.is_some(),
+            stop,
+        }
+    }
+}
+
+/// Gathers the Gram matrix of the [`Columns`] over records; a target of NaN is passed over.
+pub struct GramOverRecords<'a> {
+    pub columns: Columns<'a>,
+    pub drives: &'a [Drive],
+    pub targets: &'a [Vec<f64>],
+    /// Ends the walk early; what is gathered means nothing then.
+    pub stop: StopCheck<'a>,
+}
+
+impl GramOverRecords<'_> {
+    pub fn gram(self) -> Gram {
+        simd::run(self)
+    }
+}
+
+impl WithSimd for GramOverRecords<'_> {
+    type Output = Gram;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Gram {
+        let n = self.columns.count();
+        let gathered = Gathered { gram: Gram::new(n), batch: Batch::new(n), pace: Pace::new(self.stop) };
+        let mut taken = ColumnsOfBlock::new(self.columns, gathered);
+        self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
+        let Gathered { mut gram, mut batch, mut pace } = taken.to;
+        gram.add(simd, &mut batch, &mut pace);
+        gram
+    }
+}
+
+/// Takes the columns of some rows.
+trait TakeRows {
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]);
+}
+
+/// Gathers rows into a Gram matrix.
+struct Gathered<'a> {
+    gram: Gram,
+    batch: Batch,
+    pace: Pace<'a>,
+}
+
+impl TakeRows for Gathered<'_> {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]) {
+        if self.batch.free() < rows {
+            self.gram.add(simd, &mut self.batch, &mut self.pace);
+        }
+        self.batch.append(columns, rows);
+    }
+}
+
+/// Keeps the columns of every row, from the first that is wanted on.
+struct Rows {
+    first: usize,
+    columns: Vec<Vec<f64>>,
+}
+
+impl TakeRows for Rows {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, _: S, rows: usize, columns: &[Row]) {
+        for (kept, column) in self.columns.iter_mut().zip(&columns[self.first..]) {
+            kept.extend_from_slice(&column[..rows]);
+        }
+    }
+}
+
+/// The [`Columns`] of every row with a target, from column `first` on: for few rows.
+pub struct RowsOverRecords<'a> {
+    pub columns: Columns<'a>,
+    pub first: usize,
+    pub drives: &'a [Drive],
+    pub targets: &'a [Vec<f64>],
+    /// Ends the walk early; rows are missing then.
+    pub stop: StopCheck<'a>,
+}
+
+impl RowsOverRecords<'_> {
+    pub fn columns(self) -> Vec<Vec<f64>> {
+        simd::run(self)
+    }
+}
+
+impl WithSimd for RowsOverRecords<'_> {
+    type Output = Vec<Vec<f64>>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<Vec<f64>> {
+        let rows = self.targets.iter().flatten().filter(|y| !y.is_nan()).count();
+        let wanted = self.columns.count() - self.first;
+        let columns = (0..wanted).map(|_| Vec::with_capacity(rows)).collect();
+        let mut taken = ColumnsOfBlock::new(self.columns, Rows { first: self.first, columns });
+        self.columns.walk(self.stop).over(simd, self.drives, self.targets, &mut taken);
+        taken.to.columns
+    }
+}
+
+/// Computes the columns of a block and hands them on.
+struct ColumnsOfBlock<'a, T> {
+    spec: Columns<'a>,
+    layout: Layout,
+    backward: Backward,
+    columns: Vec<Row>,
+    to: T,
+}
+
+impl<'a, T> ColumnsOfBlock<'a, T> {
+    fn new(spec: Columns<'a>, to: T) -> Self {
+        Self {
+            spec,
+            layout: Layout::new(*spec.architecture),
+            backward: Backward::new(spec.architecture),
+            columns: vec![Row([0.0; BLOCK]); spec.count()],
+            to,
+        }
+    }
+
+    /// Columns of the Jacobian, theory.md (2.11).
+    #[inline(always)]
+    fn jacobian<S: Simd>(&mut self, output: &[f64], block: &Block, readout: &Readout) {
+        let m = self.spec.architecture.output_weights();
+        let jacobian = &mut self.columns[m + 1..];
+        let Block { u, z, slopes, .. } = block;
+        self.backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
+        let by_neuron = &mut jacobian[self.layout.hidden.clone()];
+        for (columns, slope) in by_neuron.chunks_exact_mut(1 + z.len()).zip(&self.backward.by_sum) {
+            columns[0] = *slope;
+            for (column, z) in columns[1..].iter_mut().zip(z) {
+                product(slope, z, column);
+            }
+        }
+        let (linear, rest) = self.backward.by_memory.split_at(usize::from(!self.layout.linear.is_empty()));
+        let (stops, relaxation) = rest.split_at(self.spec.architecture.stops);
+        let channels = u.len();
+        for (k, column) in jacobian[self.layout.stop_weights.clone()].iter_mut().enumerate() {
+            let (j, c) = (k / channels, k % channels);
+            product(&stops[j], slopes.by_weight(stops.len(), channels, j, c), column);
+        }
+        for (j, column) in jacobian[self.layout.ln_beta.clone()].iter_mut().enumerate() {
+            product(&stops[j], &slopes.ln_beta[j], column);
+        }
+        for (c, column) in jacobian[self.layout.linear.clone()].iter_mut().enumerate() {
+            product(&linear[0], &u[c], column);
+        }
+        for (k, column) in jacobian[self.layout.ln_tau.clone()].iter_mut().enumerate() {
+            product(&relaxation[k], &slopes.ln_tau[k], column);
+        }
+    }
+}
+
+impl<T: TakeRows> TakeBlock for ColumnsOfBlock<'_, T> {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
+        let m = self.spec.architecture.output_weights();
+        let (features, rest) = self.columns.split_at_mut(m);
+        readout.features(&block.z, &block.h, features);
+        rest[0] = block.target;
+        if let Some(output) = self.spec.output {
+            self.jacobian::<S>(output, block, readout);
+        }
+        self.to.take(simd, rows, &self.columns);
+    }
+}
+
+#[inline(always)]
+fn product(a: &Row, b: &Row, out: &mut Row) {
+    for ((out, &a), &b) in out.iter_mut().zip(a).zip(b) {
+        *out = a * b;
+    }
+}

@@ -1,0 +1,304 @@
+//! Advice: the simplest model that can hold what was found. The paper's Table 2 with its error mended: a
+//! tanh layer that mixes stops is not congruent, so that networks with it hold memories that additive models cannot.
+
+use serde::{Serialize, Serializer};
+
+use super::{Delay, Finding, Property, Verdict};
+use hysid_core::network::Family;
+use hysid_core::options::ModelName;
+use hysid_core::options::classical::Rival;
+use hysid_core::significant::Significant;
+
+/// The simplest model that can hold what was found, and why.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Advice {
+    /// The model; `None` where a function of the input, without memory, is enough.
+    #[serde(serialize_with = "by_name")]
+    pub model: Option<ModelName>,
+    /// Whether it must see the rate of the input.
+    pub needs_rate: Verdict,
+    /// Whether it must wear out.
+    pub needs_deterioration: Verdict,
+    /// Whether it must be unlike itself turned by half a turn.
+    pub needs_asymmetry: Verdict,
+    /// Whether its memory must fade with time, as in creep: needed only where the speed matters.
+    pub needs_memory_of_time: Verdict,
+    /// Why, in sentences; what was not testable is said as an assumption.
+    pub statement: Vec<String>,
+}
+
+fn by_name<S: Serializer>(model: &Option<ModelName>, serializer: S) -> Result<S::Ok, S::Error> {
+    model.map(ModelName::name).serialize(serializer)
+}
+
+/// What the data say about the properties that decide.
+struct Found {
+    static_hysteresis: Verdict,
+    rate_dependence: Verdict,
+    wiping_out: Verdict,
+    congruency: Verdict,
+    masing: Verdict,
+    odd_symmetry: Verdict,
+    deterioration: Verdict,
+}
+
+impl Found {
+    fn of(findings: &[Finding]) -> Self {
+        let verdict = |property| {
+            let finding = findings.iter().find(|finding| finding.property == property);
+            finding.map_or(Verdict::NotTestable, |finding| finding.verdict)
+        };
+        Self {
+            static_hysteresis: verdict(Property::StaticHysteresis),
+            rate_dependence: verdict(Property::RateDependence),
+            wiping_out: verdict(Property::WipingOut),
+            congruency: verdict(Property::Congruency),
+            masing: verdict(Property::Masing),
+            odd_symmetry: verdict(Property::OddSymmetry),
+            deterioration: verdict(Property::Deterioration),
+        }
+    }
+
+    /// True if the output follows the input alone.
+    fn is_a_function(&self) -> bool {
+        self.static_hysteresis == Verdict::No && self.rate_dependence != Verdict::Yes
+    }
+}
+
+/// The simplest model that can hold what was found.
+pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
+    let found = Found::of(findings);
+    let (model, reason) = simplest(&found);
+    let mut statement = vec![match model {
+        Some(model) => format!("the simplest model that holds what was found is {}: {reason}", model.name()),
+        None => reason.to_string(),
+    }];
+    statement.extend(law(&found).map(String::from));
+    if let Some(delay) = delay {
+        let shift = Significant(delay.time.abs());
+        statement.push(format!(
+            "the delay must be taken out first (shift the output by {shift:.3} in time); with it the speed matters, and xpnn is needed"
+        ));
+    }
+    if model.is_some() {
+        statement.extend(assumptions(&found));
+    }
+    Advice {
+        model,
+        needs_rate: found.rate_dependence,
+        needs_deterioration: found.deterioration,
+        needs_asymmetry: match found.odd_symmetry {
+            Verdict::Yes => Verdict::No,
+            Verdict::No => Verdict::Yes,
+            Verdict::NotTestable => Verdict::NotTestable,
+        },
+        // Whether the rate itself or a fading memory is behind it, these properties do not tell.
+        needs_memory_of_time: match found.rate_dependence {
+            Verdict::No => Verdict::No,
+            Verdict::Yes | Verdict::NotTestable => Verdict::NotTestable,
+        },
+        statement,
+    }
+}
+
+/// The model and the reason, the property that asks for most first.
+fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
+    use Verdict::{No, Yes};
+    let network = |family| Some(ModelName::Network(family));
+    let rival = |rival| Some(ModelName::Rival(rival));
+    if found.is_a_function() {
+        return (
+            None,
+            "there is no hysteresis: the output is a function of the input, and no model with memory is needed",
+        );
+    }
+    if found.rate_dependence == Yes {
+        let reason = "the speed matters, so its neurons must see the rate; where memory fades with time (creep, relaxation) xpnn+ holds \
+                      more";
+        return (network(Family::Xpnn), reason);
+    }
+    if found.deterioration == Yes {
+        return match found.odd_symmetry {
+            No => (network(Family::Xpnn), "loops shrink when they are repeated, and are not symmetric"),
+            _ => (network(Family::Gpnn), "loops shrink when they are repeated"),
+        };
+    }
+    if found.wiping_out == No {
+        return match found.odd_symmetry {
+            Yes => (
+                rival(Rival::BoucWen),
+                "closed excursions leave a trace, without wear; xpnn holds it as well",
+            ),
+            _ => (
+                network(Family::Xpnn),
+                "closed excursions leave a trace, without wear, and the loops are not known to be symmetric",
+            ),
+        };
+    }
+    if found.congruency == No {
+        return (
+            network(Family::PreisachNn),
+            "the shape of a minor loop depends on where it lies, which sums of plays, of stops or of relays cannot hold",
+        );
+    }
+    if found.masing == No || found.odd_symmetry == No {
+        let reason = "branches are not all one curve, and nothing says that minor loops between the same inputs differ; \
+                      generalized-prandtl-ishlinskii is smaller where its envelopes fit";
+        return (rival(Rival::Preisach), reason);
+    }
+    (
+        rival(Rival::PrandtlIshlinskii),
+        "all branches are one curve, magnified, so a weighted sum of plays is enough (as a network: pnn)",
+    )
+}
+
+/// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
+/// tells.
+fn law(found: &Found) -> Option<&'static str> {
+    if found.is_a_function() {
+        return None;
+    }
+    if found.deterioration == Verdict::Yes {
+        return Some(
+            "with fewer parameters, if its shape fits: bouc-wen with the option degradation (stiffness and strength that \
+             degrade, pinching); compare fits every law in all its variants",
+        );
+    }
+    (found.rate_dependence == Verdict::Yes).then_some(
+        "with fewer parameters, if its shape fits: rate-dependent-prandtl-ishlinskii, or bouc-wen with the rate; \
+         compare fits every law in all its variants",
+    )
+}
+
+/// What was not testable and is taken for granted.
+fn assumptions(found: &Found) -> Vec<String> {
+    let mut assumed = Vec::new();
+    let mut assume = |verdict: Verdict, what: &str| {
+        if verdict == Verdict::NotTestable {
+            assumed.push(format!("not testable here: {what}"));
+        }
+    };
+    assume(found.static_hysteresis, "whether loops remain at rest; taken as hysteresis");
+    assume(found.rate_dependence, "rate dependence; taken as none (if the speed matters: xpnn)");
+    if found.rate_dependence == Verdict::Yes {
+        return assumed;
+    }
+    assume(found.deterioration, "deterioration; taken as none");
+    if found.deterioration != Verdict::Yes {
+        assume(found.wiping_out, "wiping-out; taken as holding");
+        if found.wiping_out != Verdict::No {
+            assume(found.congruency, "congruency; taken as holding (if it does not: preisach-nn)");
+        }
+        if found.wiping_out != Verdict::No
+            && found.congruency != Verdict::No
+            && found.odd_symmetry != Verdict::No
+        {
+            assume(found.masing, "Masing's rule; taken as holding (if it does not: preisach)");
+        }
+    }
+    let relies_on_symmetry = found.deterioration == Verdict::Yes
+        || found.wiping_out != Verdict::No && found.congruency != Verdict::No && found.masing != Verdict::No;
+    if relies_on_symmetry {
+        assume(found.odd_symmetry, "symmetry; taken as symmetric");
+    }
+    assumed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Diagnosis, DiagnosisOptions};
+    use Verdict::{No, NotTestable, Yes};
+    use hysid_specimens::Specimen;
+
+    /// Findings with the verdicts on static hysteresis, rate dependence, wiping-out, congruency, Masing's rule, odd
+    /// symmetry and deterioration.
+    fn findings(verdicts: [Verdict; 7]) -> Vec<Finding> {
+        let properties = [
+            Property::StaticHysteresis,
+            Property::RateDependence,
+            Property::WipingOut,
+            Property::Congruency,
+            Property::Masing,
+            Property::OddSymmetry,
+            Property::Deterioration,
+        ];
+        let finding = |(property, verdict)| Finding { verdict, ..Finding::not_testable(property, "", "") };
+        properties.into_iter().zip(verdicts).map(finding).collect()
+    }
+
+    fn name(advice: &Advice) -> Option<&'static str> {
+        advice.model.map(ModelName::name)
+    }
+
+    /// How many statements are assumptions.
+    fn assumed(advice: &Advice) -> usize {
+        advice.statement.iter().filter(|text| text.starts_with("not testable here: ")).count()
+    }
+
+    #[test]
+    fn laws_that_wear_out_or_see_the_rate_are_named() {
+        let statement = |verdicts| advise(&findings(verdicts), None).statement.concat();
+        assert!(statement([Yes, No, No, No, No, Yes, Yes]).contains("bouc-wen with the option degradation"));
+        assert!(statement([Yes, Yes, Yes, Yes, Yes, Yes, No]).contains("rate-dependent-prandtl-ishlinskii"));
+        assert!(!statement([Yes, No, Yes, Yes, Yes, Yes, No]).contains("compare"));
+    }
+
+    #[test]
+    fn the_model_follows_from_the_findings() {
+        for (verdicts, expected) in [
+            ([No, No, Yes, Yes, Yes, Yes, No], None),
+            ([Yes, No, Yes, Yes, Yes, Yes, No], Some("prandtl-ishlinskii")),
+            ([Yes, No, Yes, Yes, No, Yes, No], Some("preisach")),
+            ([Yes, No, Yes, Yes, No, No, No], Some("preisach")),
+            ([Yes, No, Yes, No, No, Yes, No], Some("preisach-nn")),
+            ([Yes, No, No, No, No, Yes, No], Some("bouc-wen")),
+            ([Yes, No, No, No, No, No, No], Some("xpnn")),
+            ([Yes, No, No, No, No, Yes, Yes], Some("gpnn")),
+            ([Yes, No, No, No, No, No, Yes], Some("xpnn")),
+            ([Yes, Yes, Yes, Yes, Yes, Yes, No], Some("xpnn")),
+            // Loops that vanish at rest are a matter of the rate, not of nothing.
+            ([No, Yes, Yes, Yes, Yes, Yes, No], Some("xpnn")),
+        ] {
+            let advice = advise(&findings(verdicts), None);
+            assert_eq!(name(&advice), expected, "{verdicts:?}");
+            assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
+        }
+    }
+
+    #[test]
+    fn what_is_not_testable_is_said_to_be_assumed() {
+        let advice = advise(&findings([NotTestable; 7]), None);
+        assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
+        assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
+        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable here: ")));
+        assert_eq!(advice.needs_rate, NotTestable);
+        // What would not change the model is not mentioned.
+        let advice = advise(
+            &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),
+            None,
+        );
+        assert_eq!(assumed(&advice), 0, "{:?}", advice.statement);
+        assert_eq!(advice.needs_memory_of_time, NotTestable);
+    }
+
+    #[test]
+    fn specimens_get_models_of_their_kind() {
+        for (specimen, expected) in [
+            ("ferromagnet", "preisach"),
+            ("reinforced-concrete-joint", "gpnn"),
+            ("terfenol-actuator", "preisach"),
+            ("shape-memory-actuator", "preisach"),
+            ("concrete", "xpnn"),
+            ("piezo-actuator", "xpnn"),
+            ("rate-dependent-actuator", "xpnn"),
+            ("magnetostrictive-actuator", "xpnn"),
+        ] {
+            let data = Specimen::named(specimen).expect("it is in the catalogue").train();
+            let diagnosis = Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap();
+            assert_eq!(name(&diagnosis.advice), Some(expected), "{specimen}");
+            let file = serde_json::to_value(&diagnosis.advice).unwrap();
+            assert_eq!(file["model"], expected);
+        }
+    }
+}

@@ -1,0 +1,403 @@
+//! The way of the input as branches between turning points, and what closes what, theory.md (10.2).
+
+use std::ops::Range;
+
+use super::noise;
+use super::opening::{Opening, openings};
+use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
+use super::{DiagnosisOptions, PictureCurve, Piece};
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::data::turning_points::turning_points;
+
+/// Branches of twice as many rows are averaged in blocks, to about so many points.
+const MOST_POINTS: usize = 400;
+
+/// A turning point counts as reached within this share of the input's range.
+const REACHED: f64 = 0.003;
+
+/// Branches lower than this share of the output's range have no shape.
+const LOWEST: f64 = 0.05;
+
+/// Branches lower than so many deviations of the noise have none either.
+const LOWEST_IN_NOISE: f64 = 10.0;
+
+/// Turning points beneath a branch that are kept with it.
+const KEPT: usize = 4;
+
+/// A monotone way of the input between two turning points.
+#[derive(Debug, Clone)]
+pub(crate) struct Branch {
+    /// Number of the record.
+    pub record: usize,
+    /// Rows from the turning point at its beginning to that at its end, both included.
+    pub rows: Range<usize>,
+    /// The input at its beginning.
+    pub from: f64,
+    /// The input at its end.
+    pub to: f64,
+    /// Way of the input for time.
+    pub speed: Option<f64>,
+    /// Turning points that enclose it, the latest last; the last is where it began.
+    pub beneath: Vec<f64>,
+    /// Those of them that still enclose it at its end, the latest last.
+    pub around: Vec<f64>,
+    /// Loops that it closes on its way.
+    pub closes: Vec<Closing>,
+    /// The output over the input.
+    pub curve: Curve,
+}
+
+/// A turning point that a branch comes back to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Closing {
+    /// Input at the turning point.
+    pub x: f64,
+    /// Number of the branch that first arrived there.
+    pub arrived: usize,
+}
+
+impl Branch {
+    /// True if the input grows.
+    pub fn rises(&self) -> bool {
+        self.to > self.from
+    }
+
+    /// Way of the input.
+    pub fn travel(&self) -> f64 {
+        (self.to - self.from).abs()
+    }
+
+    /// The input up to which this branch belongs to the loop that encloses it: where the turning point
+    /// before its beginning lies, or its end if that comes first. `None` where nothing encloses it.
+    pub fn own_end(&self) -> Option<f64> {
+        let before = *self.beneath.iter().rev().nth(1)?;
+        Some(if self.rises() { before.min(self.to) } else { before.max(self.to) })
+    }
+
+    /// Time between its ends.
+    pub fn duration(&self) -> Option<f64> {
+        self.speed.map(|speed| self.travel() / speed)
+    }
+}
+
+/// Output over input along a branch, in the order of the input.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Curve {
+    points: Vec<CurvePoint>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct CurvePoint {
+    x: f64,
+    y: f64,
+    deviation: f64,
+    bend: f64,
+}
+
+/// A value read from a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    /// The output.
+    pub y: f64,
+    /// Its standard deviation from the noise.
+    pub deviation: f64,
+    /// How far smoothing and reading between the rows may be off.
+    pub bend: f64,
+}
+
+impl Curve {
+    /// True if the branch has hardly an output.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Smallest and largest input.
+    pub fn range(&self) -> (f64, f64) {
+        match (self.points.first(), self.points.last()) {
+            (Some(first), Some(last)) => (first.x, last.x),
+            _ => (f64::INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    /// The points, in the order of the input.
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.points.iter().map(|point| (point.x, point.y))
+    }
+
+    /// The output at an input; `None` beyond the curve by more than the distance of its last points.
+    pub fn at(&self, x: f64) -> Option<Reading> {
+        let count = self.points.len();
+        if count < 2 {
+            return None;
+        }
+        let above = self.points.partition_point(|point| point.x < x).clamp(1, count - 1);
+        let (a, b) = (&self.points[above - 1], &self.points[above]);
+        let width = b.x - a.x;
+        if width <= 0.0 {
+            return (a.x == x).then_some(Reading { y: b.y, deviation: b.deviation, bend: b.bend });
+        }
+        let share = (x - a.x) / width;
+        if !(-1.0..=2.0).contains(&share) {
+            return None;
+        }
+        let neighbours = [above.checked_sub(2), Some(above + 1)];
+        let line = |point: &CurvePoint| a.y + (b.y - a.y) * (point.x - a.x) / width;
+        // A neighbour as far off the line as a parabola would be has bent it by an eighth of that, at
+        // the spacing of two rows.
+        let bend = neighbours
+            .into_iter()
+            .flatten()
+            .filter_map(|index| self.points.get(index))
+            .map(|point| {
+                let away = ((point.x - a.x) * (point.x - b.x)).abs();
+                if away > 0.0 { (point.y - line(point)).abs() * width * width / (4.0 * away) } else { 0.0 }
+            })
+            .fold(0.0, f64::max);
+        let on_a_point = share == 0.0 || share == 1.0;
+        Some(Reading {
+            y: a.y + share * (b.y - a.y),
+            deviation: a.deviation + share.clamp(0.0, 1.0) * (b.deviation - a.deviation),
+            bend: a.bend.max(b.bend) + if on_a_point { 0.0 } else { bend.min((b.y - a.y).abs()) },
+        })
+    }
+}
+
+/// A data set as the tests of properties look at it.
+#[derive(Debug)]
+pub(crate) struct Survey<'a> {
+    pub data: &'a Dataset,
+    /// Smallest and largest input.
+    pub input: (f64, f64),
+    /// Smallest and largest output.
+    pub output: (f64, f64),
+    /// Deviation of the noise of the input.
+    pub input_noise: f64,
+    /// Deviation of the noise of the output.
+    pub output_noise: f64,
+    /// Reversals of the input below this are no turning points.
+    pub smallest_reversal: f64,
+    /// Rows that are taken together to read a curve.
+    pub window: usize,
+    /// All branches, record after record.
+    pub branches: Vec<Branch>,
+    /// How far each stands open to the next of its record, in their order.
+    pub openings: Vec<Opening>,
+}
+
+impl<'a> Survey<'a> {
+    /// Looks through the data.
+    pub fn new(data: &'a Dataset, options: &DiagnosisOptions) -> Self {
+        let input = data.input_range(0);
+        let width = input.1 - input.0;
+        let inputs = data.records().iter().map(|record| record.inputs()[0].as_slice());
+        let input_noise = noise::deviation(inputs);
+        let rows = data.rows().max(2);
+        // Jitter of all rows together hardly ever jumps further.
+        let jitter = 2.0 * input_noise * noise::critical_value(rows);
+        let smallest_reversal = (options.smallest_reversal * width).max(jitter);
+        let reached = REACHED * width + 2.0 * input_noise;
+        let mut branches = Vec::new();
+        for (number, record) in data.records().iter().enumerate() {
+            follow(number, record, smallest_reversal, reached, &mut branches);
+        }
+        let output_noise = output_noise(data, &branches);
+        let points: Vec<Points> = branches.iter().map(|branch| of_rows(data, branch, output_noise)).collect();
+        let window = if options.smoothing { choose_window(&points) } else { 1 };
+        for (branch, points) in branches.iter_mut().zip(points) {
+            branch.curve = curve(&points, window);
+        }
+        let output = data.output_range();
+        let openings = openings(&branches, output_noise);
+        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches, openings }
+    }
+
+    /// Range of the output.
+    pub fn height(&self) -> f64 {
+        self.output.1 - self.output.0
+    }
+
+    /// Range of the input.
+    pub fn width(&self) -> f64 {
+        self.input.1 - self.input.0
+    }
+
+    /// The branches of a record.
+    pub fn of_record(&self, record: usize) -> &[Branch] {
+        let first = self.branches.partition_point(|branch| branch.record < record);
+        let count = self.branches[first..].partition_point(|branch| branch.record == record);
+        &self.branches[first..first + count]
+    }
+
+    /// Rows of the turning points between branches, record by record.
+    pub fn turning_rows(&self) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.data.records().len()];
+        for pair in self.branches.windows(2).filter(|pair| pair[0].record == pair[1].record) {
+            rows[pair[1].record].push(pair[1].rows.start);
+        }
+        rows
+    }
+
+    /// Branches lower than this have no shape to compare, in the unit of the output.
+    pub fn lowest_shape(&self) -> f64 {
+        (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise)
+    }
+
+    /// Inputs closer than this are the same.
+    pub fn same_input(&self) -> f64 {
+        0.01 * self.width() + 2.0 * self.input_noise
+    }
+}
+
+/// The branches of a record.
+fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches: &mut Vec<Branch>) {
+    let x = &record.inputs()[0];
+    let mut ends = vec![0];
+    ends.extend(turning_points(x, smallest));
+    ends.push(x.len() - 1);
+    ends.dedup();
+    // Each with the number of the branch that arrived there.
+    let mut stack: Vec<(f64, Option<usize>)> = vec![(x[0], None)];
+    for rows in ends.windows(2) {
+        let (first, last) = (rows[0], rows[1]);
+        let (from, to) = (x[first], x[last]);
+        let here = branches.len();
+        let latest = |stack: &[(f64, Option<usize>)]| -> Vec<f64> {
+            stack[stack.len().saturating_sub(KEPT)..].iter().map(|(x, _)| *x).collect()
+        };
+        let beneath = latest(&stack);
+        let mut closes = Vec::new();
+        while stack.len() >= 2 {
+            let (before, arrived) = stack[stack.len() - 2];
+            let passed = if to > from { to >= before - reached } else { to <= before + reached };
+            if !passed {
+                break;
+            }
+            // What lies beneath the last two is not known: only the latest turning point still counts.
+            if stack.len() == 2 {
+                stack.remove(0);
+                break;
+            }
+            closes.extend(arrived.map(|arrived| Closing { x: before, arrived }));
+            stack.truncate(stack.len() - 2);
+        }
+        let around = latest(&stack);
+        stack.push((to, Some(here)));
+        let speed = record.time().map(|time| (to - from).abs() / (time[last] - time[first]));
+        branches.push(Branch {
+            record: number,
+            rows: first..last + 1,
+            from,
+            to,
+            speed,
+            beneath,
+            around,
+            closes,
+            curve: Curve::default(),
+        });
+    }
+}
+
+/// Points of a branch in the order of time, averaged in blocks where there are very many.
+fn of_rows(data: &Dataset, branch: &Branch, noise: f64) -> Points {
+    let record = &data.records()[branch.record];
+    let columns = [&record.inputs()[0], record.output()].map(|column| &column[branch.rows.clone()]);
+    let block = (branch.rows.len() / MOST_POINTS).max(1);
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let blocks = |column: usize| columns[column].chunks(block).map(mean);
+    // The output is smooth in time, whatever the input does; without time stamps the input stands for it.
+    let stations: Vec<f64> = match record.time() {
+        Some(time) => time[branch.rows.clone()].chunks(block).map(mean).collect(),
+        None => blocks(0).collect(),
+    };
+    let rows = stations.into_iter().zip(blocks(0).zip(blocks(1)));
+    let mut places: Vec<Place> =
+        rows.filter(|(_, (_, y))| !y.is_nan()).map(|(station, (x, y))| Place { station, x, y }).collect();
+    if places.len() < 4 {
+        places.clear();
+    }
+    places.sort_by(|a, b| a.station.total_cmp(&b.station));
+    Points { places, deviation: noise / (block as f64).sqrt() }
+}
+
+fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
+    let scored = |branch: &Branch| {
+        let output = &data.records()[branch.record].output()[branch.rows.clone()];
+        !output.iter().any(|y| y.is_nan())
+    };
+    let runs = branches.iter().filter(|branch| scored(branch));
+    noise::deviation(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
+}
+
+fn curve(points: &Points, window: usize) -> Curve {
+    let smoothed = smooth_where_straight(points, window);
+    let place = |(place, value): (&Place, &Smoothed)| CurvePoint {
+        x: place.x,
+        y: value.y,
+        deviation: value.deviation * points.deviation,
+        bend: value.bend,
+    };
+    let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x));
+    Curve { points }
+}
+
+/// Branches whose speeds differ by no more than this factor are of the same speed.
+const SAME_SPEED: f64 = 1.25;
+
+/// The speed at a place is that within this share of the input's range.
+const NEAR: f64 = 0.0025;
+
+/// True if two speeds are taken as one.
+pub(crate) fn is_one_speed(a: f64, b: f64) -> bool {
+    a.max(b) <= SAME_SPEED * a.min(b)
+}
+
+impl Survey<'_> {
+    /// True unless two branches are known to go through an input at different speeds, as where one of them is
+    /// about to turn.
+    pub fn similar_speed_at(&self, a: &Branch, b: &Branch, x: f64) -> bool {
+        match (self.speed_at(a, x), self.speed_at(b, x)) {
+            (Some(a), Some(b)) => is_one_speed(a, b),
+            _ => true,
+        }
+    }
+
+    /// True unless the mean speeds of two branches are known to differ.
+    pub fn similar_speed(&self, a: &Branch, b: &Branch) -> bool {
+        match (a.speed, b.speed) {
+            (Some(a), Some(b)) => is_one_speed(a, b),
+            _ => true,
+        }
+    }
+
+    /// Speed of the input near a place, over a short way and three rows at least; `None` without time.
+    pub fn speed_at(&self, branch: &Branch, place: f64) -> Option<f64> {
+        let record = &self.data.records()[branch.record];
+        let time = &record.time()?[branch.rows.clone()];
+        let x = &record.inputs()[0][branch.rows.clone()];
+        let sign = if branch.rises() { 1.0 } else { -1.0 };
+        let reach = NEAR * self.width() + 2.0 * self.input_noise;
+        let first = x.partition_point(|x| sign * x < sign * place - reach);
+        let last = x.partition_point(|x| sign * x <= sign * place + reach);
+        let first = first.saturating_sub(1).min(x.len().saturating_sub(3));
+        let last = last.max(first + 2).min(x.len() - 1);
+        (time[last] > time[first]).then(|| (x[last] - x[first]).abs() / (time[last] - time[first]))
+    }
+
+    /// Where a branch is in the data.
+    pub fn piece(&self, branch: &Branch) -> Piece {
+        Piece::of(&self.data.records()[branch.record], (branch.rows.start, branch.rows.end - 1))
+    }
+
+    /// A branch for a picture.
+    pub fn curve(&self, label: &str, branch: &Branch) -> PictureCurve {
+        PictureCurve { label: label.into(), points: branch.curve.points().collect() }
+    }
+
+    /// The part of a branch between two inputs, for a picture.
+    pub fn curve_between(&self, label: &str, branch: &Branch, (a, b): (f64, f64)) -> PictureCurve {
+        let (low, high) = (a.min(b), a.max(b));
+        let points = branch.curve.points().filter(|(x, _)| *x >= low && *x <= high).collect();
+        PictureCurve { label: label.into(), points }
+    }
+}

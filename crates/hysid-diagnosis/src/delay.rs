@@ -1,0 +1,139 @@
+//! A fixed time by which the output lags behind the input: it widens loops in proportion to the speed, and so
+//! looks like rate dependence, theory.md (10.14).
+
+use serde::Serialize;
+
+use super::branch::{Branch, Survey};
+use super::rate_dependence::Speeds;
+use hysid_core::data::record::Record;
+
+/// Delays are sought up to this share of the shortest branch, either way.
+const LONGEST: f64 = 0.25;
+
+/// Delays tried before the best is refined.
+const TRIED: i32 = 20;
+
+/// Golden sections of the interval around the best.
+const SECTIONS: usize = 40;
+
+/// Courses and branches that are looked at.
+const MOST: usize = 40;
+
+/// A delay of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Delay {
+    /// By which the output lags behind the input, in the unit of time; negative if it leads.
+    pub time: f64,
+    /// What of the difference between speeds is left after the shift, as a share of the output's range.
+    pub remains: f64,
+}
+
+/// The delay that makes the outputs of all speeds agree best.
+pub(crate) fn between_speeds(survey: &Survey, courses: &[Speeds]) -> Option<Delay> {
+    let step = courses.len().div_ceil(MOST).max(1);
+    let courses: Vec<&Speeds> = courses.iter().step_by(step).collect();
+    let all = || courses.iter().flat_map(|speeds| speeds.slow.iter().chain(&speeds.fast));
+    let shortest = all().filter_map(|branch| branch.duration()).fold(f64::INFINITY, f64::min);
+    if !shortest.is_finite() {
+        return None;
+    }
+    let squares = |delay: f64| courses.iter().filter_map(move |speeds| mean_square(survey, speeds, delay));
+    let time = lowest(&|delay| squares(delay).sum(), LONGEST * shortest);
+    let worst = squares(time).fold(0.0, f64::max);
+    // Rows are taken with their noise, which no delay takes away.
+    let remains = (worst - survey.output_noise.powi(2)).max(0.0).sqrt();
+    Some(Delay { time, remains: remains / survey.height() })
+}
+
+/// Where a function of one valley is lowest within `±reach`: a coarse search, then golden sections.
+fn lowest(function: &impl Fn(f64) -> f64, reach: f64) -> f64 {
+    let place = |k: i32| reach * f64::from(k) / f64::from(TRIED);
+    let best = (-TRIED..=TRIED)
+        .min_by(|&a, &b| function(place(a)).total_cmp(&function(place(b))))
+        .expect("there are places");
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let (mut low, mut high) = (place(best - 1), place(best + 1));
+    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_a, mut at_b) = (function(a), function(b));
+    for _ in 0..SECTIONS {
+        if at_a < at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - golden * (high - low);
+            at_a = function(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + golden * (high - low);
+            at_b = function(b);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later. The rows
+/// of the fast branches, which lie far apart, are taken as they are; between the many of the slow ones is read.
+fn mean_square(survey: &Survey, speeds: &Speeds, delay: f64) -> Option<f64> {
+    let records = survey.data.records();
+    let shifted = |set: &[&Branch]| -> Vec<Vec<(f64, f64)>> {
+        set.iter().map(|branch| later(&records[branch.record], branch, delay)).collect()
+    };
+    let slow = shifted(&speeds.slow);
+    let (low, high) = (speeds.from.min(speeds.to), speeds.from.max(speeds.to));
+    let (mut square, mut rows) = (0.0, 0.0);
+    for (x, y) in shifted(&speeds.fast).into_iter().flatten().filter(|(x, _)| *x >= low && *x <= high) {
+        if let Some(slow) = mean(&slow, x) {
+            square += (slow - y).powi(2);
+            rows += 1.0;
+        }
+    }
+    (rows > 0.0).then(|| square / rows)
+}
+
+/// The outputs that come `delay` after the inputs of a branch, over those inputs, in the order of the input.
+/// The input is read between rows, not the output: it is the smoother of the two.
+fn later(record: &Record, branch: &Branch, delay: f64) -> Vec<(f64, f64)> {
+    let (x, y) = (&record.inputs()[0], record.output());
+    let time = record.time().expect("delays are sought in data with time");
+    let (begin, end) = (time[branch.rows.start], time[branch.rows.end - 1]);
+    let first = time.partition_point(|&t| t < begin + delay);
+    let mut points = Vec::with_capacity(branch.rows.len());
+    let mut below = branch.rows.start;
+    for row in first..time.len() {
+        let wanted = time[row] - delay;
+        if wanted > end {
+            break;
+        }
+        while below + 2 < branch.rows.end && time[below + 1] <= wanted {
+            below += 1;
+        }
+        if !y[row].is_nan() {
+            points.push((cubic(time, x, below, wanted), y[row]));
+        }
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+/// Value at a time between rows `below` and `below + 1`, by the cubic through four rows (Lagrange); by a line
+/// where a row is missing.
+fn cubic(time: &[f64], x: &[f64], below: usize, wanted: f64) -> f64 {
+    let rows = match below.checked_sub(1) {
+        Some(first) if first + 4 <= x.len() => first..first + 4,
+        _ => below..below + 2,
+    };
+    let weight = |row: usize| -> f64 {
+        let others = rows.clone().filter(|&other| other != row);
+        others.map(|other| (wanted - time[other]) / (time[row] - time[other])).product()
+    };
+    rows.clone().map(|row| x[row] * weight(row)).sum()
+}
+
+fn mean(set: &[Vec<(f64, f64)>], x: f64) -> Option<f64> {
+    let mut sum = 0.0;
+    for points in set {
+        let above = points.partition_point(|point| point.0 < x);
+        let (a, b) = (points.get(above.checked_sub(1)?)?, points.get(above)?);
+        let width = b.0 - a.0;
+        sum += if width > 0.0 { a.1 + (b.1 - a.1) * (x - a.0) / width } else { a.1 };
+    }
+    Some(sum / set.len() as f64)
+}

@@ -1,0 +1,149 @@
+//! Deterioration: loops shrink when they are repeated. Index: `1 - E_last/E_first` over the cycles between the
+//! same inputs, with the sum of all rises against all falls of the energy (Mann and Kendall) and the median
+//! slope (Theil and Sen), theory.md (10.11).
+
+use super::branch::Survey;
+use super::cycles::repeated;
+use super::noise;
+use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
+use hysid_core::significant::Significant;
+
+/// A loss of energy that matters, as a share of the first cycle's.
+const EFFECT: f64 = 0.05;
+
+/// Fewest repeated cycles, all kinds together.
+const FEWEST: usize = 3;
+
+/// Cycles of one kind that are compared at most.
+const MOST: usize = 200;
+
+/// Loops smaller than this share of the largest say little.
+const SMALLEST: f64 = 0.01;
+
+const EXPERIMENT: &str = "repeat a large loop five times or more, without changing its ends";
+
+/// What the cycles between two inputs say.
+struct Trend<'c> {
+    cycles: Vec<&'c Cycle>,
+    /// `1 - E_last/E_first` along the median slope.
+    loss: f64,
+    deviation: f64,
+    /// Falls less rises among all pairs, and how many pairs there are.
+    falls: f64,
+    variance: f64,
+}
+
+/// Tests for deterioration.
+pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
+    let largest = cycles.iter().map(|cycle| cycle.area).fold(0.0, f64::max);
+    let groups = repeated(survey, cycles);
+    let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();
+    let count: usize = trends.iter().map(|trend| trend.cycles.len()).sum();
+    if count < FEWEST {
+        let statement = format!("{count} loops are repeated between the same inputs; {FEWEST} are needed");
+        return Finding::not_testable(Property::Deterioration, statement, EXPERIMENT);
+    }
+    let critical = noise::critical_value(trends.len());
+    let excess = |trend: &Trend| trend.loss / EFFECT.max(critical * trend.deviation);
+    let strongest = trends.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are trends");
+    // One kind of loops may shrink by chance or while it settles; most must.
+    let weight: f64 = trends.iter().map(|trend| trend.cycles.len() as f64).sum();
+    let shrinking: f64 =
+        trends.iter().filter(|trend| excess(trend) > 1.0).map(|t| t.cycles.len() as f64).sum();
+    let falls: f64 = trends.iter().map(|trend| trend.falls).sum();
+    let variance: f64 = trends.iter().map(|trend| trend.variance).sum();
+    let trend_score = falls / variance.sqrt().max(1.0);
+    let limit = EFFECT.max(critical * strongest.deviation);
+    let (verdict, statement) = if shrinking >= 0.5 * weight && falls > 0.0 {
+        let text = format!(
+            "repeated loops lose up to {:.0} % of their energy ({} of {} kinds of loop shrink; Mann-Kendall score {trend_score:.1})",
+            100.0 * strongest.loss,
+            trends.iter().filter(|trend| excess(trend) > 1.0).count(),
+            trends.len()
+        );
+        (Verdict::Yes, text)
+    } else if limit > 5.0 * EFFECT {
+        (Verdict::NotTestable, "the noise hides losses of the size that matters".into())
+    } else {
+        (
+            Verdict::No,
+            format!("repeated loops keep their energy, within {:.1} %", 100.0 * strongest.loss.abs()),
+        )
+    };
+    Finding {
+        property: Property::Deterioration,
+        verdict,
+        index: Some(strongest.loss),
+        threshold: Some(limit),
+        noise: Some(strongest.deviation * noise::typical_largest(trends.len())),
+        comparisons: trends.len(),
+        statement,
+        experiment: (verdict == Verdict::NotTestable).then(|| EXPERIMENT.into()),
+        evidence: vec![Evidence {
+            index: strongest.loss,
+            pieces: [strongest.cycles.first(), strongest.cycles.last()]
+                .into_iter()
+                .flatten()
+                .map(|cycle| cycle.piece())
+                .collect(),
+        }],
+        picture: Some(energies(&trends)),
+    }
+}
+
+fn trend<'c>(survey: &Survey, group: &[&'c Cycle], largest: f64) -> Option<Trend<'c>> {
+    // Loops of different speed differ for other reasons.
+    let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
+    let alike: Vec<&Cycle> =
+        group.iter().filter(|cycle| survey.similar_speed(branch(group[0]), branch(cycle))).copied().collect();
+    let step = alike.len().div_ceil(MOST).max(1);
+    let cycles: Vec<&Cycle> = alike.into_iter().step_by(step).collect();
+    let n = cycles.len();
+    let first = cycles.first()?;
+    if n < 2 || first.area < SMALLEST * largest {
+        return None;
+    }
+    // Loops that cross themselves lose no energy on the whole, but have an area.
+    let crosses = first.energy.abs() < 0.3 * first.area;
+    let energy = |cycle: &Cycle| if crosses { cycle.area } else { cycle.energy.abs() };
+    let mut slopes = Vec::with_capacity(n * (n - 1) / 2);
+    let mut falls = 0.0;
+    for i in 0..n {
+        for j in i + 1..n {
+            let change = energy(cycles[j]) - energy(cycles[i]);
+            slopes.push(change / (j - i) as f64);
+            falls -= if change.abs() > 0.0 { change.signum() } else { 0.0 };
+        }
+    }
+    let slope = noise::median(&mut slopes);
+    let scale = energy(first);
+    let deviation = first.energy_deviation.hypot(cycles[n - 1].energy_deviation) / scale;
+    let size = n as f64;
+    Some(Trend {
+        loss: -slope * (size - 1.0) / scale,
+        deviation,
+        falls,
+        variance: size * (size - 1.0) * (2.0 * size + 5.0) / 18.0,
+        cycles,
+    })
+}
+
+/// Energy over the number of the cycle, each kind of loop by itself.
+fn energies(trends: &[Trend]) -> Picture {
+    const SHOWN: usize = 6;
+    let mut kinds: Vec<&Trend> = trends.iter().collect();
+    kinds.sort_by(|a, b| b.cycles[0].area.total_cmp(&a.cycles[0].area));
+    let curve = |trend: &&Trend| PictureCurve {
+        label: format!(
+            "{:.3} to {:.3}",
+            Significant(trend.cycles[0].input.0),
+            Significant(trend.cycles[0].input.1)
+        ),
+        points: trend.cycles.iter().enumerate().map(|(k, cycle)| ((k + 1) as f64, cycle.area)).collect(),
+    };
+    Picture {
+        x_label: "cycle between the same inputs".into(),
+        y_label: "energy of the loop".into(),
+        curves: kinds.iter().take(SHOWN).map(curve).collect(),
+    }
+}

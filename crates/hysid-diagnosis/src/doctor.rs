@@ -1,0 +1,211 @@
+//! The data doctor: what in the data would mislead whoever fits a model to them, and what helps. Each complaint
+//! is a test of its own; silence means that nothing was found, not that there is nothing.
+
+mod clipping;
+mod closure;
+mod columns;
+mod creep;
+mod drift;
+mod lag;
+mod marks;
+mod repetition;
+mod sampling;
+mod start;
+
+use serde::Serialize;
+
+use super::branch::Survey;
+use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::data::unit;
+use hysid_core::error::Result;
+use hysid_core::significant::Significant;
+
+/// Complaints of one kind are told one by one up to this many.
+const TOLD: usize = 2;
+
+/// What may be wrong with data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ComplaintKind {
+    /// Repeated loops move slowly up or down.
+    Drift,
+    /// The output moves while the input stands still.
+    Creep,
+    /// The output comes a fixed time after the input, or before it.
+    Lag,
+    /// It does, by a time that depends on the speed.
+    LagChangesWithSpeed,
+    /// The output stands at the end of what was measured while the input goes on.
+    OutputClipped,
+    /// The input stands at the end of what was measured while the output goes on.
+    InputClipped,
+    /// Values that mark what was not measured, or spikes.
+    MissingValueMark,
+    /// Rows repeat the row before.
+    RepeatedRows,
+    /// A column keeps its value for a fixed number of rows.
+    HeldSamples,
+    /// A column has few different values.
+    CoarseResolution,
+    /// Time steps change within a record.
+    ChangingSamplingRate,
+    /// Rows are missing.
+    TimeGap,
+    /// Loops of a periodic input stay open.
+    UnclosedLoops,
+    /// The output falls as the input grows.
+    WrongSign,
+    /// The output looks like the command, the input like the answer.
+    SwappedColumns,
+    /// Few rows between turning points.
+    FewSamples,
+    /// Few turning points.
+    FewTurningPoints,
+    /// A record does not begin at rest, so that its memory at the beginning is not known.
+    UnknownStart,
+    /// A record's beginning is not that of a virgin specimen.
+    NotVirgin,
+}
+
+/// How much a complaint matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// Good to know.
+    Note,
+    /// Mend it first.
+    Warning,
+}
+
+/// Something in the data that would mislead.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Complaint {
+    /// What it is.
+    pub kind: ComplaintKind,
+    /// Name of the record; `None` for all of them together.
+    pub record: Option<String>,
+    /// How much it matters.
+    pub severity: Severity,
+    /// What was found, and what helps, in words.
+    pub statement: String,
+    /// The number that tells how much.
+    pub value: Option<f64>,
+    /// Its unit, where it has one that is known.
+    pub unit: Option<String>,
+    /// The rows that show it.
+    pub evidence: Vec<Piece>,
+}
+
+impl Complaint {
+    /// A complaint about all records together.
+    fn of_all(kind: ComplaintKind, severity: Severity, statement: String) -> Self {
+        Self { kind, record: None, severity, statement, value: None, unit: None, evidence: Vec::new() }
+    }
+
+    /// A complaint about rows of a record.
+    fn of_rows(kind: ComplaintKind, severity: Severity, statement: String, rows: Vec<Piece>) -> Self {
+        let record = rows.first().map(|piece| piece.record.clone());
+        Self { record, evidence: rows, ..Self::of_all(kind, severity, statement) }
+    }
+}
+
+/// Looks for all that may be wrong; warnings first.
+pub(crate) fn examine(
+    survey: &Survey,
+    cycles: &[Cycle],
+    findings: &[Finding],
+    delay: Option<&Delay>,
+) -> Vec<Complaint> {
+    let found = [
+        marks::complaints(survey.data),
+        lag::complaints(survey, delay),
+        drift::complaints(survey, cycles),
+        creep::complaints(survey),
+        clipping::complaints(survey),
+        repetition::complaints(survey),
+        sampling::complaints(survey),
+        closure::complaints(findings),
+        columns::complaints(survey),
+        start::complaints(survey),
+    ];
+    let mut told: Vec<Complaint> = Vec::new();
+    for complaint in found.into_iter().flatten() {
+        let alike = told.iter().filter(|other| other.kind == complaint.kind).count();
+        if alike < TOLD {
+            told.push(complaint);
+        } else if let Some(last) = told.iter_mut().rfind(|other| other.kind == complaint.kind) {
+            last.evidence.extend(complaint.evidence.into_iter().take(1));
+        }
+    }
+    told.sort_by_key(|complaint| std::cmp::Reverse(complaint.severity));
+    told
+}
+
+/// What of the values themselves should be known before any fit: marks of missing values, and clipped channels.
+///
+/// # Errors
+/// Data that nothing can be said about: a constant input or output, hardly any rows.
+pub fn before_a_fit(data: &Dataset) -> Result<Vec<Complaint>> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    let found = marks::complaints(data);
+    // Where the range is that of a mark, the ends of what was measured are not known.
+    if !found.is_empty() || !clipping::may_be(data) {
+        return Ok(found);
+    }
+    Ok(clipping::complaints(&Survey::new(data, &DiagnosisOptions::default())))
+}
+
+/// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
+/// turns, theory.md (10.21); `None` where the turning points do not tell.
+pub(crate) fn longest_lag(survey: &Survey) -> Option<f64> {
+    lag::longest(survey)
+}
+
+/// Units of the columns, as their names tell them.
+struct Units {
+    input: Option<String>,
+    output: Option<String>,
+    time: Option<String>,
+}
+
+impl Units {
+    fn of(survey: &Survey) -> Self {
+        let names = survey.data.names();
+        Self {
+            input: unit::of_column(&names.inputs[0]),
+            output: unit::of_column(&names.output),
+            time: names.time.as_deref().and_then(unit::of_column),
+        }
+    }
+
+    fn input(&self, value: f64) -> String {
+        format!("{:.3}{}", Significant(value), unit::suffix(self.input.as_deref()))
+    }
+
+    fn output(&self, value: f64) -> String {
+        format!("{:.3}{}", Significant(value), unit::suffix(self.output.as_deref()))
+    }
+
+    fn time(&self, value: f64) -> String {
+        format!("{:.3}{}", Significant(value), unit::suffix(self.time.as_deref()))
+    }
+
+    fn speed(&self, value: f64) -> String {
+        let unit = match (&self.input, &self.time) {
+            (Some(input), Some(time)) => format!(" {input}/{time}"),
+            _ => String::new(),
+        };
+        format!("{:.3}{unit}", Significant(value))
+    }
+
+    /// A lag in words.
+    fn behind(&self, lag: f64) -> String {
+        format!("{} {} the input", self.time(lag.abs()), if lag > 0.0 { "behind" } else { "ahead of" })
+    }
+}
+
+/// Rows of a record as evidence.
+fn piece(record: &Record, first: usize, last: usize) -> Piece {
+    Piece::of(record, (first, last))
+}

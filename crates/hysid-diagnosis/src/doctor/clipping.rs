@@ -1,0 +1,136 @@
+//! Clipping: a channel stands at the end of what its instrument shows while the other goes on. The saturation of a
+//! law is smooth, and leaves its extreme as soon as the input turns; a clipped channel repeats one value exactly, on
+//! both sides of the turning point, and comes to it abruptly.
+
+use super::{Complaint, ComplaintKind, Severity, Units, piece};
+use crate::Piece;
+use crate::branch::Survey;
+use hysid_core::data::record::{Dataset, Record};
+
+/// Rows that repeat the extreme.
+const FEWEST_ROWS: usize = 5;
+
+/// Way of the input on both sides of its turning point, as a share of its range.
+const GOES_ON: f64 = 0.01;
+
+/// The slope with which the extreme is reached, as a share of the slope from corner to corner.
+const ABRUPT: f64 = 0.2;
+
+/// A step to the extreme that no rounding leaves, in resolutions.
+const RESOLUTIONS: f64 = 20.0;
+
+/// Rows over which that slope is taken.
+const BEFORE: usize = 4;
+
+/// An output that goes there and back while the input stands, as a share of its range.
+const EXCURSION: f64 = 0.02;
+
+/// True if an extreme of the first input or of the output is repeated at all: a quick look before the survey.
+pub(super) fn may_be(data: &Dataset) -> bool {
+    let (input, output) = (data.input_range(0), data.output_range());
+    data.records().iter().any(|record| {
+        let repeats = |column: &[f64], value: f64| {
+            column.windows(FEWEST_ROWS).any(|run| run.iter().all(|v| *v == value))
+        };
+        let ends = |column: &[f64], (low, high): (f64, f64)| repeats(column, low) || repeats(column, high);
+        ends(&record.inputs()[0], input) || ends(record.output(), output)
+    })
+}
+
+pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+    let units = Units::of(survey);
+    let mut found = Vec::new();
+    for of_output in [true, false] {
+        for sign in [1.0, -1.0] {
+            let Some((rows, value, count)) = clipped(survey, of_output, sign) else {
+                continue;
+            };
+            let (kind, name, other, shown) = match of_output {
+                true => (ComplaintKind::OutputClipped, "output", "input", units.output(value)),
+                false => (ComplaintKind::InputClipped, "input", "output", units.input(value)),
+            };
+            let statement = format!(
+                "the {name} stands at {shown} for {count} rows while the {other} goes on: clipped by its instrument; measure with a \
+                 larger range, or blank the output of these rows"
+            );
+            found.push(Complaint {
+                value: Some(value),
+                unit: if of_output { units.output.clone() } else { units.input.clone() },
+                ..Complaint::of_rows(kind, Severity::Warning, statement, rows)
+            });
+        }
+    }
+    found
+}
+
+/// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped, the value, and the
+/// number of rows.
+fn clipped(survey: &Survey, of_output: bool, sign: f64) -> Option<(Vec<Piece>, f64, usize)> {
+    let range = if of_output { survey.output } else { survey.input };
+    let extreme = if sign > 0.0 { range.1 } else { range.0 };
+    let resolution = if of_output { resolution(survey) } else { 0.0 };
+    let mut pieces = Vec::new();
+    let mut count = 0;
+    for (number, record) in survey.data.records().iter().enumerate() {
+        let (x, y) = (&record.inputs()[0], record.output());
+        let column = if of_output { y } else { x };
+        let mut row = 0;
+        while row < column.len() {
+            let length = column[row..].iter().take_while(|value| **value == extreme).count();
+            let last = row + length.saturating_sub(1);
+            let is_clipped = length >= FEWEST_ROWS
+                && match of_output {
+                    true => output_is_clipped(survey, x, y, (row, last), resolution),
+                    false => there_and_back(survey, y, (row, last)),
+                };
+            if is_clipped {
+                pieces.push(piece(&survey.data.records()[number], row, last));
+                count += length;
+            }
+            row += length.max(1);
+        }
+    }
+    pieces.truncate(3);
+    (count > 0).then_some((pieces, extreme, count))
+}
+
+/// The smallest difference of two outputs.
+fn resolution(survey: &Survey) -> f64 {
+    let outputs = survey.data.records().iter().flat_map(Record::output);
+    let mut sorted: Vec<f64> = outputs.copied().filter(|y| !y.is_nan()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0);
+    steps.fold(f64::INFINITY, f64::min)
+}
+
+/// True if the output stands while the input turns, on both sides of its turning point, and came to its extreme
+/// abruptly: steeply, or by a step much larger than the resolution, where a rounded saturation comes by single ones.
+fn output_is_clipped(
+    survey: &Survey,
+    x: &[f64],
+    y: &[f64],
+    (first, last): (usize, usize),
+    resolution: f64,
+) -> bool {
+    let during = &x[first..=last];
+    let turned = |value: &f64| {
+        let (came, goes) = (value - x[first], value - x[last]);
+        came * goes > 0.0 && came.abs().min(goes.abs()) >= GOES_ON * survey.width()
+    };
+    let Some(before) = first.checked_sub(BEFORE) else {
+        return false;
+    };
+    let slope = ((y[first] - y[before]) / (x[first] - x[before])).abs();
+    // An output that jumps onto its extreme is switched, not clipped.
+    let jump = (y[first] - y[before]).abs() > 0.5 * survey.height();
+    let is_steep = slope > ABRUPT * survey.height() / survey.width();
+    let is_step = (y[first] - y[first - 1]).abs() > RESOLUTIONS * resolution;
+    during.iter().any(turned) && (is_steep || is_step) && !jump
+}
+
+/// True if the output goes somewhere and comes back, which no creep does.
+fn there_and_back(survey: &Survey, y: &[f64], (first, last): (usize, usize)) -> bool {
+    let ends = (y[first].min(y[last]), y[first].max(y[last]));
+    let limit = EXCURSION * survey.height() + 5.0 * survey.output_noise;
+    y[first..=last].iter().any(|value| *value > ends.1 + limit || *value < ends.0 - limit)
+}

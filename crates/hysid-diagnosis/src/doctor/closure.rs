@@ -1,0 +1,34 @@
+//! Loops of a periodic input that stay open, told as a trouble of the data.
+
+use super::{Complaint, ComplaintKind, Severity};
+use crate::{Finding, Property, Verdict};
+
+pub(super) fn complaints(findings: &[Finding]) -> Vec<Complaint> {
+    let verdict = |property| findings.iter().find(|finding| finding.property == property);
+    let Some(closure) = verdict(Property::LoopClosure).filter(|finding| finding.verdict == Verdict::No)
+    else {
+        return Vec::new();
+    };
+    let wears = verdict(Property::Deterioration).is_some_and(|finding| finding.verdict == Verdict::Yes);
+    let percent = 100.0 * closure.index.unwrap_or(0.0);
+    let why = if wears {
+        "the specimen deteriorates, which explains it"
+    } else {
+        "drift, creep, a memory that fades, or a specimen that has not settled; leave out the first cycles, or take the \
+         drift off"
+    };
+    let rows = closure.evidence.iter().flat_map(|evidence| evidence.pieces.iter().cloned()).take(3).collect();
+    vec![Complaint {
+        record: None,
+        value: Some(percent),
+        unit: Some("percent".into()),
+        ..Complaint::of_rows(
+            ComplaintKind::UnclosedLoops,
+            Severity::Note,
+            format!(
+                "a period of the input leaves the output {percent:.1} % of its range away from where it was: {why}"
+            ),
+            rows,
+        )
+    }]
+}

@@ -1,0 +1,94 @@
+//! Drift: both tips of a repeated loop move the same way, theory.md (10.23). Where a specimen deteriorates they
+//! move towards each other.
+
+use super::{Complaint, ComplaintKind, Severity, Units};
+use crate::branch::Survey;
+use crate::cycles::repeated;
+use crate::noise;
+use crate::{Cycle, Piece};
+
+/// A drift that matters, over all cycles of a kind: share of the range of the output.
+const EFFECT: f64 = 0.01;
+
+/// Fewest cycles of a kind, after the first, which still remembers what was before.
+const FEWEST: usize = 4;
+
+/// Cycles of a kind that are compared at most.
+const MOST: usize = 200;
+
+/// The slower tip moves this share of what the faster does.
+const TOGETHER: f64 = 0.4;
+
+/// Rises less falls, over their standard deviation.
+const STEADY: f64 = 2.6;
+
+/// How the tips of loops between two inputs move.
+struct Trend<'c> {
+    cycles: Vec<&'c Cycle>,
+    /// Over all cycles, both tips together; nought where they do not move together.
+    drift: f64,
+}
+
+pub(super) fn complaints(survey: &Survey, cycles: &[Cycle]) -> Vec<Complaint> {
+    let groups = repeated(survey, cycles);
+    let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(group)).collect();
+    // A tip is an extreme of many rows: its noise is a fraction of theirs.
+    let limit = (EFFECT * survey.height()).max(3.0 * survey.output_noise);
+    let drifting = |trend: &&Trend| trend.drift.abs() > limit;
+    let count = |trend: &Trend| trend.cycles.len();
+    let Some(longest) = trends.iter().filter(drifting).max_by_key(|trend| count(trend)) else {
+        return Vec::new();
+    };
+    let same_way: usize =
+        trends.iter().filter(drifting).filter(|t| t.drift * longest.drift > 0.0).map(count).sum();
+    if 2 * same_way <= trends.iter().map(count).sum() {
+        return Vec::new();
+    }
+    let units = Units::of(survey);
+    let (first, last) = (longest.cycles[0], longest.cycles[count(longest) - 1]);
+    let statement = format!(
+        "repeated loops move {} by {} over {} cycles, {:.1} % of the output's range: drift (of a sensor, of the mean load, or \
+         ratcheting); take it off, or fit with it in mind",
+        if longest.drift > 0.0 { "up" } else { "down" },
+        units.output(longest.drift.abs()),
+        count(longest),
+        100.0 * longest.drift.abs() / survey.height()
+    );
+    let rows = [first, last].map(|cycle| Piece { record: cycle.record.clone(), rows: cycle.rows });
+    vec![Complaint {
+        value: Some(longest.drift),
+        unit: units.output.clone(),
+        ..Complaint::of_rows(ComplaintKind::Drift, Severity::Warning, statement, rows.into())
+    }]
+}
+
+fn trend<'c>(group: &[&'c Cycle]) -> Option<Trend<'c>> {
+    let settled = &group[1..];
+    let cycles: Vec<&Cycle> = settled.iter().copied().step_by(settled.len().div_ceil(MOST).max(1)).collect();
+    if cycles.len() < FEWEST {
+        return None;
+    }
+    let tips =
+        |tip: fn(&Cycle) -> f64| movement(&cycles.iter().map(|cycle| tip(cycle)).collect::<Vec<f64>>());
+    let (low, high) = (tips(|cycle| cycle.output.0)?, tips(|cycle| cycle.output.1)?);
+    let together = low * high > 0.0 && low.abs().min(high.abs()) >= TOGETHER * low.abs().max(high.abs());
+    Some(Trend { cycles, drift: if together { 0.5 * (low + high) } else { 0.0 } })
+}
+
+/// How far values move from the first to the last along the median slope (Theil and Sen), if they do so steadily
+/// (Mann and Kendall); nought if not.
+fn movement(values: &[f64]) -> Option<f64> {
+    let n = values.len();
+    let mut slopes = Vec::with_capacity(n * (n - 1) / 2);
+    let mut rises = 0.0;
+    for (k, first) in values.iter().enumerate() {
+        for (ahead, second) in values[k + 1..].iter().enumerate() {
+            slopes.push((second - first) / (ahead + 1) as f64);
+            rises += if second == first { 0.0 } else { (second - first).signum() };
+        }
+    }
+    let (size, pairs) = (n as f64, slopes.len() as f64);
+    let deviation = (size * (size - 1.0) * (2.0 * size + 5.0) / 18.0).sqrt();
+    let steady = rises.abs() == pairs || rises.abs() > STEADY * deviation;
+    Some(if steady { noise::median(&mut slopes) * (size - 1.0) } else { 0.0 })
+}

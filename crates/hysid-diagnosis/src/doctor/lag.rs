@@ -1,0 +1,340 @@
+//! A lag between input and output. Around a turning point, the output of a rate-independent law is a smooth function
+//! of the input on either side, and continuous: whatever the law is, the time by which the output must be taken
+//! later for that to be so is the lag, theory.md (10.20) and (10.21). It is found at a single speed, and to
+//! fractions of a sample.
+
+mod turn;
+
+use turn::{Beside, Turn, Window};
+
+use super::{Complaint, ComplaintKind, Severity, Units};
+use crate::Delay;
+use crate::branch::Survey;
+
+/// Shares of the shorter branch that are taken around a turning point, the narrowest first.
+const SHARES: [f64; 7] = [0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2];
+
+/// Those of a first search.
+const FIRST: [f64; 2] = [0.1, 0.3];
+
+/// Turning points at least, and at most for one speed.
+const FEWEST: usize = 2;
+const MOST: usize = 24;
+
+/// Branches shorter than this share of the range of the input are left aside.
+const SHORTEST: f64 = 0.1;
+
+/// Speeds within this factor are one speed, and speeds that are looked at.
+const ONE_SPEED: f64 = 1.5;
+const MOST_SPEEDS: usize = 6;
+
+/// Parts of the turning points whose lags are compared.
+const PARTS: usize = 8;
+
+/// Lags are sought up to this share of the time of both branches.
+const LONGEST: f64 = 0.1;
+
+/// Windows agree within this many deviations.
+const AGREE: f64 = 1.5;
+
+/// The narrowest window that knows of a lag is no wider than this: wider ones alone cannot be told from a law that
+/// bends.
+const NARROW: f64 = 0.1;
+
+/// A window whose lag scatters by this share of what was searched knows nothing of it.
+const BLIND: f64 = 0.05;
+
+/// A lag is so many deviations from none, and this share of the time between rows.
+const CLEAR: f64 = 10.0;
+const SHORTEST_STEP: f64 = 0.1;
+
+/// By how much the logarithm of the likelihood must be greater than without a lag.
+const LIKELIER: f64 = 12.0;
+
+/// A remainder up to this many times the noise is noise; beyond it is the law's, and tells as little as this
+/// many rows do.
+const NOISE: f64 = 1.1;
+const ROWS_OF_A_LAW: f64 = 10.0;
+
+/// Numbers that are fitted for each turning point.
+const FREE: usize = 7;
+
+/// Lags of several speeds agree within this share; a speed that is to confirm a lag knows it within the other.
+const SAME: f64 = 0.1;
+const CONFIRMS: f64 = 0.25;
+
+/// The lag at one speed.
+#[derive(Debug, Clone, PartialEq)]
+struct Lag {
+    /// By which the output comes after the input, in the unit of time; negative if before.
+    time: f64,
+    /// Its standard deviation, from the scatter between turning points and between windows.
+    deviation: f64,
+    /// Way of the input for time.
+    speed: f64,
+    /// Time between rows.
+    step: f64,
+    /// Logarithm of the likelihood of a lag over that of a step at the turning points or of a part in proportion to
+    /// the rate, theory.md (10.22).
+    margin: f64,
+}
+
+impl Lag {
+    /// True if there is one.
+    fn is_clear(&self) -> bool {
+        self.time.abs() > (CLEAR * self.deviation).max(SHORTEST_STEP * self.step) && self.margin > LIKELIER
+    }
+
+    fn agrees(&self, other: &Lag, deviations: f64, share: f64) -> bool {
+        (self.time - other.time).abs()
+            <= deviations * self.deviation.hypot(other.deviation) + share * self.time.abs()
+    }
+}
+
+/// What is said about a lag: of whole branches at several speeds, if a delay makes them agree, which know it better
+/// than their ends do; otherwise of turning points.
+pub(super) fn complaints(survey: &Survey, delay: Option<&Delay>) -> Vec<Complaint> {
+    match delay {
+        Some(delay) => vec![between_speeds(survey, delay)],
+        None => at_turning_points(survey),
+    }
+}
+
+/// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
+pub(super) fn longest(survey: &Survey) -> Option<f64> {
+    const SURE: f64 = 3.0;
+    let turns = turns(survey);
+    let lag = at_one_speed(survey, speeds(&turns).first()?)?;
+    Some(lag.time.abs() + SURE * lag.deviation)
+}
+
+/// A delay that makes all speeds agree, theory.md (10.14).
+fn between_speeds(survey: &Survey, delay: &Delay) -> Complaint {
+    let units = Units::of(survey);
+    let statement = format!(
+        "the output is {}, the same at all speeds, and what looks like rate dependence goes with it; shift the output by {} to {} \
+         time before anything is fitted",
+        units.behind(delay.time),
+        units.time(delay.time.abs()),
+        if delay.time > 0.0 { "an earlier" } else { "a later" },
+    );
+    Complaint {
+        value: Some(delay.time),
+        unit: units.time,
+        ..Complaint::of_all(ComplaintKind::Lag, Severity::Warning, statement)
+    }
+}
+
+fn at_turning_points(survey: &Survey) -> Vec<Complaint> {
+    let turns = turns(survey);
+    let speeds = speeds(&turns);
+    let several = speeds.len() > 1;
+    let lags: Vec<Lag> = speeds.into_iter().filter_map(|turns| at_one_speed(survey, turns)).collect();
+    let clear: Vec<&Lag> = lags.iter().filter(|lag| lag.is_clear()).collect();
+    let Some(sharpest) = clear.iter().copied().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
+        return Vec::new();
+    };
+    let units = Units::of(survey);
+    let time = |time: f64| units.time(time);
+    if let Some(other) = lags.iter().find(|lag| !sharpest.agrees(lag, 3.0, SAME)) {
+        let (slow, fast) = if sharpest.speed < other.speed { (sharpest, other) } else { (other, sharpest) };
+        let statement = format!(
+            "around turning points the output is {} at a speed of {}, and {} at {}: not one delay, so the speed itself \
+             matters",
+            units.behind(slow.time),
+            units.speed(slow.speed),
+            units.behind(fast.time),
+            units.speed(fast.speed)
+        );
+        return vec![Complaint::of_all(ComplaintKind::LagChangesWithSpeed, Severity::Note, statement)];
+    }
+    let knows = |lag: &&Lag| lag.deviation <= CONFIRMS * sharpest.time.abs();
+    if several && lags.iter().filter(knows).count() < 2 {
+        return Vec::new();
+    }
+    let weight = |lag: &Lag| lag.deviation.max(1e-6 * lag.step).powi(-2);
+    let weights: f64 = clear.iter().map(|lag| weight(lag)).sum();
+    let value = clear.iter().map(|lag| weight(lag) * lag.time).sum::<f64>() / weights;
+    let deviation = weights.powf(-0.5).max(1e-3 * value.abs());
+    let what = match (several, value > 0.0) {
+        (true, true) => {
+            "the same at all speeds: a delay of the output, which looks like rate dependence".to_string()
+        }
+        (true, false) => {
+            "the same at all speeds: a delay of the input, which looks like rate dependence".to_string()
+        }
+        (false, true) => {
+            "a delay or a slow sensor (runs at other speeds tell whether it is a constant time)".to_string()
+        }
+        (false, false) => "a delay of the input, or a viscous part (runs at other speeds tell)".to_string(),
+    };
+    let statement = format!(
+        "the output is {} (± {}), {what}; shift the output by {} to {} time before anything is fitted",
+        units.behind(value),
+        time(2.0 * deviation),
+        time(value.abs()),
+        if value > 0.0 { "an earlier" } else { "a later" },
+    );
+    vec![Complaint {
+        value: Some(value),
+        unit: units.time.clone(),
+        ..Complaint::of_all(ComplaintKind::Lag, Severity::Warning, statement)
+    }]
+}
+
+/// Turning points whose lag is found together.
+struct Turns<'t, 'd> {
+    turns: Vec<&'t Turn<'d>>,
+    windows: Vec<Window>,
+}
+
+impl<'t, 'd> Turns<'t, 'd> {
+    fn new(turns: &[&'t Turn<'d>], share: f64, lags: (f64, f64)) -> Self {
+        let (turns, windows) =
+            turns.iter().filter_map(|turn| Some((*turn, turn.window(share, lags)?))).unzip();
+        Self { turns, windows }
+    }
+
+    fn remainder(&self, beside: Beside) -> f64 {
+        self.turns.iter().zip(&self.windows).map(|(turn, window)| turn.remainder(window, beside)).sum()
+    }
+
+    fn lag(&self, centre: f64, reach: f64) -> f64 {
+        lowest(&|lag| self.remainder(Beside::Lag(lag)), centre, reach)
+    }
+
+    /// The lag and its deviation, from that of parts of the turning points.
+    fn lag_with_deviation(&self, centre: f64, reach: f64) -> (f64, f64) {
+        let time = self.lag(centre, reach);
+        let parts = self.turns.len().min(PARTS);
+        let part = |number: usize| {
+            let of_part = |lag: f64| -> f64 {
+                let pairs = self.turns.iter().zip(&self.windows).skip(number).step_by(parts);
+                pairs.map(|(turn, window)| turn.remainder(window, Beside::Lag(lag))).sum()
+            };
+            lowest(&of_part, time, 0.6 * reach)
+        };
+        let squares: f64 = (0..parts).map(|number| (part(number) - time).powi(2)).sum();
+        // The scatter of few is not well known.
+        let few = 1.0 + 2.0 / (parts - 1) as f64;
+        (time, few * (squares / (parts * (parts - 1)) as f64).sqrt())
+    }
+
+    /// Rows beyond those that the fit needs.
+    fn rows(&self) -> f64 {
+        self.windows.iter().map(|window| window.len().saturating_sub(FREE)).sum::<usize>() as f64
+    }
+
+    /// True if a lag leaves no more than the noise, with what it may be larger by chance.
+    fn leaves_noise(&self, left: f64, noise: f64) -> bool {
+        let rows = self.rows();
+        left <= rows * (NOISE * noise).powi(2) * (1.0 + 2.0 * (2.0 / rows).sqrt())
+    }
+
+    /// Logarithm of the likelihood ratio of a lag, theory.md (10.22).
+    fn margin(&self, lag: f64, noise: f64) -> f64 {
+        let left = self.remainder(Beside::Lag(lag));
+        let independent = if self.leaves_noise(left, noise) { self.rows() } else { ROWS_OF_A_LAW };
+        let without = self.remainder(Beside::Step).min(self.remainder(Beside::Rate));
+        0.5 * independent * (without / left.max(f64::MIN_POSITIVE)).max(f64::MIN_POSITIVE).ln()
+    }
+}
+
+/// All turning points between long branches, the slowest first.
+fn turns<'d>(survey: &Survey<'d>) -> Vec<Turn<'d>> {
+    let mut turns: Vec<Turn> = survey
+        .branches
+        .windows(2)
+        .filter(|pair| pair[0].record == pair[1].record)
+        .filter(|pair| pair[0].travel().min(pair[1].travel()) >= SHORTEST * survey.width())
+        .filter_map(|pair| Turn::between(survey, &pair[0], &pair[1]))
+        .collect();
+    turns.sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    turns
+}
+
+/// Those of each speed.
+fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
+    let mut speeds = Vec::new();
+    let mut rest = turns;
+    while let Some(slowest) = rest.first() {
+        let alike = rest.partition_point(|turn| turn.speed <= ONE_SPEED * slowest.speed);
+        let (alike, faster) = rest.split_at(alike);
+        if alike.len() >= FEWEST {
+            speeds.push(alike);
+        }
+        rest = faster;
+    }
+    let every = speeds.len().div_ceil(MOST_SPEEDS).max(1);
+    speeds.into_iter().step_by(every).collect()
+}
+
+fn at_one_speed(survey: &Survey, turns: &[Turn]) -> Option<Lag> {
+    let turns: Vec<&Turn> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
+    let shortest = turns.iter().map(|turn| turn.duration()).fold(f64::INFINITY, f64::min);
+    let reach = LONGEST * shortest;
+    let first = first_search(&turns, reach)?;
+    let mut found: Vec<(Lag, f64)> = Vec::new();
+    for share in SHARES {
+        let near = Turns::new(&turns, share, (first, first));
+        if near.turns.len() < FEWEST || near.turns.len() * 2 < turns.len() {
+            continue;
+        }
+        let (time, deviation) = near.lag_with_deviation(first, 0.5 * reach);
+        let speed = turns[turns.len() / 2].speed;
+        if deviation < BLIND * reach {
+            found.push((Lag { time, deviation, speed, step: turns[0].step(), margin: 0.0 }, share));
+        }
+    }
+    if found.first()?.1 > NARROW {
+        return None;
+    }
+    let chosen = widest(&found);
+    let beside = if chosen > 0 { chosen - 1 } else { 1 };
+    let (mut lag, share) = found.get(chosen)?.clone();
+    let other = found.get(beside).map_or(lag.time, |(other, _)| other.time);
+    lag.deviation = lag.deviation.hypot(0.5 * (lag.time - other));
+    lag.margin = Turns::new(&turns, share, (lag.time, lag.time)).margin(lag.time, survey.output_noise);
+    Some(lag)
+}
+
+/// The widest of windows that agrees with all narrower ones.
+fn widest(found: &[(Lag, f64)]) -> usize {
+    let agrees = |wide: usize| found[..wide].iter().all(|(lag, _)| lag.agrees(&found[wide].0, AGREE, 0.0));
+    (1..found.len()).take_while(|&wide| agrees(wide)).last().unwrap_or(0)
+}
+
+/// The lag to begin with: of those found in wide and in narrow windows, and none, the one that leaves least.
+fn first_search(turns: &[&Turn], reach: f64) -> Option<f64> {
+    let mut found = vec![0.0];
+    let mut narrowest = None;
+    for share in FIRST {
+        let near = Turns::new(turns, share, (0.0, 0.0));
+        if near.turns.len() < FEWEST {
+            continue;
+        }
+        let lag = near.lag(0.0, reach);
+        // At the end of what was searched there is no valley.
+        if lag.abs() < 0.95 * reach {
+            found.push(lag);
+        }
+        narrowest = narrowest.or(Some(share));
+    }
+    let ends = found.iter().fold((0.0, 0.0), |(a, b): (f64, f64), &lag| (a.min(lag), b.max(lag)));
+    let near = Turns::new(turns, narrowest?, ends);
+    let left = |lag: &f64| near.remainder(Beside::Lag(*lag));
+    found.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)))
+}
+
+/// Where a function is lowest within `centre ± reach`: the best of a few places, again and again around it.
+fn lowest(function: &impl Fn(f64) -> f64, mut centre: f64, mut reach: f64) -> f64 {
+    const PLACES: i32 = 4;
+    const ROUNDS: usize = 8;
+    for _ in 0..ROUNDS {
+        let place = |k: i32| centre + reach * f64::from(k) / f64::from(PLACES);
+        let values: Vec<(f64, f64)> = (-PLACES..=PLACES).map(|k| (place(k), function(place(k)))).collect();
+        centre = values.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(centre, |best| best.0);
+        reach *= 0.3;
+    }
+    centre
+}

@@ -1,0 +1,128 @@
+//! How the data were sampled: gaps, changing time steps, too few rows for a cycle, too few turning points.
+
+use super::{Complaint, ComplaintKind, Severity, Units, piece};
+use crate::branch::Survey;
+
+/// A step so many times those on both sides of it is a gap.
+const GAP: f64 = 5.0;
+
+/// Of the steps, a tenth are shorter and a tenth longer than two that differ by this factor.
+const CHANGING: f64 = 1.5;
+
+/// Rows from turning point to turning point.
+const FEWEST_ROWS: usize = 10;
+
+/// Branches longer than this share of the range of the input are counted.
+const LONG: f64 = 0.2;
+
+/// Turning points.
+const FEWEST_TURNS: usize = 4;
+
+pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+    let mut found = time_steps(survey);
+    found.extend(rows_of_a_branch(survey));
+    found.extend(turning_points(survey));
+    found
+}
+
+fn time_steps(survey: &Survey) -> Vec<Complaint> {
+    let units = Units::of(survey);
+    let mut found = Vec::new();
+    for (number, record) in survey.data.records().iter().enumerate() {
+        let Some(time) = record.time() else {
+            continue;
+        };
+        let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let is_gap = |k: &usize| steps[*k] > GAP * steps[k - 1].max(steps[k + 1]);
+        let gaps: Vec<usize> = (1..steps.len().saturating_sub(1)).filter(is_gap).collect();
+        if let Some(&longest) = gaps.iter().max_by(|a, b| steps[**a].total_cmp(&steps[**b])) {
+            let statement = format!(
+                "{} where rows are missing, the longest {} at {}: what the input did there the memory does not know; make them \
+                 records of their own, or fill the input in",
+                match gaps.len() {
+                    1 => "a gap".to_string(),
+                    n => format!("{n} gaps"),
+                },
+                units.time(steps[longest]),
+                units.time(time[longest])
+            );
+            found.push(Complaint {
+                value: Some(steps[longest]),
+                unit: units.time.clone(),
+                ..Complaint::of_rows(
+                    ComplaintKind::TimeGap,
+                    Severity::Warning,
+                    statement,
+                    vec![piece(&survey.data.records()[number], longest, longest + 1)],
+                )
+            });
+        }
+        let mut sorted = steps;
+        sorted.sort_by(f64::total_cmp);
+        let (short, long) = (sorted.get(sorted.len() / 10), sorted.get(sorted.len() * 9 / 10));
+        if let (Some(&short), Some(&long)) = (short, long)
+            && long > CHANGING * short
+        {
+            let statement = format!(
+                "time steps change from {} to {}: rows count more where they are dense; rates are taken on the stamps as they are",
+                units.time(short),
+                units.time(long)
+            );
+            found.push(Complaint {
+                value: Some(long / short),
+                ..Complaint::of_rows(
+                    ComplaintKind::ChangingSamplingRate,
+                    Severity::Note,
+                    statement,
+                    vec![piece(&survey.data.records()[number], 0, record.len() - 1)],
+                )
+            });
+        }
+    }
+    found
+}
+
+fn rows_of_a_branch(survey: &Survey) -> Option<Complaint> {
+    let mut counts: Vec<usize> = survey
+        .branches
+        .iter()
+        .filter(|branch| branch.travel() >= LONG * survey.width())
+        .map(|branch| branch.rows.len() - 1)
+        .collect();
+    counts.sort_unstable();
+    let typical = *counts.get(counts.len() / 2)?;
+    (typical < FEWEST_ROWS).then(|| Complaint {
+        value: Some(typical as f64),
+        ..Complaint::of_all(
+            ComplaintKind::FewSamples,
+            Severity::Warning,
+            format!(
+                "there are {typical} rows from turning point to turning point: too few to see the shape of a branch; sample {} \
+                 times as fast",
+                (2 * FEWEST_ROWS).div_ceil(typical.max(1))
+            ),
+        )
+    })
+}
+
+fn turning_points(survey: &Survey) -> Option<Complaint> {
+    let units = Units::of(survey);
+    let found = survey.branches.len().saturating_sub(survey.data.records().len());
+    (found < FEWEST_TURNS).then(|| Complaint {
+        value: Some(found as f64),
+        ..Complaint::of_all(
+            ComplaintKind::FewTurningPoints,
+            Severity::Warning,
+            format!(
+                "the input turns {} only (by more than {}): hardly any memory to learn from; measure several cycles of \
+                 different amplitude",
+                match found {
+                    1 => "once".to_string(),
+                    2 => "twice".to_string(),
+                    n => format!("{n} times"),
+                },
+                units.input(survey.smallest_reversal)
+            ),
+        )
+    })
+}

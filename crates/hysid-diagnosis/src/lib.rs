@@ -1,0 +1,324 @@
+//! What kind of hysteresis is this? Properties of a measured record or of a fitted model, each with its
+//! evidence.
+//!
+//! The input is cut into branches between turning points; a property is a statement about branches that
+//! must coincide. Each test compares such branches, and says *yes*, *no*, or that the record does not
+//! contain what would tell. Definitions: theory.md section 10.
+//!
+//! ```
+//! use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
+//! use hysid::plant::Specimen;
+//! let joint = Specimen::named("reinforced-concrete-joint").unwrap().train();
+//! let diagnosis = Diagnosis::of(&joint, &DiagnosisOptions::default())?;
+//! assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
+//! # Ok::<(), hysid::Error>(())
+//! ```
+
+mod advice;
+mod branch;
+mod comparison;
+mod congruency;
+pub mod cycles;
+pub mod delay;
+mod deterioration;
+mod doctor;
+mod loop_closure;
+mod masing;
+pub mod model;
+mod noise;
+mod odd_symmetry;
+mod opening;
+mod orientation;
+mod rate_dependence;
+mod saturation;
+mod smoothing;
+mod static_hysteresis;
+mod wiping_out;
+
+use std::fmt;
+
+use serde::Serialize;
+
+pub use advice::Advice;
+use branch::Survey;
+pub use cycles::Cycle;
+pub use delay::Delay;
+pub use doctor::{Complaint, ComplaintKind, Severity, before_a_fit};
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::error::Result;
+pub use model::ModelDiagnosis;
+
+/// Fewest scored rows that say anything about hysteresis.
+const FEWEST_ROWS: usize = 8;
+
+/// How data are diagnosed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiagnosisOptions {
+    /// Reversals of the input below this share of its range are no turning points.
+    pub smallest_reversal: f64,
+    /// Whether noise is smoothed out of branches before they are compared.
+    pub smoothing: bool,
+}
+
+impl Default for DiagnosisOptions {
+    fn default() -> Self {
+        Self { smallest_reversal: 0.02, smoothing: true }
+    }
+}
+
+/// A property that hysteresis may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Property {
+    /// There is a loop however slowly the input goes.
+    StaticHysteresis,
+    /// Loops are passed clockwise, `∮ y dx > 0`, as those of friction are.
+    Orientation,
+    /// The speed of the input matters.
+    RateDependence,
+    /// A closed excursion of the input leaves no trace (return-point memory).
+    WipingOut,
+    /// Minor loops between the same inputs have the same shape.
+    Congruency,
+    /// All branches are the same curve, magnified.
+    Masing,
+    /// A branch turned by half a turn is the opposite branch.
+    OddSymmetry,
+    /// The output hardly grows at the ends of the input.
+    Saturation,
+    /// Loops shrink when they are repeated.
+    Deterioration,
+    /// A period of the input brings the output back to where it was.
+    LoopClosure,
+}
+
+impl Property {
+    /// All properties, in the order in which they are reported.
+    pub const ALL: [Self; 10] = [
+        Self::StaticHysteresis,
+        Self::Orientation,
+        Self::RateDependence,
+        Self::WipingOut,
+        Self::Congruency,
+        Self::Masing,
+        Self::OddSymmetry,
+        Self::Saturation,
+        Self::Deterioration,
+        Self::LoopClosure,
+    ];
+
+    /// Its name, in words joined by hyphens.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StaticHysteresis => "static-hysteresis",
+            Self::Orientation => "orientation",
+            Self::RateDependence => "rate-dependence",
+            Self::WipingOut => "wiping-out",
+            Self::Congruency => "congruency",
+            Self::Masing => "masing",
+            Self::OddSymmetry => "odd-symmetry",
+            Self::Saturation => "saturation",
+            Self::Deterioration => "deterioration",
+            Self::LoopClosure => "loop-closure",
+        }
+    }
+}
+
+impl fmt::Display for Property {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// What a test of a property says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+pub enum Verdict {
+    /// It has the property.
+    #[serde(rename = "yes")]
+    Yes,
+    /// It does not.
+    #[serde(rename = "no")]
+    No,
+    /// The data do not tell.
+    #[serde(rename = "not testable")]
+    NotTestable,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::NotTestable => "not testable",
+        })
+    }
+}
+
+/// A property and what the data say about it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// The property.
+    #[serde(rename = "name")]
+    pub property: Property,
+    /// What the test says.
+    pub verdict: Verdict,
+    /// The measure that decides, a share without unit.
+    pub index: Option<f64>,
+    /// The index where it decides otherwise.
+    pub threshold: Option<f64>,
+    /// The index that noise alone would give.
+    pub noise: Option<f64>,
+    /// How many comparisons it is the largest of.
+    pub comparisons: usize,
+    /// What was found, in words.
+    pub statement: String,
+    /// Where the data do not tell: the experiment that would.
+    pub experiment: Option<String>,
+    /// The rows that show it, the strongest first.
+    pub evidence: Vec<Evidence>,
+    /// A drawing of the strongest evidence.
+    #[serde(skip)]
+    pub picture: Option<Picture>,
+}
+
+impl Finding {
+    /// The data do not tell.
+    fn not_testable(property: Property, statement: impl Into<String>, experiment: impl Into<String>) -> Self {
+        Self {
+            property,
+            verdict: Verdict::NotTestable,
+            index: None,
+            threshold: None,
+            noise: None,
+            comparisons: 0,
+            statement: statement.into(),
+            experiment: Some(experiment.into()),
+            evidence: Vec::new(),
+            picture: None,
+        }
+    }
+}
+
+/// Pieces of data that were compared, and their difference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evidence {
+    /// Their difference, in the unit of the index.
+    pub index: f64,
+    /// The pieces.
+    pub pieces: Vec<Piece>,
+}
+
+/// Rows of a record.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Piece {
+    /// Name of the record.
+    pub record: String,
+    /// First and last row, counted from 0 at the beginning of the record.
+    pub rows: (usize, usize),
+}
+
+impl Piece {
+    fn of(record: &Record, rows: (usize, usize)) -> Self {
+        Self { record: record.name().into(), rows }
+    }
+}
+
+/// Curves that show a verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// What is drawn to the right; empty for the input.
+    pub x_label: String,
+    /// What is drawn upwards; empty for the output.
+    pub y_label: String,
+    /// The curves.
+    pub curves: Vec<PictureCurve>,
+}
+
+/// A curve of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureCurve {
+    /// What it is; empty for what is there for comparison only.
+    pub label: String,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Everything that the data say about their hysteresis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Diagnosis {
+    /// The properties, in the order of [`Property::ALL`].
+    pub properties: Vec<Finding>,
+    /// Standard deviation of the noise of the output, in its unit.
+    pub output_noise: f64,
+    /// Standard deviation of the noise of the first input, in its unit.
+    pub input_noise: f64,
+    /// The delay of the output that makes several speeds agree, if one does.
+    pub delay: Option<Delay>,
+    /// Turning points of the first input.
+    pub turning_points: usize,
+    /// The rows where they are, record by record, counted from 0 at the beginning of each.
+    #[serde(skip)]
+    pub turning_rows: Vec<Vec<usize>>,
+    /// Reversals of the first input below this are none, in its unit.
+    #[serde(skip)]
+    pub smallest_reversal: f64,
+    /// Cycles of the first input with an output, in the order of the data.
+    pub cycles: Vec<Cycle>,
+    /// What in the data would mislead a fit, warnings first.
+    pub doctor: Vec<Complaint>,
+    /// The simplest model that can hold what was found.
+    pub advice: Advice,
+}
+
+impl Diagnosis {
+    /// Diagnoses measured data.
+    ///
+    /// # Errors
+    /// Data that nothing can be said about: a constant input or output, hardly any rows.
+    pub fn of(data: &Dataset, options: &DiagnosisOptions) -> Result<Self> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let survey = Survey::new(data, options);
+        let cycles = cycles::cycles(&survey);
+        let (rate, delay) = rate_dependence::test(&survey);
+        // Branches of different speed say nothing about memory where the speed matters, or may matter.
+        let equal_speed = data.has_time() && rate.verdict != Verdict::No;
+        let properties = vec![
+            static_hysteresis::test(&survey, || doctor::longest_lag(&survey)),
+            orientation::test(&survey),
+            rate,
+            wiping_out::test(&survey, equal_speed),
+            congruency::test(&survey, equal_speed),
+            masing::test(&survey, equal_speed),
+            odd_symmetry::test(&survey),
+            saturation::test(&survey),
+            deterioration::test(&survey, &cycles),
+            loop_closure::test(&survey, &cycles),
+        ];
+        let turning_rows = survey.turning_rows();
+        Ok(Self {
+            doctor: doctor::examine(&survey, &cycles, &properties, delay.as_ref()),
+            advice: advice::advise(&properties, delay.as_ref()),
+            properties,
+            delay,
+            output_noise: survey.output_noise,
+            input_noise: survey.input_noise,
+            turning_points: turning_rows.iter().map(Vec::len).sum(),
+            turning_rows,
+            smallest_reversal: survey.smallest_reversal,
+            cycles,
+        })
+    }
+
+    /// The finding on a property.
+    pub fn finding(&self, property: Property) -> &Finding {
+        self.properties
+            .iter()
+            .find(|finding| finding.property == property)
+            .expect("a diagnosis has every property")
+    }
+
+    /// The verdict on a property.
+    pub fn verdict(&self, property: Property) -> Verdict {
+        self.finding(property).verdict
+    }
+}

@@ -1,0 +1,106 @@
+//! What kind of hysteresis has a fitted model learnt? The properties of measured data, found by driving the
+//! model with probes chosen for each, and what its equations and weights say beside that.
+//!
+//! A probe stays within the input range and the rates that the model was trained on; further inputs are held in
+//! the middle of theirs. What is a property of memory is asked at a vanishing speed. Definitions: theory.md,
+//! end of section 10.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use hysid::options::classical::Rival;
+//! use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
+//! use hysid::options::{ModelName, Request};
+//! use hysid::fit::identify;
+//! use hysid::plant::Specimen;
+//! let data = Specimen::named("terfenol-actuator").unwrap().train();
+//! let request = Request::of(ModelName::Rival(Rival::PrandtlIshlinskii), None, 1);
+//! let fitted = identify(&data, &request, &mut |_| ControlFlow::Continue(()))?;
+//! let diagnosis = ModelDiagnosis::of(&fitted.model)?;
+//! assert_eq!(diagnosis.verdict(Property::Masing), Verdict::Yes);
+//! assert!(diagnosis.memory.return_point_memory.holds);
+//! # Ok::<(), hysid::Error>(())
+//! ```
+
+mod bound;
+mod certificate;
+mod direct;
+mod loop_widths;
+mod neurons;
+mod probe;
+mod properties;
+mod structure;
+#[cfg(test)]
+mod tests;
+mod weights;
+
+use serde::Serialize;
+
+use super::{Finding, Property, Verdict};
+pub use certificate::{Basis, Bound, Claim, MemoryCertificate, Refinement};
+use hysid_core::error::Result;
+use hysid_core::model::Model;
+use hysid_core::options::ModelName;
+pub use loop_widths::{LoopWidths, WidthAtSpeed};
+pub use neurons::{Neuron, NeuronKind};
+use probe::Probe;
+pub use probe::{Probing, TimeScale};
+pub use structure::Promise;
+pub use weights::{Criterion, WeightDiagnosis};
+
+/// Everything that can be said about the hysteresis of a fitted model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelDiagnosis {
+    /// Which model it is.
+    pub model: ModelName,
+    /// What it was driven with.
+    pub probing: Probing,
+    /// The properties, in the order of [`Property::ALL`], found by driving it.
+    pub properties: Vec<Finding>,
+    /// What its equations promise.
+    pub promises: Vec<Promise>,
+    /// What its weights say; `None` for a classical law.
+    pub weights: Option<WeightDiagnosis>,
+    /// Widths of its loops, the paper's `K` and `P`.
+    pub loop_widths: LoopWidths,
+    /// What is certain of its memory.
+    pub memory: MemoryCertificate,
+}
+
+impl ModelDiagnosis {
+    /// Diagnoses a fitted model.
+    ///
+    /// # Errors
+    /// A model that was trained on no range of the input, or whose output is the same everywhere.
+    pub fn of(model: &Model) -> Result<Self> {
+        let probe = Probe::new(model)?;
+        let properties = properties::findings(&probe)?;
+        let promises = structure::promises(&probe, &properties);
+        let weights = WeightDiagnosis::of(&probe, &properties)?;
+        let promised = |property| {
+            promises.iter().find(|promise| promise.property == property).map(|promise| promise.verdict)
+        };
+        let memory = MemoryCertificate::of(&probe, &properties, &promised, weights.as_ref())?;
+        Ok(Self {
+            model: model.name(),
+            probing: probe.description(),
+            loop_widths: LoopWidths::of(&probe)?,
+            properties,
+            promises,
+            weights,
+            memory,
+        })
+    }
+
+    /// The finding on a property.
+    pub fn finding(&self, property: Property) -> &Finding {
+        self.properties
+            .iter()
+            .find(|finding| finding.property == property)
+            .expect("a diagnosis has every property")
+    }
+
+    /// The verdict on a property.
+    pub fn verdict(&self, property: Property) -> Verdict {
+        self.finding(property).verdict
+    }
+}

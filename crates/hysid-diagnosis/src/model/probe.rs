@@ -1,0 +1,284 @@
+//! Driving a model: paths of its input within the range that it was trained on, at speeds within the trained
+//! rates, theory.md (10.30).
+
+use serde::Serialize;
+
+use hysid_core::data::rate::RateMethod;
+use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::error::{Error, Result};
+use hysid_core::model::{Body, Model};
+use hysid_core::network::Layout;
+
+/// Rows from the middle of the range to its end. Every tenth of the way falls on a row, and a branch over the
+/// whole range has few enough rows that none are averaged.
+pub(super) const STEPS: u32 = 160;
+
+/// A vanishing speed, as a share of the fastest.
+const VANISHING: f64 = 1e-6;
+
+/// The fastest speed is so many times the middle one.
+const FASTEST: f64 = 3.0;
+
+/// Speeds that a model is driven at, as shares of the middle one.
+const TRIED: [f64; 4] = [0.1, 0.3, 1.0, FASTEST];
+
+/// Trained rates to one side that are below this share of those to the other side set no limit.
+const ONE_SIDED: f64 = 0.1;
+
+/// Where the speeds of probing come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeScale {
+    /// The rates of training, of which the largest is the fastest speed.
+    TrainedRates,
+    /// The median of the relaxation times: the middle speed passes half the range in it. No rates are
+    /// stored.
+    RelaxationTimes,
+    /// None: the model sees neither rate nor time.
+    None,
+}
+
+/// What a model was driven with.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Probing {
+    /// Smallest and largest input, in its unit: the trained range.
+    pub input: (f64, f64),
+    /// Values at which the further inputs were held: the middle of their trained ranges.
+    pub held: Vec<f64>,
+    /// Where the speeds come from.
+    pub time_scale: TimeScale,
+    /// Speed of all probes that do not ask for the rate, next to 0, in the unit of the input over that of time.
+    pub vanishing_speed: f64,
+    /// Speeds of those that do.
+    pub speeds: Vec<f64>,
+    /// What was outside of what the model was trained on, in words, if anything had to be.
+    pub outside: Option<String>,
+}
+
+/// A way of the input through turning points.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Path {
+    pub x: Vec<f64>,
+    /// Row of each turning point, the first row and the last with them.
+    pub turns: Vec<usize>,
+}
+
+/// A model with what it takes to drive it.
+#[derive(Debug)]
+pub(super) struct Probe<'m> {
+    pub model: &'m Model,
+    pub centre: f64,
+    pub half: f64,
+    pub speeds: Speeds,
+    held: Vec<f64>,
+}
+
+/// Speeds, in the unit of the input over that of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Speeds {
+    pub scale: TimeScale,
+    pub vanishing: f64,
+    pub middle: f64,
+    /// Rates of one sign only were trained.
+    one_sided: bool,
+}
+
+impl Speeds {
+    fn of(model: &Model, half: f64) -> Self {
+        let rate = model.trained_ranges().rate.map(|(low, high)| {
+            let (most, least) = (high.abs().max(low.abs()), high.min(-low));
+            if least >= ONE_SIDED * most { (least, false) } else { (most, true) }
+        });
+        let (scale, fastest, one_sided) = match (rate, median_relaxation_time(model)) {
+            (Some((fastest, one_sided)), _) if fastest > 0.0 => (TimeScale::TrainedRates, fastest, one_sided),
+            (Some(_), _) => (TimeScale::TrainedRates, half, false),
+            (None, Some(time)) => (TimeScale::RelaxationTimes, FASTEST * half / time, false),
+            (None, None) => (TimeScale::None, half, false),
+        };
+        Self { scale, vanishing: VANISHING * fastest, middle: fastest / FASTEST, one_sided }
+    }
+
+    /// The slowest first.
+    pub fn tried(&self) -> [f64; 4] {
+        TRIED.map(|share| share * self.middle)
+    }
+
+    /// True if the model sees how fast the input goes.
+    pub fn matter(&self) -> bool {
+        self.scale != TimeScale::None
+    }
+}
+
+/// `None` for a model without relaxation neurons; of an ensemble, of the first member that has any.
+fn median_relaxation_time(model: &Model) -> Option<f64> {
+    if let Some(ensemble) = model.ensemble() {
+        return ensemble.members().iter().find_map(median_relaxation_time);
+    }
+    let Body::Network { network, .. } = model.body() else { return None };
+    let ln_tau = &network.parameters()[Layout::new(*network.architecture()).ln_tau];
+    if ln_tau.is_empty() {
+        return None;
+    }
+    let mut sorted = ln_tau.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    Some(sorted[sorted.len() / 2].exp())
+}
+
+impl<'m> Probe<'m> {
+    /// # Errors
+    /// A model whose trained range is none.
+    pub fn new(model: &'m Model) -> Result<Self> {
+        let ranges = &model.trained_ranges().inputs;
+        let middle = |(low, high): &(f64, f64)| 0.5 * low + 0.5 * high;
+        let (low, high) = ranges[0];
+        let half = 0.5 * high - 0.5 * low;
+        if !(half > 0.0 && half.is_finite()) {
+            return Err(Error::Option(format!(
+                "the model was trained on inputs from {low} to {high}: there is no range to probe"
+            )));
+        }
+        Ok(Self {
+            model,
+            centre: middle(&ranges[0]),
+            half,
+            speeds: Speeds::of(model, half),
+            held: ranges[1..].iter().map(middle).collect(),
+        })
+    }
+
+    /// What it drives with, for the reader.
+    pub fn description(&self) -> Probing {
+        Probing {
+            input: (self.centre - self.half, self.centre + self.half),
+            held: self.held.clone(),
+            time_scale: self.speeds.scale,
+            vanishing_speed: self.speeds.vanishing,
+            speeds: if self.speeds.matter() { self.speeds.tried().to_vec() } else { Vec::new() },
+            outside: self.speeds.one_sided.then(|| {
+                "rates of one sign only were trained: probes that go there and back had to leave them".into()
+            }),
+        }
+    }
+
+    /// Where the model's memory is virgin, in the unit of the first input.
+    pub fn origin(&self) -> f64 {
+        origin(self.model)
+    }
+
+    /// A record as the body of the model sees it, and how the rate is found there.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn as_seen(&self, record: Record) -> Result<(Record, Option<RateMethod>)> {
+        let data = Dataset::new(self.model.names().clone(), vec![record])?;
+        let (seen, rate) = self.model.preprocessing().data(&data, self.model.rate())?;
+        Ok((seen.records()[0].clone(), rate))
+    }
+
+    /// A path over the trained range: turning points from -1, its lower end, to 1, its upper end.
+    pub fn path(&self, turning: &[f64]) -> Path {
+        path(self.centre, self.half, turning, STEPS)
+    }
+
+    /// Drives the model from its virgin state along a path at one speed. The record has the first input,
+    /// time stamps and the model's output.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn run(&self, name: &str, x: &[f64], speed: f64) -> Result<Record> {
+        let driven = self.record(name, x, &times(x, speed))?;
+        let y = self.model.simulate(&driven)?;
+        let time = driven.time().map(<[f64]>::to_vec).unwrap_or_default();
+        Record::new(name, vec![x.to_vec()], y)?.with_time(time)
+    }
+
+    /// [`Probe::run`] at a vanishing speed, without the time stamps, which say nothing then.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn run_slowly(&self, name: &str, x: &[f64]) -> Result<Record> {
+        let record = self.run(name, x, self.speeds.vanishing)?;
+        Record::new(name, record.inputs().to_vec(), record.output().to_vec())
+    }
+
+    /// What the model is driven with: all inputs, time, the rate where it has to be given. No output.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn record(&self, name: &str, x: &[f64], time: &[f64]) -> Result<Record> {
+        let mut inputs = vec![x.to_vec()];
+        inputs.extend(self.held.iter().map(|&value| vec![value; x.len()]));
+        let record = Record::new(name, inputs, vec![f64::NAN; x.len()])?.with_time(time.to_vec())?;
+        if self.model.rate() == Some(RateMethod::Given) {
+            let rate = RateMethod::Central.rate(&record)?;
+            return record.with_given_rate(rate);
+        }
+        Ok(record)
+    }
+}
+
+/// Where the memory of a model is virgin, in the unit of the first input; of an ensemble's members that do not
+/// agree, 0.
+fn origin(model: &Model) -> f64 {
+    let Some(ensemble) = model.ensemble() else { return model.preprocessing().origin(0) };
+    let mut origins = ensemble.members().iter().map(origin);
+    let first = origins.next().unwrap_or_default();
+    if origins.all(|other| other == first) { first } else { 0.0 }
+}
+
+/// A path in equal steps, `steps` to each half of the range: equal places on different ways are equal numbers.
+pub(super) fn path(centre: f64, half: f64, turning: &[f64], steps: u32) -> Path {
+    let place = |turning: f64| (turning * f64::from(steps)).round() as i64;
+    let input = |place: i64| centre + half * (place as f64 / f64::from(steps));
+    let mut here = place(turning[0]);
+    let mut path = Path { x: vec![input(here)], turns: vec![0] };
+    for end in turning[1..].iter().map(|&turning| place(turning)) {
+        while here != end {
+            here += (end - here).signum();
+            path.x.push(input(here));
+        }
+        path.turns.push(path.x.len() - 1);
+    }
+    path
+}
+
+/// Time stamps of a path at one speed.
+pub(super) fn times(x: &[f64], speed: f64) -> Vec<f64> {
+    let mut time = 0.0;
+    let mut all = vec![0.0];
+    all.extend(x.windows(2).map(|pair| {
+        time += (pair[1] - pair[0]).abs() / speed;
+        time
+    }));
+    all
+}
+
+/// Records of a model's first input and output as data.
+///
+/// # Errors
+/// Records with and without time.
+pub(super) fn data(records: Vec<Record>) -> Result<Dataset> {
+    Dataset::new(ColumnNames::plain(1), records)
+}
+
+/// Largest less smallest of some values.
+pub(super) fn extent(values: &[f64]) -> f64 {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_visits_its_turning_points_in_equal_steps() {
+        let path = path(5.0, 2.0, &[0.0, 1.0, -0.3, 0.05], 20);
+        let turns: Vec<f64> = path.turns.iter().map(|&row| path.x[row]).collect();
+        assert_eq!(turns, [5.0, 7.0, 5.0 - 2.0 * (6.0 / 20.0), 5.0 + 2.0 * (1.0 / 20.0)]);
+        assert_eq!(path.x.len(), 1 + 20 + 26 + 7);
+        assert!(path.x.windows(2).all(|pair| ((pair[1] - pair[0]).abs() - 0.1).abs() < 1e-12));
+        let time = times(&path.x, 0.5);
+        assert!((time[time.len() - 1] - 0.1 * 53.0 / 0.5).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,152 @@
+//! What the equations of a model promise whatever its parameters, theory.md (10.35), and whether probing
+//! agrees.
+
+use serde::Serialize;
+
+use super::direct::about_origin;
+use super::probe::Probe;
+use crate::{Finding, Property, Verdict};
+use hysid_core::law::Classical;
+use hysid_core::model::{Body, Ensemble, Model};
+use hysid_core::network::Architecture;
+
+/// A property that the equations of a model decide.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Promise {
+    /// The property.
+    #[serde(rename = "name")]
+    pub property: Property,
+    /// Whether every model with these equations has it or none has; at a vanishing speed, for what is a
+    /// property of memory.
+    pub verdict: Verdict,
+    /// Whether probing says the same; `None` where it could not tell.
+    pub agrees: Option<bool>,
+}
+
+/// All that is promised, with what was found.
+pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<Promise> {
+    let of_model = of_model(probe.model, about_origin(probe));
+    let promise = |(property, holds): (Property, bool)| {
+        let verdict = if holds { Verdict::Yes } else { Verdict::No };
+        let found = findings.iter().find(|finding| finding.property == property)?.verdict;
+        let agrees = (found != Verdict::NotTestable).then_some(found == verdict);
+        Some(Promise { property, verdict, agrees })
+    };
+    of_model.into_iter().filter_map(promise).collect()
+}
+
+fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
+    let mut all = match model.body() {
+        Body::Network { network, .. } => of_network(network.architecture(), about_origin),
+        Body::Law(law) => of_law(law, about_origin),
+        Body::Ensemble(ensemble) => return of_ensemble(ensemble, about_origin),
+    };
+    if model.preprocessing().companding.is_some() {
+        // A branch of a companded input is no initial curve doubled in the input itself.
+        all.retain(|promise| *promise != MASING);
+    }
+    if model.preprocessing().history.is_some() {
+        // The path so far is wiped out by nothing.
+        all.retain(|promise| *promise == RATE_INDEPENDENT || *promise == ODD);
+    }
+    all
+}
+
+/// What every member promises, as far as a median keeps it: it does not keep the shape of increments, which
+/// congruency and Masing's rule are about. An ensemble with other weights outside remembers that it was there.
+fn of_ensemble(ensemble: &Ensemble, about_origin: bool) -> Vec<(Property, bool)> {
+    let mut members = ensemble.members().iter().map(|member| of_model(member, about_origin));
+    let mut all = members.next().unwrap_or_default();
+    members.for_each(|promises| all.retain(|promise| promises.contains(promise)));
+    let remembers = ensemble.remembers_excursions();
+    all.retain(|promise| {
+        *promise == ODD || *promise == RATE_INDEPENDENT || (WIPES_OUT.contains(promise) && !remembers)
+    });
+    all
+}
+
+/// Return-point memory, and what follows from it.
+const WIPES_OUT: [(Property, bool); 3] =
+    [(Property::WipingOut, true), (Property::Deterioration, false), (Property::LoopClosure, true)];
+
+const CONGRUENT: (Property, bool) = (Property::Congruency, true);
+const MASING: (Property, bool) = (Property::Masing, true);
+const ODD: (Property, bool) = (Property::OddSymmetry, true);
+const RATE_INDEPENDENT: (Property, bool) = (Property::RateDependence, false);
+
+fn of_network(architecture: &Architecture, about_origin: bool) -> Vec<(Property, bool)> {
+    let linear_readout = architecture.hidden == 0;
+    let mut all = Vec::new();
+    if !sees_time(architecture) {
+        all.push(RATE_INDEPENDENT);
+        if !architecture.deterioration {
+            all.extend(WIPES_OUT);
+            if linear_readout {
+                all.extend([CONGRUENT, MASING, ODD]);
+            }
+        }
+    }
+    // A sum of stops and springs is odd about 0, worn or not.
+    if linear_readout && about_origin && !all.contains(&ODD) {
+        all.push(ODD);
+    }
+    all
+}
+
+/// True if the network has the rate for an input, or relaxation neurons.
+pub(super) fn sees_time(architecture: &Architecture) -> bool {
+    architecture.rate || architecture.relaxation > 0
+}
+
+fn of_law(law: &Classical, about_origin: bool) -> Vec<(Property, bool)> {
+    let mut all = Vec::new();
+    match law {
+        Classical::Masing(_) | Classical::PrandtlIshlinskii(_) => {
+            all.extend(WIPES_OUT);
+            all.extend([CONGRUENT, MASING, ODD]);
+        }
+        Classical::RateDependentPrandtlIshlinskii(_) => {
+            all.extend(WIPES_OUT);
+            all.extend([CONGRUENT, MASING, ODD]);
+        }
+        Classical::Preisach(_) | Classical::GeneralizedPrandtlIshlinskii(_) => {
+            all.extend(WIPES_OUT);
+            all.push(CONGRUENT);
+        }
+        Classical::ModifiedPrandtlIshlinskii(_) => all.extend(WIPES_OUT),
+        Classical::NeuroMadelung(_) => all.push((Property::WipingOut, true)),
+        Classical::BoucWen(law) => {
+            if law.degradation.is_none() {
+                all.push((Property::Deterioration, false));
+            }
+            if about_origin {
+                all.push(ODD);
+            }
+        }
+        Classical::JilesAtherton(_) => {
+            all.push((Property::Deterioration, false));
+            if about_origin {
+                all.push(ODD);
+            }
+        }
+    }
+    if !law_sees_rate(law) {
+        all.push(RATE_INDEPENDENT);
+    }
+    all
+}
+
+/// True if the rate is in the law's equations.
+pub(super) fn law_sees_rate(law: &Classical) -> bool {
+    match law {
+        Classical::RateDependentPrandtlIshlinskii(_) => true,
+        Classical::BoucWen(law) => law.damping != 0.0,
+        Classical::NeuroMadelung(law) => law.rate_scale.is_some(),
+        Classical::Masing(_)
+        | Classical::PrandtlIshlinskii(_)
+        | Classical::ModifiedPrandtlIshlinskii(_)
+        | Classical::GeneralizedPrandtlIshlinskii(_)
+        | Classical::Preisach(_)
+        | Classical::JilesAtherton(_) => false,
+    }
+}

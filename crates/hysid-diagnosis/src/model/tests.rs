@@ -1,0 +1,372 @@
+//! Models of known weights: closed forms, and what each neuron is.
+
+use super::*;
+use hysid_core::data::rate::RateMethod;
+use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::law::bouc_wen::{BoucWen, Degradation};
+use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
+    PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
+};
+use hysid_core::model::preprocessing::Preprocessing;
+use hysid_core::model::{Body, Found};
+use hysid_core::network::scaling::Scaling;
+use hysid_core::network::{Architecture, Family, Network, Sizes};
+use hysid_core::options::Request;
+use hysid_core::options::classical::{ClassicalOptions, Rival};
+use hysid_core::options::network::FitOptions;
+use hysid_core::termination::Termination;
+
+/// Largest input and rate of the models here, in the user's units.
+const X: f64 = 3.0;
+const RATE: f64 = 6.0;
+
+/// A model that was never trained, with the ranges of a triangle from `-X` to `X`.
+fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
+    let x: Vec<f64> = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0].map(|x| X * x).into();
+    let time = (0..x.len()).map(|k| k as f64 * X / RATE).collect();
+    let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
+    let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+    let found = Found {
+        options: request,
+        chosen_start: 0,
+        termination: Termination::Converged,
+        validation: None,
+        penalties: None,
+        runs: Vec::new(),
+        selection: None,
+    };
+    Model::new(body, Preprocessing::default(), rate, &data, found).unwrap()
+}
+
+fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Model {
+    let rate = architecture.rate.then_some(RateMethod::Central);
+    let scaling =
+        Scaling { inputs: vec![X], rate: rate.map(|_| RATE), output_mean: 10.0, output_deviation: 2.0 };
+    let network = Network::new(architecture, parameters, output).unwrap();
+    let request = Request::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() });
+    model(Body::Network { network, scaling }, request, rate)
+}
+
+/// Stops that go straight to the output.
+fn stops(rate: bool, weights: Vec<f64>, ln_beta: Vec<f64>, output: Vec<f64>) -> Model {
+    let sizes = Sizes { stops: output.len() - 1, hidden: 0, relaxation: 0 };
+    let mut architecture = Architecture::new(Family::Gpnn, sizes, 1, false, true).unwrap();
+    architecture.rate = rate;
+    architecture.deterioration = !ln_beta.is_empty();
+    network(architecture, [weights, ln_beta].concat(), output)
+}
+
+/// `K = 2 (X - 1/|w|)` where that is positive, else 0: the loop is a parallelogram with that width.
+#[test]
+fn one_stop_has_the_width_of_its_parallelogram() {
+    for w in [-3.2, -1.6, -0.9, 0.4, 1.0, 1.42, 5.0, 40.0] {
+        for c in [-1.5, 0.7] {
+            let model = stops(false, vec![w], vec![], vec![0.3, c]);
+            let diagnosis = ModelDiagnosis::of(&model).unwrap();
+            // The weight is of the input over X.
+            let exact = (2.0 * X * (1.0 - 1.0 / f64::abs(w))).max(0.0);
+            let width = diagnosis.loop_widths.static_width.unwrap();
+            assert!((width - exact).abs() < 1e-9 * X, "{w}: {width}, not {exact}");
+            assert!(diagnosis.loop_widths.dynamic.is_empty());
+            let criterion = &diagnosis.weights.as_ref().unwrap().criteria[0];
+            assert_eq!(criterion.value, 2.0 * f64::abs(w));
+            let loops = if w.abs() > 1.0 { Verdict::Yes } else { Verdict::No };
+            assert_eq!((criterion.verdict, diagnosis.verdict(Property::StaticHysteresis)), (loops, loops));
+            assert_eq!(criterion.agrees, Some(true));
+            // theory.md (1.7), from v to x and from ε to y.
+            let probe = Probe::new(&model).unwrap();
+            let loops = probe.run_slowly("loops", &probe.path(&properties::WHOLE_LOOPS).x).unwrap();
+            let data = probe::data(vec![loops]).unwrap();
+            let energy = super::super::cycles::cycles(&properties::survey(&data)).last().unwrap().energy;
+            let area = 4.0 * (w.abs() - 1.0).max(0.0) * (2.0 * c * X / w);
+            assert!((energy - area).abs() < 1e-3 * X, "{w}: {energy}, not {area}");
+        }
+    }
+}
+
+/// A triangle of the speed `q` of the fastest shifts the stop's argument by `d = w_d q` there and back:
+/// `width = 2 (w - 1 + 2 d) X/w` with slip, `2 d X/w` without, as long as the jump at the turning point does not
+/// pass the middle. Backwards, for `d < 0`, it slips at the turning points and the loop is as wide as at rest.
+#[test]
+fn one_stop_with_rate_widens_by_the_closed_form() {
+    for (w, w_rate) in [(1.42, 0.3), (1.42, -0.1), (0.5, 0.2), (3.0, 0.45)] {
+        let model = stops(true, vec![w, w_rate], vec![], vec![0.0, 2.0]);
+        let diagnosis = ModelDiagnosis::of(&model).unwrap();
+        let widths = &diagnosis.loop_widths;
+        assert!((widths.static_width.unwrap() - (2.0 * X * (1.0 - 1.0 / w)).max(0.0)).abs() < 2e-5 * X);
+        assert_eq!(widths.dynamic.len(), 4);
+        assert!((widths.dynamic[3].speed - RATE).abs() < 1e-12);
+        for at in &widths.dynamic {
+            let d: f64 = w_rate * at.speed / RATE;
+            let exact =
+                if w + d > 1.0 { 2.0 * (w - 1.0 + 2.0 * d.max(0.0)) * X / w } else { 2.0 * d * X / w };
+            assert!(
+                (at.width.unwrap() - exact).abs() < 2e-5 * X,
+                "{w} {w_rate} at {}: {:?}, not {exact}",
+                at.speed,
+                at.width
+            );
+            assert_eq!(at.widening.unwrap(), at.width.unwrap() - widths.static_width.unwrap());
+        }
+        assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+        let kinds = &diagnosis.weights.as_ref().unwrap().neurons[0].kinds;
+        assert!(kinds.contains(&NeuronKind::Dynamic), "{kinds:?}");
+        assert_eq!(kinds.contains(&NeuronKind::Static), w > 1.0);
+    }
+}
+
+#[test]
+fn neurons_are_what_their_weights_make_them() {
+    let never = 1e7f64.ln();
+    let weights = [[2.0, 0.0], [0.8, 0.0], [0.5, 1.5], [3.0, 0.5], [2.5, 0.0], [6.0, 0.0], [2.2, 0.0]];
+    let ln_beta = vec![never, never, never, never, 60f64.ln(), 1f64.ln(), never];
+    let output = vec![0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1e-5];
+    let model = stops(true, weights.concat(), ln_beta, output);
+    let diagnosis = ModelDiagnosis::of(&model).unwrap();
+    let weights = diagnosis.weights.as_ref().unwrap();
+    use NeuronKind::*;
+    let expected: [&[NeuronKind]; 7] = [
+        &[Static],
+        &[NeverSlips],
+        &[Dynamic],
+        &[Static, Dynamic],
+        &[Static, Deteriorating],
+        &[DiesAtOnce],
+        &[Static, Idle],
+    ];
+    for (neuron, expected) in weights.neurons.iter().zip(expected) {
+        assert_eq!(neuron.kinds, expected, "{neuron:?}");
+    }
+    // 25 loops and the first quarter, theory.md (1.8): (w - 1) + 2 (w - 1) for each half of a loop but the first.
+    let slip = 1.5 + 49.0 * 2.0 * 1.5;
+    assert!((weights.neurons[4].wear.unwrap() - slip / 60.0).abs() < 1e-9);
+    assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
+    assert!(!diagnosis.memory.return_point_memory.holds);
+    assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
+}
+
+/// A readout that bends the sum of its stops is neither congruent nor Masing, and wipes out all the same.
+#[test]
+fn a_mixing_readout_is_not_congruent() {
+    let sizes = Sizes { stops: 2, hidden: 1, relaxation: 0 };
+    let architecture = Architecture::new(Family::PreisachNn, sizes, 1, false, true).unwrap();
+    let of = |gain: f64, bias: f64| {
+        // Stops, linear neuron, then bias and weights of linear neuron and stops.
+        let parameters = vec![1.3, 6.0, 1.0, bias, 0.1 * gain, gain, gain];
+        network(architecture, parameters, vec![0.0, 1.0 / gain])
+    };
+    use Verdict::*;
+    let agreement = |diagnosis: &ModelDiagnosis, expected: [Verdict; 3]| {
+        assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
+        let properties = [Property::Congruency, Property::Masing, Property::OddSymmetry];
+        assert_eq!(properties.map(|property| diagnosis.verdict(property)), expected);
+        for criterion in &diagnosis.weights.as_ref().unwrap().criteria {
+            assert_ne!(criterion.agrees, Some(false), "{criterion:?}");
+            let told = criterion.verdict != NotTestable;
+            assert!(told || [Property::Congruency, Property::Masing].contains(&criterion.property));
+        }
+        assert!(diagnosis.promises.iter().all(|promise| promise.agrees == Some(true)));
+    };
+    agreement(&ModelDiagnosis::of(&of(1.0, 0.0)).unwrap(), [No, No, Yes]);
+    agreement(&ModelDiagnosis::of(&of(1.0, 0.7)).unwrap(), [No, No, No]);
+    let nearly_linear = ModelDiagnosis::of(&of(0.02, 0.0)).unwrap();
+    agreement(&nearly_linear, [Yes, Yes, Yes]);
+    let criteria = &nearly_linear.weights.as_ref().unwrap().criteria;
+    assert!(criteria.iter().all(|criterion| criterion.agrees == Some(true)), "{criteria:?}");
+}
+
+fn law(law: impl Into<hysid_core::law::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
+    let request = Request::Classical(ClassicalOptions::of(rival));
+    let model = model(Body::Law(law.into()), request, rate.then_some(RateMethod::Central));
+    let diagnosis = ModelDiagnosis::of(&model).unwrap();
+    assert!(
+        diagnosis.promises.iter().all(|promise| promise.agrees != Some(false)),
+        "{:?}",
+        diagnosis.promises
+    );
+    diagnosis
+}
+
+/// Bouc-Wen's element drifts where its input does not reverse sign: no return-point memory.
+#[test]
+fn bouc_wen_does_not_wipe_out() {
+    let plain = BoucWen { n: 1.5, ..BoucWen::new(0.1, 1.0, 0.8).unwrap() };
+    let diagnosis = law(plain, Rival::BoucWen, false);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::Yes);
+    assert_eq!(diagnosis.memory.return_point_memory.basis, Basis::Probing);
+    let weakening = Degradation {
+        delta_a: 0.0,
+        delta_nu: 0.02,
+        delta_eta: 0.0,
+        zeta_s: 0.0,
+        p: 1.0,
+        q: 0.0,
+        psi_0: 0.1,
+        delta_psi: 0.0,
+        lambda: 0.1,
+    };
+    let diagnosis = law(BoucWen { degradation: Some(weakening), ..plain }, Rival::BoucWen, false);
+    assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
+}
+
+/// Jiles and Atherton's small loops drift, theory.md (8.22).
+#[test]
+fn jiles_atherton_does_not_wipe_out() {
+    let magnet = JilesAtherton {
+        offset: 0.0,
+        permeability: 0.0,
+        saturation: 1.0,
+        a: 0.2,
+        k: 0.4,
+        coupling: 0.3,
+        c: 0.1,
+        form: JilesAthertonForm::Original,
+    };
+    let diagnosis = law(magnet, Rival::JilesAtherton, false);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::Saturation), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
+    assert!(diagnosis.memory.rate_independent.holds);
+    assert_eq!(diagnosis.memory.bound.whatever_the_input.map(|bound| bound.1.round()), Some(1.0));
+}
+
+/// A damper beside a spring: a loop of width `2 c v/k` that vanishes with the speed.
+#[test]
+fn a_damper_has_a_dynamic_loop_only() {
+    let damper = BoucWen { damping: 0.2, ..BoucWen::new(1.5, 0.0, 1.0).unwrap() };
+    let diagnosis = law(damper, Rival::BoucWen, true);
+    let widths = &diagnosis.loop_widths;
+    assert!(widths.static_width.unwrap().abs() < 1e-5);
+    for at in &widths.dynamic {
+        let exact = 2.0 * 0.2 * at.speed / 1.5;
+        assert!((at.widening.unwrap() - exact).abs() < 1e-5 * X, "{at:?}, not {exact}");
+    }
+    assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert!(!diagnosis.memory.rate_independent.holds);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
+}
+
+/// One play of threshold `α + β v`: a loop twice as wide, passed the way of a lag.
+#[test]
+fn a_rate_dependent_play_widens_by_twice_its_threshold() {
+    let (alpha, beta) = (0.4, 0.05);
+    let play = RateDependentPrandtlIshlinskii {
+        offset: 1.0,
+        spring: 0.0,
+        spacing: alpha,
+        thresholds: Thresholds::Linear { beta },
+        weights: PlayWeights::Free(vec![2.0]),
+    };
+    let diagnosis = law(play, Rival::RateDependentPrandtlIshlinskii, true);
+    let widths = &diagnosis.loop_widths;
+    assert!((widths.static_width.unwrap() - 2.0 * alpha).abs() < 1e-5);
+    for at in &widths.dynamic {
+        assert!((at.widening.unwrap() - 2.0 * beta * at.speed).abs() < 1e-5, "{at:?}");
+    }
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::Congruency), Verdict::Yes);
+    assert_eq!(diagnosis.verdict(Property::Masing), Verdict::Yes);
+}
+
+/// Relaxation neurons alone: no static loop, and a time scale of their own.
+#[test]
+fn a_relaxing_network_is_driven_at_its_own_times() {
+    let sizes = Sizes { stops: 1, hidden: 1, relaxation: 1 };
+    let architecture = Architecture::new(Family::XpnnPlus, sizes, 1, false, true).unwrap();
+    // Stop, its ln β, linear neuron, ln τ, then a tanh neuron that sees nothing.
+    let parameters = vec![0.3, 10.0, 1.0, 0.05f64.ln(), 0.0, 0.0, 0.0, 0.0];
+    // Constant, tanh neuron, then straight: linear neuron, stop, relaxation.
+    let model = network(architecture, parameters, vec![0.0, 0.0, 1.0, 0.0, 0.8]);
+    let diagnosis = ModelDiagnosis::of(&model).unwrap();
+    assert_eq!(diagnosis.probing.time_scale, TimeScale::RelaxationTimes);
+    assert_eq!(diagnosis.verdict(Property::StaticHysteresis), Verdict::No);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    assert!(diagnosis.loop_widths.static_width.unwrap().abs() < 1e-4 * X);
+    assert!(diagnosis.loop_widths.dynamic[2].widening.unwrap().abs() > 0.05 * X);
+    let weights = diagnosis.weights.as_ref().unwrap();
+    assert_eq!(weights.neurons[0].kinds, [NeuronKind::NeverSlips, NeuronKind::Idle]);
+    assert_eq!(weights.neurons[1].kinds, [NeuronKind::Relaxation]);
+    assert!(
+        weights.criteria.iter().all(|criterion| criterion.agrees != Some(false)),
+        "{:?}",
+        weights.criteria
+    );
+    assert_eq!(diagnosis.memory.bound.whatever_the_input, None);
+    // Without the spring beside it nothing is left to test at a vanishing speed.
+    let parameters = model.network().unwrap().parameters().to_vec();
+    let diagnosis =
+        ModelDiagnosis::of(&network(architecture, parameters, vec![0.0, 0.0, 0.0, 0.0, 0.8])).unwrap();
+    assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::NotTestable);
+    assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::Yes);
+    // A spring behind a dashpot takes up energy.
+    assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::Yes);
+    assert!(!diagnosis.memory.return_point_memory.holds);
+}
+
+#[test]
+fn a_model_that_answers_nothing_is_refused() {
+    let model = stops(false, vec![1.5], vec![], vec![0.3, 0.0]);
+    let error = ModelDiagnosis::of(&model).unwrap_err().to_string();
+    assert!(error.contains("constant"), "{error}");
+}
+
+/// A network of the full family with random weights, and an input within the trained ranges.
+fn random_case(seed: u64) -> (Model, Record) {
+    use rand::{RngExt, SeedableRng};
+    let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut even = |low: f64, high: f64| low + (high - low) * generator.random::<f64>();
+    let sizes = Sizes { stops: 3, hidden: 2, relaxation: 2 };
+    let family = [Family::Pnn, Family::Gpnn, Family::PreisachNn, Family::Xpnn, Family::XpnnPlus];
+    let family = family[(seed % 5) as usize];
+    let architecture = Architecture::new(family, sizes, 1, true, true).unwrap();
+    let layout = hysid_core::network::Layout::new(architecture);
+    let parameters = (0..layout.len())
+        .map(|index| match index {
+            index if layout.ln_beta.contains(&index) => even(0.0, 8.0),
+            index if layout.ln_tau.contains(&index) => even(-5.0, 2.0),
+            _ => even(-1.0, 1.0) * 10f64.powf(even(-1.0, 0.8)),
+        })
+        .collect();
+    let output = (0..architecture.output_weights()).map(|_| even(-2.0, 2.0)).collect();
+    let model = network(architecture, parameters, output);
+    let (mut x, mut time) = (vec![even(-X, X)], vec![0.0]);
+    for row in 0..400 {
+        // To the very ends now and then, and never faster than trained.
+        let to: f64 = (1.4 * even(-X, X)).clamp(-X, X);
+        let step = (to - x[row]).abs() / RATE * even(1.0, 3.0) + 1e-6;
+        x.push(to);
+        time.push(time[row] + step);
+    }
+    let blank = vec![f64::NAN; x.len()];
+    (model, Record::new("random", vec![x], blank).unwrap().with_time(time).unwrap())
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::test_runner::Config::with_cases(400))]
+
+    /// No input within the trained ranges leads an output out of its bound.
+    #[test]
+    fn the_bound_is_never_passed(seed in 0u64..1_000_000) {
+        let (model, record) = random_case(seed);
+        let bound = bound::within_trained_ranges(&model);
+        let everywhere = bound::whatever_the_input(&model);
+        let hidden_only = !model.network().unwrap().architecture().direct;
+        proptest::prop_assert_eq!(everywhere.is_some(), hidden_only);
+        for y in model.simulate(&record).unwrap() {
+            proptest::prop_assert!(y >= bound.0 && y <= bound.1, "{} beyond {:?}", y, bound);
+        }
+        if let Some(everywhere) = everywhere {
+            proptest::prop_assert!(everywhere.0 <= bound.0 && everywhere.1 >= bound.1);
+        }
+    }
+}

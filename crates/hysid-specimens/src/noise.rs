@@ -1,0 +1,47 @@
+//! Measurement noise.
+
+use rand::{Rng, RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::error::{Error, Result};
+
+/// The data with Gaussian noise on the output. Its deviation is `percent` of the population standard
+/// deviation of all scored outputs together. The same data, `percent` and `seed` give the same noise;
+/// training and test data need different seeds, or they get the same. Blanks stay blank.
+///
+/// # Errors
+/// `percent` is negative or not finite, or so large that an output leaves the range of a record.
+pub fn with_noise(data: &Dataset, percent: f64, seed: u64) -> Result<Dataset> {
+    if !(percent >= 0.0 && percent.is_finite()) {
+        return Err(Error::Option(format!("noise must be 0 % or more, not {percent} %")));
+    }
+    let deviation = 0.01 * percent * standard_deviation(data);
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let records = data.records().iter().map(|record| {
+        let output = record.output().iter().map(|y| y + deviation * normal(&mut generator)).collect();
+        let mut noisy = Record::new(record.name(), record.inputs().to_vec(), output)?;
+        if let Some(time) = record.time() {
+            noisy = noisy.with_time(time.to_vec())?;
+        }
+        if let Some(rate) = record.given_rate() {
+            noisy = noisy.with_given_rate(rate.to_vec())?;
+        }
+        Ok(noisy)
+    });
+    Dataset::new(data.names().clone(), records.collect::<Result<_>>()?)
+}
+
+/// Population standard deviation of all scored outputs; 0 if there are none.
+fn standard_deviation(data: &Dataset) -> f64 {
+    let scored = || data.records().iter().flat_map(Record::output).filter(|y| !y.is_nan());
+    let count = data.scored().max(1) as f64;
+    let mean = scored().sum::<f64>() / count;
+    (scored().map(|y| (y - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+/// A standard normal number, by Box and Muller.
+pub(super) fn normal(generator: &mut impl Rng) -> f64 {
+    let (u, v): (f64, f64) = (generator.random(), generator.random());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}

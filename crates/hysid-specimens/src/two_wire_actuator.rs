@@ -1,0 +1,97 @@
+//! Rotary actuator of two shape-memory wires that pull against each other: a current heats the one wire,
+//! a current of the other sign the other wire. It stands beside the [`shape_memory_actuator`], which a
+//! generalized Prandtl-Ishlinskii model can fit to the last digit; this one is outside that model, as a
+//! real actuator is.
+//!
+//! ```text
+//! H_a = 1000 max(I, 0) - 500,   H_b = 1000 max(-I, 0) - 500
+//! y   = 40 c_a - 28 c_b,   c = (1 + J[H]/1.5)/2                            theory.md (6.29)
+//! ```
+//!
+//! `I` is the current in A, `c` how much of a wire has contracted, `y` the angle in degrees. A wire
+//! contracts when hot, and keeps that until it is much cooler: the loop of [`Ferromagnet`], with the
+//! temperature in the place of the field.
+//!
+//! *Published*: two wires against each other, heated by currents of either sign between -1 and 1 A (Gorbet,
+//! as the paper tells). *Designed*: the law of a wire, for which the Everett function of
+//! [`Ferromagnet::vacoflux17`] is borrowed, and all factors; one wire is weaker than the other, so that the
+//! loops are not symmetric.
+//!
+//! [`shape_memory_actuator`]: super::shape_memory_actuator
+
+use hysid_core::data::record::Record;
+use hysid_core::error::Result;
+
+use super::ferromagnet::Ferromagnet;
+use super::path;
+use super::specimen::{Columns, Specimen};
+
+/// Angles of the two wires, fully contracted, in degrees.
+const PULL: [f64; 2] = [40.0, 28.0];
+
+/// Field in the place of the temperature of a cold wire.
+const COLD: f64 = -500.0;
+
+/// How much a current of 1 A adds to it.
+const HEATING: f64 = 1000.0;
+
+/// Polarisation in T in the place of a wire fully contracted.
+const CONTRACTED: f64 = 1.5;
+
+/// The angles in degrees at all currents in A, both wires cold at first.
+pub fn run(current: &[f64]) -> Vec<f64> {
+    let mut wires = [Ferromagnet::vacoflux17(), Ferromagnet::vacoflux17()];
+    for wire in &mut wires {
+        wire.step(COLD);
+    }
+    let angle = |&current: &f64| {
+        let mut pull = |index: usize, current: f64| {
+            wires[index].step(COLD + HEATING * current.max(0.0));
+            PULL[index] * 0.5 * (1.0 + wires[index].polarisation() / CONTRACTED)
+        };
+        pull(0, current) - pull(1, -current)
+    };
+    current.iter().map(angle).collect()
+}
+
+pub(super) static SPECIMEN: Specimen = Specimen {
+    name: "two-wire-actuator",
+    example: "example 4",
+    summary: "two shape-memory wires that pull against each other: a loop on either side, one weaker than the other",
+    published: "two wires heated by currents of either sign between -1 and 1 A (Gorbet, as the paper tells)",
+    designed: "the law of the wires, a borrowed Everett function, and all factors; the turning points of the current",
+    training: "from -1 to 1 A, shrinking swings, then 40 pairs of turning points all over the range; 5 mA/s",
+    testing: "the current goes on to other turning points in the same range; the training part comes first, with \
+              blank outputs, so that the memory is carried over",
+    columns: Columns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
+    train: || Ok(vec![parts()?.0]),
+    test: || Ok(vec![parts()?.1]),
+};
+
+/// Turning points of the current in A to begin training with.
+const TRAIN: [f64; 11] = [0.0, 1.0, -1.0, 1.0, -0.8, 0.8, -0.65, 0.65, -0.5, 0.5, 0.0];
+
+/// Turning points of training that follow, all over the range in A.
+const FURTHER: (usize, (f64, f64)) = (40, (-1.0, 1.0));
+
+/// Turning points of the test.
+const TEST: [f64; 20] = [
+    0.9, 0.35, 0.7, -0.7, -0.3, -0.55, 0.95, 0.5, 0.6, -0.9, -0.4, -0.75, 0.45, 0.2, 0.85, -0.6, 0.55, -0.95,
+    0.75, 0.0,
+];
+
+/// Largest step of the current between two rows, in A.
+const STEP: f64 = 0.02;
+
+/// Time between two rows in s.
+const SAMPLING: f64 = 4.0;
+
+fn parts() -> Result<(Record, Record)> {
+    let (pairs, range) = FURTHER;
+    let train = [&TRAIN[..], &path::covering(pairs, range)].concat();
+    let (current, trained) = path::continued(&train, &TEST, STEP);
+    let angle = run(&current);
+    let time = path::every(SAMPLING, current.len());
+    let whole = Record::new("heating and cooling", vec![current], angle)?.with_time(time)?;
+    Ok(path::cut(&whole, trained))
+}
