@@ -23,10 +23,12 @@ pub struct Batch {
 }
 
 impl Batch {
+    /// An empty batch of so many columns.
     pub fn new(columns: usize) -> Self {
         Self { columns, rows: 0, data: vec![0.0; columns.next_multiple_of(TILE) * BATCH] }
     }
 
+    /// Rows that there is room for.
     pub fn free(&self) -> usize {
         BATCH - self.rows
     }
@@ -61,12 +63,14 @@ pub struct Gram {
 }
 
 impl Gram {
+    /// Of no rows, for `n` columns.
     pub fn new(n: usize) -> Self {
         let stride = n.next_multiple_of(TILE);
         Self { n, stride, data: vec![0.0; stride * stride] }
     }
 
     /// Scalar product of columns `row` and `column`.
+    /// An element.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         let (row, column) = (row.max(column), row.min(column));
         debug_assert!(row < self.n);
@@ -170,6 +174,7 @@ pub struct Symmetric {
 }
 
 impl Symmetric {
+    /// An `n` by `n` matrix of the values at each row and column, of which the lower triangle is asked for.
     pub fn from_fn(n: usize, mut value: impl FnMut(usize, usize) -> f64) -> Self {
         let mut data = vec![0.0; n * n];
         for i in 0..n {
@@ -180,10 +185,12 @@ impl Symmetric {
         Self { n, data }
     }
 
+    /// The element `i` of the diagonal.
     pub fn diagonal(&self, i: usize) -> f64 {
         self.data[i * self.n + i]
     }
 
+    /// The element at a row and a column.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.data[row.max(column) * self.n + row.min(column)]
     }
@@ -218,6 +225,7 @@ impl Symmetric {
         product
     }
 
+    /// Adds to the element `i` of the diagonal.
     pub fn add_to_diagonal(&mut self, i: usize, value: f64) {
         self.data[i * self.n + i] += value;
     }

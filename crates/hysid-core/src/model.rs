@@ -200,12 +200,19 @@ impl Provenance {
 /// How a model was found; what its data add to it makes the [`Provenance`].
 #[derive(Debug, Clone)]
 pub struct Found {
+    /// What was asked for.
     pub options: Request,
+    /// The start that became the model, counted from 0.
     pub chosen_start: usize,
+    /// Why the last training run ended.
     pub termination: Termination,
+    /// Errors on data held out.
     pub validation: Option<Errors>,
+    /// Penalties that a network was trained with.
     pub penalties: Option<Regularisation>,
+    /// Every training run.
     pub runs: Vec<Run>,
+    /// How the candidates did that it was chosen from.
     pub selection: Option<Selection>,
 }
 
@@ -441,6 +448,7 @@ impl Model {
         self.band.as_ref()
     }
 
+    /// The same with another account of how it came about.
     pub fn with_provenance(mut self, provenance: Provenance) -> Self {
         self.provenance = provenance;
         self
@@ -452,6 +460,7 @@ impl Model {
         Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
+    /// The same with this band, or without one.
     pub fn with_band(mut self, band: Option<Band>) -> Self {
         self.band = band;
         self

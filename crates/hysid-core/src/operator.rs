@@ -44,8 +44,8 @@ pub use stop::Stop;
 /// A rate-independent operator with memory, fed one sample at a time.
 ///
 /// ```
-/// use hysid::operator::{Operator, Play, Stop};
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::{Operator, Play, Stop};
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// let play = Box::new(Play::new(1.0)?) as Box<dyn Operator>;
 /// let stop = Box::new(Stop::new(1.0)?);
 /// let outputs = [play, stop].map(|mut operator| operator.run(&[0.0, 3.0, 0.0]));

@@ -6,12 +6,12 @@
 //! contain what would tell. Definitions: theory.md section 10.
 //!
 //! ```
-//! use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
-//! use hysid::plant::Specimen;
+//! use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
+//! use hysid_specimens::Specimen;
 //! let joint = Specimen::named("reinforced-concrete-joint").unwrap().train();
 //! let diagnosis = Diagnosis::of(&joint, &DiagnosisOptions::default())?;
 //! assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
-//! # Ok::<(), hysid::Error>(())
+//! # Ok::<(), hysid_core::Error>(())
 //! ```
 
 mod advice;

@@ -7,18 +7,18 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use hysid::options::classical::Rival;
-//! use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
-//! use hysid::options::{ModelName, Request};
+//! use hysid_core::options::classical::Rival;
+//! use hysid_diagnosis::{ModelDiagnosis, Property, Verdict};
+//! use hysid_core::options::{ModelName, Request};
 //! use hysid::fit::identify;
-//! use hysid::plant::Specimen;
+//! use hysid_specimens::Specimen;
 //! let data = Specimen::named("terfenol-actuator").unwrap().train();
 //! let request = Request::of(ModelName::Rival(Rival::PrandtlIshlinskii), None, 1);
 //! let fitted = identify(&data, &request, &mut |_| ControlFlow::Continue(()))?;
 //! let diagnosis = ModelDiagnosis::of(&fitted.model)?;
 //! assert_eq!(diagnosis.verdict(Property::Masing), Verdict::Yes);
 //! assert!(diagnosis.memory.return_point_memory.holds);
-//! # Ok::<(), hysid::Error>(())
+//! # Ok::<(), hysid_core::Error>(())
 //! ```
 
 mod bound;

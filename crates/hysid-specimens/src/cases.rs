@@ -53,10 +53,10 @@ struct Parts {
 /// the plans come round again, with other parameters.
 ///
 /// ```
-/// let cases = hysid::plant::cases::generated(2, 1)?;
+/// let cases = hysid_specimens::cases::generated(2, 1)?;
 /// assert_eq!(cases[0].name, "g01-joint-growing");
 /// assert!(cases[0].train.scored() > cases[0].test.scored());
-/// # Ok::<(), hysid::Error>(())
+/// # Ok::<(), hysid_core::Error>(())
 /// ```
 ///
 /// # Errors

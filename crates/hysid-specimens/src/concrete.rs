@@ -83,7 +83,7 @@ enum Branch {
 /// Concrete with its memory, untouched at first.
 ///
 /// ```
-/// use hysid::plant::{Concrete, ConcreteParameters};
+/// use hysid_specimens::{Concrete, ConcreteParameters};
 /// let mut concrete = Concrete::new(ConcreteParameters::typical());
 /// let stress = concrete.run(&[2.0, 0.2, 2.0]); // mm/m to MPa
 /// assert!((stress[0] - 27.6).abs() < 1e-12);

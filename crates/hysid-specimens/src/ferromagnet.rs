@@ -71,7 +71,7 @@ impl Everett {
 /// A ferromagnetic material with its memory, demagnetised at first.
 ///
 /// ```
-/// use hysid::plant::Ferromagnet;
+/// use hysid_specimens::Ferromagnet;
 /// let mut sheet = Ferromagnet::m330_50a();
 /// let remanence = sheet.run(&[0.0, 300.0, 0.0])[2];
 /// assert!(remanence > 1.0); // tesla, with no field left

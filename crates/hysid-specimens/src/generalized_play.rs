@@ -46,7 +46,7 @@ pub struct WeightedPlay {
 /// A weighted sum of generalized plays, with its memory.
 ///
 /// ```
-/// use hysid::plant::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
+/// use hysid_specimens::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
 /// // One play on straight ground (nearly: tanh bends far away) is an ordinary play.
 /// let line = Envelope { a: [1e6, 1e-6, 0.0, 0.0] };
 /// let play = WeightedPlay { threshold: 1.0, weight: 1.0 };

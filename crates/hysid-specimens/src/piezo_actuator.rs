@@ -26,7 +26,7 @@ const DISPLACEMENT: f64 = 6.0;
 /// The actuator under a steady sine of the voltage between 0 and 80 V.
 ///
 /// ```
-/// use hysid::plant::PiezoActuator;
+/// use hysid_specimens::PiezoActuator;
 /// let actuator = PiezoActuator { frequency: 100.0 };
 /// assert_eq!(actuator.voltage(0.0025), 80.0);
 /// assert!(actuator.displacement(0.0025) < 6.0 + actuator.amplitude());

@@ -194,7 +194,7 @@ impl Inner {
 /// A joint with its memory, unloaded and undamaged at first.
 ///
 /// ```
-/// use hysid::plant::{BoucWenBaberNoori, ReinforcedConcreteJoint};
+/// use hysid_specimens::{BoucWenBaberNoori, ReinforcedConcreteJoint};
 /// let mut joint = ReinforcedConcreteJoint::new(BoucWenBaberNoori::joint());
 /// let force = joint.run(&[0.0, 40.0, -40.0, 40.0]); // mm to kN
 /// assert!(force[1] > 230.0);

@@ -30,7 +30,7 @@ static ALL: [&Specimen; 11] = [
 /// only brings the memory to where the test begins.
 ///
 /// ```
-/// use hysid::plant::Specimen;
+/// use hysid_specimens::Specimen;
 /// let joint = Specimen::named("reinforced-concrete-joint").unwrap();
 /// let (train, test) = (joint.train(), joint.test());
 /// assert_eq!(train.names().inputs, ["displacement_mm"]);

@@ -31,6 +31,7 @@ pub struct Errors {
 /// A measured row and the error there.
 #[derive(Debug, Clone, Copy)]
 pub struct ScoredRow {
+    /// The measured output.
     pub measured: f64,
     /// Squared error; the mean of several, where the row was simulated more than once.
     pub square_error: f64,

@@ -79,6 +79,7 @@ impl Record {
         }
     }
 
+    /// An error of this record at a row and a column.
     pub fn defect(&self, row: Option<usize>, channel: Option<Channel>, problem: DataProblem) -> Error {
         self.excitation().defect(row, channel, problem)
     }

@@ -43,13 +43,13 @@ pub const B_BOUNDS: (f64, f64) = (0.05, 3.0);
 /// A Bouc-Wen law in the user's units.
 ///
 /// ```
-/// use hysid::law::bouc_wen::BoucWen;
-/// use hysid::law::{Law, Sample};
+/// use hysid_core::law::bouc_wen::BoucWen;
+/// use hysid_core::law::{Law, Sample};
 /// let law = BoucWen::new(5.0, 100.0, 2.0)?; // 5 kN/mm beside 100 kN/mm that yields at 2 mm
 /// let mut state = law.virgin();
 /// let force = law.step(&mut state, Sample { x: 40.0, rate: 0.0, step: 0.0 });
 /// assert!((force - (5.0 * 40.0 + 100.0 * 2.0)).abs() < 1e-6);
-/// # Ok::<(), hysid::Error>(())
+/// # Ok::<(), hysid_core::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

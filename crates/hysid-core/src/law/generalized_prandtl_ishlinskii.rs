@@ -62,8 +62,8 @@ impl Envelope {
 /// A generalized Prandtl-Ishlinskii model in the user's units.
 ///
 /// ```
-/// use hysid::law::generalized_prandtl_ishlinskii::*;
-/// use hysid::law::{Law, Sample};
+/// use hysid_core::law::generalized_prandtl_ishlinskii::*;
+/// use hysid_core::law::{Law, Sample};
 /// let gamma = Envelope::new([6.0, 0.4, 0.0, 0.0]);
 /// let law = GeneralizedPrandtlIshlinskii {
 ///     offset: 0.0,

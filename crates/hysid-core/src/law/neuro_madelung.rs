@@ -54,7 +54,9 @@ pub struct NeuroMadelung {
 /// The network and what surrounds it, as training sees it: all scaled.
 #[derive(Debug, Clone, Copy)]
 pub struct Branch<'a> {
+    /// Bias and weights of the tanh neurons, one after another.
     pub hidden: &'a [f64],
+    /// Constant and weights of the output.
     pub output: &'a [f64],
     /// Range of the output in training.
     low: f64,
@@ -86,12 +88,14 @@ impl Branch<'_> {
         [unit(inputs[0]), unit(inputs[1]), inputs[2].clamp(self.low, self.high), unit(rate)]
     }
 
+    /// An output within what the law can give.
     pub fn limited(&self, y: f64) -> f64 {
         let beyond = BEYOND * (self.high - self.low);
         y.clamp(self.low - beyond, self.high + beyond)
     }
 }
 
+/// The argument of a tanh neuron: its bias and the weighted inputs.
 pub fn argument(neuron: &[f64], inputs: &[f64]) -> f64 {
     neuron[0] + neuron[1..].iter().zip(inputs).map(|(weight, input)| weight * input).sum::<f64>()
 }
@@ -130,6 +134,7 @@ impl NeuroMadelung {
         3 + usize::from(self.rate_scale.is_some())
     }
 
+    /// The network and what surrounds it.
     pub fn branch(&self) -> Branch<'_> {
         let scaled = |y: f64| (y - self.output_mean) / self.output_scale;
         let (low, high) = (scaled(self.output_range.0), scaled(self.output_range.1));

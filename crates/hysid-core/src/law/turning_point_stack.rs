@@ -40,7 +40,7 @@ pub enum Branch<T> {
 /// average, however long the path. It takes memory for as many points as loops are nested.
 ///
 /// ```
-/// use hysid::law::turning_point_stack::TurningPointStack;
+/// use hysid_core::law::turning_point_stack::TurningPointStack;
 /// let mut stack = TurningPointStack::default();
 /// for x in [5.0, -3.0, 2.0, -1.0, 4.0] {
 ///     stack.advance(x, ());

@@ -96,6 +96,7 @@ pub struct Excursion {
 }
 
 impl Excursion {
+    /// Beyond this range, at the beginning of a record.
     pub fn beyond(range: (f64, f64)) -> Self {
         Self { range, farthest: 0.0 }
     }
@@ -113,10 +114,12 @@ impl Excursion {
 pub struct Votes(Vec<(f64, f64)>);
 
 impl Votes {
+    /// Forgets all values.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
+    /// Adds the value of a member with its weight.
     pub fn cast(&mut self, value: f64, weight: f64) {
         self.0.push((value, weight));
     }
@@ -347,6 +350,7 @@ pub struct Council {
 }
 
 impl Council {
+    /// Room for a group and all groups in it.
     pub fn new(group: &Group) -> Self {
         Self { levels: vec![Votes::default(); group.depth()], all: Votes::default() }
     }

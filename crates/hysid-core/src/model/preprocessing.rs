@@ -119,8 +119,11 @@ fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
 
 /// Data as a model sees them, and how the rate is found there.
 pub struct Seen<'d> {
+    /// How the model sees its input.
     pub preprocessing: Preprocessing,
+    /// The data as it sees them.
     pub data: Cow<'d, Dataset>,
+    /// How the rate is found there.
     pub rate: Option<RateMethod>,
 }
 

@@ -22,6 +22,7 @@ pub struct FreeRun<'a> {
 }
 
 impl<'a> FreeRun<'a> {
+    /// A run that begins in the virgin state.
     pub fn new(network: &'a Network, scaling: &'a Scaling, rate: Option<RateMethod>) -> Self {
         let channels = vec![Vec::new(); network.architecture().channels()];
         Self { network, simulator: network.simulator(), scaling, rate, channels }

@@ -22,10 +22,15 @@ const LANES: usize = 8;
 
 /// Gathers `Jᵀr` over records, for output weights held; a target of NaN is passed over.
 pub struct GradientOverRecords<'a> {
+    /// The network.
     pub architecture: &'a Architecture,
+    /// Its parameters.
     pub parameters: &'a [f64],
+    /// Its output weights.
     pub output: &'a [f64],
+    /// Scaled inputs of each record.
     pub drives: &'a [Drive],
+    /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Ends the walk early; the sum means nothing then.
     pub stop: StopCheck<'a>,

@@ -62,8 +62,11 @@ impl Network {
 /// given, the Jacobian; in this order, as columns.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns<'a> {
+    /// The network.
     pub architecture: &'a Architecture,
+    /// Its parameters.
     pub parameters: &'a [f64],
+    /// Its output weights; `None` for no Jacobian.
     pub output: Option<&'a [f64]>,
 }
 
@@ -86,14 +89,18 @@ impl<'a> Columns<'a> {
 
 /// Gathers the Gram matrix of the [`Columns`] over records; a target of NaN is passed over.
 pub struct GramOverRecords<'a> {
+    /// What is multiplied.
     pub columns: Columns<'a>,
+    /// Scaled inputs of each record.
     pub drives: &'a [Drive],
+    /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Ends the walk early; what is gathered means nothing then.
     pub stop: StopCheck<'a>,
 }
 
 impl GramOverRecords<'_> {
+    /// The Gram matrix.
     pub fn gram(self) -> Gram {
         simd::run(self)
     }
@@ -153,15 +160,20 @@ impl TakeRows for Rows {
 
 /// The [`Columns`] of every row with a target, from column `first` on: for few rows.
 pub struct RowsOverRecords<'a> {
+    /// What is computed.
     pub columns: Columns<'a>,
+    /// The first column that is kept.
     pub first: usize,
+    /// Scaled inputs of each record.
     pub drives: &'a [Drive],
+    /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
     /// Ends the walk early; rows are missing then.
     pub stop: StopCheck<'a>,
 }
 
 impl RowsOverRecords<'_> {
+    /// The columns.
     pub fn columns(self) -> Vec<Vec<f64>> {
         simd::run(self)
     }

@@ -38,8 +38,8 @@ pub fn remaining_strength(slip: f64, inverse_capacity: f64) -> f64 {
 /// Deteriorating stop with threshold `r` and capacity `β`: theory.md (1.6).
 ///
 /// ```
-/// use hysid::operator::{DeterioratingStop, Operator};
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::{DeterioratingStop, Operator};
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// let mut stop = DeterioratingStop::new(1.0, 4.0)?;
 /// assert_eq!(stop.run(&[0.0, 1.0, 2.0, 0.0, -1.0]), [0.0, 1.0, 0.75, -0.75, -0.5]);
 /// assert_eq!(stop.slip(), 2.0);

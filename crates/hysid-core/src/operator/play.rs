@@ -26,8 +26,8 @@ pub fn follow(play: f64, x: f64, r: f64) -> f64 {
 /// Play with threshold `r`: theory.md (1.2).
 ///
 /// ```
-/// use hysid::operator::{Operator, Play};
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::{Operator, Play};
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// let mut play = Play::new(1.0)?;
 /// assert_eq!(play.run(&[0.0, 3.0, 2.0, 0.0, -3.0]), [0.0, 2.0, 2.0, 1.0, -2.0]);
 /// # Ok(())

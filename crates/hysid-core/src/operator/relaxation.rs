@@ -45,8 +45,8 @@ pub fn advance(stress: f64, x_increment: f64, (e, g): (f64, f64)) -> f64 {
 /// a fixed time step in it would be wrong for every record that is not evenly sampled.
 ///
 /// ```
-/// use hysid::operator::Relaxation;
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::Relaxation;
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// // Stretched to 1 and held: a third of the stress is left after ln 3 relaxation times.
 /// let mut element = Relaxation::new(2.0)?;
 /// let stress = element.run(&[0.0, 2.0 * 3f64.ln()], &[1.0, 1.0])?;

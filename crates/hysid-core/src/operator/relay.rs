@@ -32,8 +32,8 @@ pub fn switch(output: f64, x: f64, lower: f64, upper: f64) -> f64 {
 /// Relay with thresholds `s - r` and `s + r`: theory.md (1.1).
 ///
 /// ```
-/// use hysid::operator::{Operator, Relay};
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::{Operator, Relay};
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// let mut relay = Relay::new(1.0, 0.5)?; // switches up at 1.5, down at -0.5
 /// assert_eq!(relay.run(&[0.0, 1.4, 1.5, 0.0, -0.5, 0.0]), [-1.0, -1.0, 1.0, 1.0, -1.0, -1.0]);
 /// # Ok(())

@@ -26,8 +26,8 @@ pub fn elongation(x: f64, play: f64) -> f64 {
 /// Stop with threshold `r`: theory.md (1.3).
 ///
 /// ```
-/// use hysid::operator::{Operator, Stop};
-/// # fn main() -> Result<(), hysid::operator::InvalidOperator> {
+/// use hysid_core::operator::{Operator, Stop};
+/// # fn main() -> Result<(), hysid_core::operator::InvalidOperator> {
 /// let mut stop = Stop::new(1.0)?;
 /// assert_eq!(stop.run(&[0.0, 0.5, 3.0, 2.5, 0.0]), [0.0, 0.5, 1.0, 0.5, -1.0]);
 /// # Ok(())

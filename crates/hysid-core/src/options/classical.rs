@@ -28,7 +28,7 @@ pub enum Rival {
     /// [`JilesAtherton`](crate::law::jiles_atherton::JilesAtherton).
     JilesAtherton,
     /// Random deteriorating stops and a ridge: a network whose stops are not trained,
-    /// [`crate::fit::network::random_stops`].
+    /// `hysid::fit::network::random_stops`.
     RandomStops,
 }
 

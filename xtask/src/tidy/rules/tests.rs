@@ -2,7 +2,7 @@
 
 use super::*;
 
-const SOURCE: &str = "crates/hysid/src/operator/stop.rs";
+const SOURCE: &str = "crates/hysid-core/src/operator/stop.rs";
 
 /// The lines of the violations.
 fn lines(violations: Vec<Violation>) -> Vec<usize> {

@@ -86,6 +86,7 @@ impl Properties {
 }
 
 impl Degradation {
+    /// From its nine parameters, in the order of the fields.
     pub fn from_values(values: [f64; 9]) -> Self {
         let [delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda] = values;
         Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda }

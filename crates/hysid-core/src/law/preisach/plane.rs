@@ -18,10 +18,12 @@ pub struct Plane {
 }
 
 impl Plane {
+    /// A plane cut along these inputs, rising.
     pub fn new(lines: Vec<f64>) -> Self {
         Self { lines }
     }
 
+    /// The inputs along which it is cut.
     pub fn lines(&self) -> &[f64] {
         &self.lines
     }
