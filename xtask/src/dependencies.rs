@@ -1,6 +1,7 @@
-//! The dependencies part of `cargo xtask check`: licences that may be passed on, and one source. It works without
-//! the internet; known vulnerabilities are in SECURITY.md.
+//! The dependencies part of `cargo xtask check`: licences that may be passed on, one source, and a core that stays
+//! light. It works without the internet; known vulnerabilities are in SECURITY.md.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
@@ -23,6 +24,10 @@ const ALLOWED: [&str; 8] = [
 /// Where every dependency comes from.
 const SOURCE: &str = "registry+https://github.com/rust-lang/crates.io-index";
 
+/// What runs a model needs neither threads nor random numbers nor checkpoints.
+const CORE: &str = "hysid-core";
+const NOT_IN_CORE: [&str; 5] = ["rayon", "rand", "rand_xoshiro", "rmp-serde", "rmp"];
+
 pub fn run() -> Result<()> {
     println!("==> dependencies");
     let output = Command::new(env!("CARGO"))
@@ -35,7 +40,13 @@ pub fn run() -> Result<()> {
     }
     let metadata: Value = serde_json::from_slice(&output.stdout).context("what `cargo metadata` printed")?;
     let packages = metadata["packages"].as_array().context("`cargo metadata` names no packages")?;
-    let violations: Vec<String> = packages.iter().filter_map(violation).collect();
+    let mut violations: Vec<String> = packages.iter().filter_map(violation).collect();
+    let needed = needed_by(CORE, &metadata);
+    let heavy = NOT_IN_CORE.iter().filter(|name| needed.contains(**name));
+    violations.extend(heavy.map(|name| format!("{CORE} depends on {name}")));
+    if !needed.contains("serde") {
+        violations.push(format!("{CORE} is not among the packages"));
+    }
     violations.iter().for_each(|violation| eprintln!("{violation}"));
     if violations.is_empty() { Ok(()) } else { bail!("step `dependencies` failed: {}", violations.len()) }
 }
@@ -51,6 +62,30 @@ fn violation(package: &Value) -> Option<String> {
     (!is_allowed(licence)).then(|| format!("{name}: its licence is `{licence}`"))
 }
 
+/// The names of all packages that one needs to be built, in the answer of `cargo metadata`.
+fn needed_by(package: &str, metadata: &Value) -> BTreeSet<String> {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let names: BTreeMap<String, String> =
+        list(&metadata["packages"]).iter().map(|one| (text(&one["id"]), text(&one["name"]))).collect();
+    let is_normal = |needed: &&Value| list(&needed["dep_kinds"]).iter().any(|kind| kind["kind"].is_null());
+    let needed: BTreeMap<String, Vec<String>> = list(&metadata["resolve"]["nodes"])
+        .iter()
+        .map(|node| {
+            let normal = list(&node["deps"]);
+            (text(&node["id"]), normal.iter().filter(is_normal).map(|needed| text(&needed["pkg"])).collect())
+        })
+        .collect();
+    let mut open: Vec<&String> =
+        names.iter().filter(|(_, name)| *name == package).map(|(id, _)| id).collect();
+    let mut seen = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        let next = needed.get(id).into_iter().flatten().filter(|id| seen.insert((*id).clone()));
+        open.extend(next.collect::<Vec<_>>());
+    }
+    seen.iter().filter_map(|id| names.get(id).cloned()).collect()
+}
+
 /// True if a licence expression can be met by the licences that are allowed. Old ones have `/` for `OR`.
 fn is_allowed(expression: &str) -> bool {
     let expression = expression.replace('/', " OR ").replace(['(', ')'], "");
@@ -62,6 +97,25 @@ fn is_allowed(expression: &str) -> bool {
 mod tests {
     use super::*;
     use serde_json::json;
+
+    #[test]
+    fn packages_that_are_needed_for_tests_only_are_not_needed() {
+        let package = |name: &str| json!({ "id": format!("{name} 1"), "name": name });
+        let needs =
+            |name: &str, kind: Value| json!({ "pkg": format!("{name} 1"), "dep_kinds": [{ "kind": kind }] });
+        let node = |name: &str, deps: Vec<Value>| json!({ "id": format!("{name} 1"), "deps": deps });
+        let packages = ["core", "a", "b", "rand"].map(package);
+        let metadata = json!({
+            "packages": packages,
+            "resolve": { "nodes": [
+                node("core", vec![needs("a", Value::Null), needs("rand", json!("dev"))]),
+                node("a", vec![needs("b", Value::Null), needs("core", Value::Null)]),
+                node("b", vec![]),
+            ] },
+        });
+        let needed = needed_by("core", &metadata);
+        assert!(needed.contains("a") && needed.contains("b") && !needed.contains("rand"), "{needed:?}");
+    }
 
     #[test]
     fn licences_that_can_be_met_are_allowed() {
