@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
+use hysid::fit::network::{Checkpoint, fit, resume};
 use hysid::network::{Family, Sizes};
-use hysid::rate::RateMethod;
-use hysid::training::{Checkpoint, FitOptions, Trainer, fit, resume};
+use hysid::options::network::{FitOptions, Trainer};
 
 use crate::{assert_is_one_line, fixtures};
 

@@ -3,10 +3,11 @@
 
 use std::ops::ControlFlow;
 
+use hysid::data::record::Record;
+use hysid::fit::network::{Checkpoint, fit, resume};
 use hysid::model::Model;
 use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
-use hysid::record::Record;
-use hysid::training::{Checkpoint, FitOptions, Trainer, fit, resume};
+use hysid::options::network::{FitOptions, Trainer};
 
 use crate::bytes::Bytes;
 use crate::{fixtures, scalar};

@@ -3,11 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-use hysid::identification::options::ChosenOptions;
-use hysid::identification::{ModelName, identify};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::identify;
 use hysid::model::Model;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::options::ModelName;
+use hysid::options::chosen::ChosenOptions;
 use serde_json::json;
 
 /// A lagging output under two hundred rows of a growing oscillation.

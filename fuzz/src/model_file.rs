@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use hysid::data::record::Record;
 use hysid::model::Model;
-use hysid::record::Record;
 
 use crate::{assert_is_one_line, fixtures};
 

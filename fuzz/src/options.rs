@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use hysid::identification::options::{ChosenOptions, RateChoice};
-use hysid::identification::{identify, memory_need};
+use hysid::fit::{identify, memory_need};
+use hysid::options::chosen::{ChosenOptions, RateChoice};
 use serde_json::{Map, Value, json};
 
 use crate::bytes::Bytes;
@@ -51,7 +51,7 @@ pub fn run(data: &[u8]) {
 
 fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
     let names = ChosenOptions::names();
-    let models: Vec<&str> = hysid::identification::ModelName::all().map(|model| model.name()).collect();
+    let models: Vec<&str> = hysid::options::ModelName::all().map(|model| model.name()).collect();
     let mut all = Map::new();
     all.insert("model".into(), json!(bytes.one_of(&models)));
     // Small unless chosen otherwise, so that many sets are tried.
@@ -84,7 +84,7 @@ fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
 }
 
 pub fn seeds() -> Vec<Vec<u8>> {
-    let models = hysid::identification::ModelName::all();
+    let models = hysid::options::ModelName::all();
     let set = |name: &str| json!({ "model": name, "starts": 1, "epochs": 2, "operators": 5, "stops": 2 });
     models.map(|model| set(model.name()).to_string().into_bytes()).collect()
 }

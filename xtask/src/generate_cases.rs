@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use hysid::data::record::{Dataset, Record};
 use hysid::plant::cases::{Case, generated, one_loop};
-use hysid::record::{Dataset, Record};
 
 pub use request::Request;
 
@@ -71,7 +71,7 @@ fn push_row(text: &mut String, record: &Record, row: usize) {
 
 #[cfg(test)]
 mod tests {
-    use hysid::record::ColumnNames;
+    use hysid::data::record::ColumnNames;
 
     use super::*;
 

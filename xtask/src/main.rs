@@ -1,5 +1,5 @@
 //! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts | fuzz | soak |
-//! tidy`.
+//! same-models | tidy`.
 
 mod bench;
 mod cases;
@@ -10,6 +10,7 @@ mod fuzz;
 mod generate_cases;
 mod program;
 mod python;
+mod same_models;
 mod soak;
 mod test;
 mod tidy;
@@ -35,6 +36,9 @@ Commands:
                  gives the same inputs. With --coverage, one target under libFuzzer
   soak [KILLS]   kills fits at KILLS (200) random moments, fills the disk, races writers, fits every model to nasty
                  data under a time limit, and reports
+  same-models OLD [--program NEW]
+                 fits of every model by the program OLD and by the release build (or NEW): model files and what they
+                 simulate must be the same, byte by byte
   cases DIR [--models LIST] [--time-limit SECONDS] [--case-limit SECONDS] [--out FILE.md] [--program HYSID]
             [-- ARG..]
                  `hysid compare` on every subfolder of DIR that has train.csv and test.csv, as tables: test and
@@ -85,6 +89,9 @@ fn main() -> ExitCode {
         ["fuzz", rest @ ..] => fuzz::Request::parse(rest).and_then(|request| fuzz::run(&request)),
         ["soak", rest @ ..] if soak::kills(rest).is_some() => {
             soak::run(soak::kills(rest).unwrap_or_default())
+        }
+        ["same-models", rest @ ..] => {
+            same_models::Request::parse(rest).and_then(|request| same_models::run(&request))
         }
         ["cases", rest @ ..] => {
             cases::Request::parse(rest, &cases::OPTIONS).and_then(|request| cases::run(&request))

@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
-use hysid::identification::ModelName;
+use hysid::options::ModelName;
 
 use crate::program;
 

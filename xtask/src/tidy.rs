@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: the house rules that no compiler knows. Each rule is a function of a file's path and text in
 //! [`rules`]; this file reads the files and applies the rules to them.
 
+mod circles;
 mod rules;
 mod rust_code;
 
@@ -39,7 +40,8 @@ pub fn run() -> Result<()> {
     let root = workspace_root();
     let paths = repository_paths(&root)?;
     let files = read_text_files(&root, &paths)?;
-    let violations = violations(&paths, &files);
+    let mut violations = violations(&paths, &files);
+    violations.extend(circles::found(&files)?);
     for violation in &violations {
         eprintln!("{violation}");
     }
@@ -72,7 +74,7 @@ fn repository_paths(root: &Path) -> Result<BTreeSet<String>> {
 fn read_text_files(root: &Path, paths: &BTreeSet<String>) -> Result<Vec<SourceFile>> {
     paths
         .iter()
-        .filter(|path| [".rs", ".md", ".toml"].iter().any(|end| path.ends_with(end)))
+        .filter(|path| [".rs", ".md", ".toml", ".py"].iter().any(|end| path.ends_with(end)))
         .map(|path| {
             let text = fs::read_to_string(root.join(path))
                 .with_context(|| format!("step `tidy`: {path} could not be read as text"))?;

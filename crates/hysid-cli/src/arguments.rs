@@ -7,16 +7,16 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
-use hysid::automatic::MOST_MEMBERS;
-use hysid::classical::linear_fit::Sign;
 use hysid::diagnosis::DiagnosisOptions;
-use hysid::identification::ModelName;
-use hysid::identification::options::{ChosenOptions, NEURONS, RateChoice, STARTS};
 use hysid::model::BAND_PROBABILITIES;
+use hysid::options::ModelName;
+use hysid::options::auto::MOST_MEMBERS;
+use hysid::options::chosen::{ChosenOptions, NEURONS, RateChoice, STARTS};
+use hysid::options::classical::Sign;
+use hysid::options::network::PENALTIES;
+use hysid::options::network::POPULATIONS;
+use hysid::options::network::{FitOptions, Trainer};
 use hysid::plant::Specimen;
-use hysid::training::genetic::POPULATIONS;
-use hysid::training::options::PENALTIES;
-use hysid::training::{FitOptions, Trainer};
 
 use crate::reproduction::Experiment;
 

@@ -1,8 +1,8 @@
 //! How many measured outputs lie within a model's band.
 
+use hysid::data::record::Dataset;
 use hysid::model::Prediction;
-use hysid::record::Dataset;
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 
 /// Share of the measured outputs that lie within a band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -6,17 +6,17 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use anyhow::{Result, bail, ensure};
-use hysid::identification::options::RateChoice;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::ColumnNames;
 use hysid::model::Model;
-use hysid::rate::RateMethod;
-use hysid::record::ColumnNames;
+use hysid::options::chosen::RateChoice;
 
 use self::guess::Guess;
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::table::{Head, Table};
 use crate::terminal::{clipped, listed};
-use hysid::unit::{self, Conversion};
+use hysid::data::unit::{self, Conversion};
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -8,11 +8,12 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use hysid::identification::{Request, identify};
-use hysid::metrics::Errors;
+use hysid::data::metrics::Errors;
+use hysid::fit::identify;
 use hysid::model::Model;
-use hysid::training::Termination;
-use hysid::warning::Significant;
+use hysid::options::Request;
+use hysid::significant::Significant;
+use hysid::termination::Termination;
 
 use crate::arguments::Compare;
 use crate::data::Data as Read;

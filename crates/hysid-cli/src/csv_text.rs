@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use csv::QuoteStyle;
-use hysid::record::{Dataset, Record};
+use hysid::data::record::{Dataset, Record};
 
 use crate::cell::shortest;
 use crate::table::DELIMITERS;
@@ -57,8 +57,8 @@ mod tests {
     use std::path::Path;
 
     use clap::Parser;
+    use hysid::data::record::ColumnNames;
     use hysid::plant::{Specimen, with_noise};
-    use hysid::record::ColumnNames;
 
     use super::*;
     use crate::arguments::{Arguments, Command};

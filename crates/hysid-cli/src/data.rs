@@ -6,8 +6,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
+use hysid::data::record::{Dataset, Record};
 use hysid::error::{Channel, DataError, DataProblem};
-use hysid::record::{Dataset, Record};
 
 use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use hysid::metrics::Errors;
-use hysid::warning::Significant;
+use hysid::data::metrics::Errors;
+use hysid::significant::Significant;
 
-use hysid::unit;
+use hysid::data::unit;
 
 use crate::terminal::clipped;
 

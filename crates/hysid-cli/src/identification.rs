@@ -4,13 +4,14 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::data::record::{Dataset, Record};
+use hysid::data::summary::Summary;
 use hysid::diagnosis::before_a_fit;
-use hysid::identification::{Request, memory_need};
-use hysid::metrics::{ErrorSums, Errors};
+use hysid::fit::memory_need;
+use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::{Model, Prediction, Provenance};
-use hysid::record::{Dataset, Record};
-use hysid::summary::Summary;
-use hysid::training::{Checkpoint, Progress, resume};
+use hysid::options::Request;
 use hysid_files::Destination;
 use rayon::ThreadPool;
 
@@ -115,7 +116,7 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let mut observer = |progress: &Progress| follower.observe(progress);
     let fitted = pool.install(|| match work.begun {
         Some(begun) => resume(&data.set, begun, &mut observer),
-        None => hysid::identification::identify(&data.set, request, &mut observer),
+        None => hysid::fit::identify(&data.set, request, &mut observer),
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;

@@ -41,8 +41,8 @@ use std::path::Path;
 use arguments::{Arguments, ColumnOptions, Command, RateOption};
 use columns::Roles;
 use data::Data;
-use hysid::identification::options::RateChoice;
-use hysid::record::Dataset;
+use hysid::data::record::Dataset;
+use hysid::options::chosen::RateChoice;
 use messages::{StdoutClosed, Usage, note};
 use table::Table;
 

@@ -7,10 +7,10 @@ use std::io::{self, Write};
 use std::mem::{self, Discriminant};
 
 use anyhow::Result;
-use hysid::warning::Warning;
+use hysid::data::warning::Warning;
 use serde::Serialize;
 
-use crate::{files, terminal};
+use crate::terminal;
 
 /// Stdout's reader went away, as `head` does.
 #[derive(Debug)]
@@ -57,7 +57,7 @@ pub fn raw_results(text: &str) -> Result<()> {
 pub fn stdout_failed(error: io::Error) -> anyhow::Error {
     match error.kind() {
         io::ErrorKind::BrokenPipe => StdoutClosed.into(),
-        _ => anyhow::anyhow!("cannot write to stdout: {}", files::reason(&error)),
+        _ => anyhow::anyhow!("cannot write to stdout: {}", hysid_files::reason(&error)),
     }
 }
 

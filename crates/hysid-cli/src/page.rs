@@ -1,6 +1,6 @@
 //! Pages of HTML that need nothing but themselves, and their pieces. Cells and headings come in as text and are escaped here.
 
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 use hysid_files::PAGE_MARK;
 
 use crate::plot::{self, escape};

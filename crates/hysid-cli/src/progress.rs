@@ -4,8 +4,10 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use hysid::training::{Method, Phase, Progress};
-use hysid::warning::Significant;
+use hysid::fit::network::Progress;
+use hysid::model::history::Phase;
+use hysid::options::network::Method;
+use hysid::significant::Significant;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::checkpoint::Keeper;

@@ -11,9 +11,9 @@ mod provenance;
 mod unit;
 mod usage;
 
-use hysid::metrics::Errors;
+use hysid::data::metrics::Errors;
+use hysid::data::record::Dataset;
 use hysid::model::{Model, Prediction};
-use hysid::record::Dataset;
 
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;

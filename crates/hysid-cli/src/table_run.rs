@@ -5,9 +5,9 @@ use std::mem;
 use std::ops::ControlFlow;
 
 use anyhow::{Result, anyhow, bail};
+use hysid::data::record::{Fingerprint, Likeness, Record};
+use hysid::data::warning::Warning;
 use hysid::model::{Model, Prediction, Simulation};
-use hysid::record::{Fingerprint, Likeness, Record};
-use hysid::warning::Warning;
 
 use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;

@@ -3,8 +3,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use hysid::data::record::{Excitation, Record};
 use hysid::model::Model;
-use hysid::record::{Excitation, Record};
 
 /// Rows that are run at most, of all records together.
 const MOST_ROWS: usize = 2_000;

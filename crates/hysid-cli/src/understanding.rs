@@ -1,17 +1,17 @@
 //! What the program understood of the data, said before the work begins.
 
-use hysid::automatic::AutoOptions;
-use hysid::identification::Request;
+use hysid::data::rate::RateMethod;
+use hysid::data::summary::Summary;
 use hysid::network::Architecture;
-use hysid::rate::RateMethod;
-use hysid::summary::Summary;
-use hysid::warning::Significant;
+use hysid::options::Request;
+use hysid::options::auto::AutoOptions;
+use hysid::significant::Significant;
 
 use crate::data::Data;
 use crate::lines::{WIDTH, wrapped};
 use crate::messages::note;
 use crate::terminal::{clipped, listed, listed_paths};
-use hysid::unit;
+use hysid::data::unit;
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;

@@ -1,9 +1,9 @@
 //! The columns of a table for a model that was trained on other units: factors, or why there are none.
 
 use anyhow::{Result, bail};
+use hysid::data::unit::{self, Conversion};
 use hysid::model::Model;
-use hysid::unit::{self, Conversion};
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 
 use crate::columns::Roles;
 use crate::messages::note;

@@ -7,10 +7,10 @@ use std::fs;
 use std::process::Stdio;
 use std::time::Duration;
 
-use hysid::identification::memory_need;
-use hysid::identification::options::ChosenOptions;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::memory_need;
+use hysid::options::chosen::ChosenOptions;
 use serde_json::json;
 use workbench::Workbench;
 

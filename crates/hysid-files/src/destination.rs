@@ -1,5 +1,7 @@
 //! A path and what goes there.
 
+mod new_file;
+
 use std::fs::{self, OpenOptions};
 use std::io;
 use std::io::Write;
@@ -7,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 use crate::kind::Kind;
-use crate::new_file::NewFile;
 use crate::target::Target;
 use crate::{backup, leftovers, temporary};
+pub use new_file::NewFile;
 
 /// A path and what goes there.
 #[derive(Debug, Clone)]

@@ -15,15 +15,14 @@ mod failure;
 mod kind;
 mod leftovers;
 mod lock;
-mod new_file;
 mod rescue;
 mod target;
 mod temporary;
 
 pub use available_memory::available_memory;
 pub use destination::Destination;
+pub use destination::NewFile;
 pub use failure::{Failure, reason};
 pub use kind::{GENERATOR, Kind, PAGE_MARK};
 pub use lock::Lock;
-pub use new_file::NewFile;
 pub use rescue::rescue;

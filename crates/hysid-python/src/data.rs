@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use hysid::data::record::{self, ColumnNames, Record};
+use hysid::data::summary::Summary;
+use hysid::data::unit::Conversion;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, before_a_fit};
-use hysid::record::{self, ColumnNames, Record};
-use hysid::summary::Summary;
-use hysid::unit::Conversion;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 

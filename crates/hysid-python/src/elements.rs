@@ -1,9 +1,9 @@
 //! Operators and classical laws as functions on arrays.
 
-use hysid::classical::Classical;
-use hysid::classical::series::samples;
+use hysid::data::record::Excitation;
+use hysid::law::Classical;
+use hysid::law::series::samples;
 use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Relay, Stop};
-use hysid::record::Excitation;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 

@@ -7,10 +7,11 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use hysid::identification::options::{ChosenOptions, RateChoice};
-use hysid::identification::{self, ModelName};
-use hysid::training::{self, Observer};
-use hysid::validation::cross_validate;
+use hysid::fit;
+use hysid::fit::cross_validate;
+use hysid::fit::network::{Observer, Progress};
+use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::{self, ModelName};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
@@ -25,7 +26,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 #[pyclass(frozen, module = "hysid._hysid")]
 pub struct Request {
     chosen: ChosenOptions,
-    request: identification::Request,
+    request: options::Request,
 }
 
 #[pymethods]
@@ -87,7 +88,7 @@ pub fn option_names() -> Vec<String> {
 /// start, epoch, what is being done, the model that is being fitted, and whether that fit is one of many.
 type Report = (f64, f64, usize, usize, String, &'static str, bool);
 
-fn report(progress: &training::Progress<'_>) -> Report {
+fn report(progress: &Progress<'_>) -> Report {
     let word = |value: serde_json::Result<serde_json::Value>| -> String {
         value.ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_default()
     };
@@ -114,7 +115,7 @@ impl Exchange {
     }
 
     /// The observer of the fit.
-    fn observe(&self, progress: &training::Progress<'_>, deadline: Option<Instant>) -> ControlFlow<()> {
+    fn observe(&self, progress: &Progress<'_>, deadline: Option<Instant>) -> ControlFlow<()> {
         if let Ok(mut latest) = self.latest.lock() {
             *latest = Some(report(progress));
         }
@@ -142,7 +143,7 @@ pub fn identify(
     let (set, request) = (Arc::clone(&data.set), request.request.clone());
     let work = move |observer: &mut Observer<'_>| {
         check_memory(&set, &request)?;
-        identification::identify(&set, &request, observer)
+        fit::identify(&set, &request, observer)
     };
     let (fitted, interrupted) = attended(py, threads, time_limit, progress, work)?;
     Ok((Model::new(fitted.model), fitted.evaluations, interrupted))
@@ -170,8 +171,8 @@ pub fn validate(
 }
 
 /// Refuses work that needs more memory than there is, with the threads of this pool.
-fn check_memory(data: &hysid::record::Dataset, request: &identification::Request) -> hysid::Result<()> {
-    let need = identification::memory_need(data, request, rayon::current_num_threads())?;
+fn check_memory(data: &hysid::data::record::Dataset, request: &options::Request) -> hysid::Result<()> {
+    let need = fit::memory_need(data, request, rayon::current_num_threads())?;
     need.check(hysid_files::available_memory())
 }
 
@@ -196,7 +197,7 @@ fn attended<T: Send + 'static>(
     let (answer, mut answers) = channel();
     let with_work = Arc::clone(&exchange);
     std::thread::spawn(move || {
-        let mut observer = |progress: &training::Progress<'_>| with_work.observe(progress, deadline);
+        let mut observer = |progress: &Progress<'_>| with_work.observe(progress, deadline);
         let done = pool.install(|| work(&mut observer));
         // Nobody listens any more after a second Ctrl-C.
         let _ = answer.send(done);

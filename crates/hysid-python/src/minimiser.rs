@@ -1,6 +1,6 @@
 //! The minimiser of functions that need not be smooth.
 
-use hysid::training::space_dilation::{self, DilationOptions, Limits};
+use hysid::fit::network::space_dilation::{self, DilationOptions, Limits};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

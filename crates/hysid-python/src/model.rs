@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use hysid::automatic::Selection;
+use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
+use hysid::model::selection::Selection;
 use hysid::model::{self, Prediction};
-use hysid::record::Excitation;
 use hysid_files::{Destination, Kind};
 use numpy::PyArray1;
 use pyo3::prelude::*;

@@ -6,13 +6,14 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::network::fit;
+use hysid::fit::network::levenberg_marquardt::LevenbergMarquardt;
+use hysid::fit::network::objective::Objective;
+use hysid::network::scaling::Scaling;
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Stop};
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::scaling::Scaling;
-use hysid::training::levenberg_marquardt::LevenbergMarquardt;
-use hysid::training::objective::Objective;
-use hysid::training::{FitOptions, Trainer, fit};
+use hysid::options::network::{FitOptions, Trainer};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 

@@ -39,8 +39,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use crate::data::record::{Dataset, Record};
 use crate::error::Result;
-use crate::record::{Dataset, Record};
 pub use advice::Advice;
 use branch::Survey;
 pub use cycles::Cycle;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// Result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn errors_are_one_line_whatever_the_names() {
-        let error = "xp\n\x1b".parse::<crate::identification::ModelName>().unwrap_err().to_string();
+        let error = "xp\n\x1b".parse::<crate::options::ModelName>().unwrap_err().to_string();
         assert!(error.starts_with("model `xp\\n\\x1b` is unknown"), "{error}");
         let problem = DataProblem::Empty;
         let record = "a\u{9b}b".to_string();

@@ -3,8 +3,9 @@
 //! ```
 //! use std::ops::ControlFlow;
 //! use hysid::operator::{Operator, Stop};
-//! use hysid::record::{ColumnNames, Dataset, Record};
-//! use hysid::training::{FitOptions, fit};
+//! use hysid::data::record::{ColumnNames, Dataset, Record};
+//! use hysid::options::network::FitOptions;
+//! use hysid::fit::network::fit;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A specimen: an elastic spring beside a friction slider, driven by a growing oscillation.
@@ -26,35 +27,28 @@
 //! ```
 //!
 //! The library does no input or output, keeps no global state and has no unsafe code. Where to find
-//! what: [`record`] holds measured data, [`operator`] the elements of memory, [`network`] the family
-//! of networks, [`training`] identifies one, [`model`] is the result.
+//! what, each room using only those before it: [`data`] holds measured records, [`operator`] the elements of memory,
+//! [`network`] the family of networks, [`law`] the classical models, [`options`] what can be asked for, [`model`] the
+//! result, [`validation`] the folds, [`fit`] identifies; [`diagnosis`] tells what kind of hysteresis it is, and
+//! [`plant`] makes data.
 
-pub mod automatic;
-pub mod classical;
-pub mod column;
+pub mod data;
 pub mod diagnosis;
 pub mod error;
-mod free_run;
-pub mod identification;
+pub mod fit;
+pub mod law;
 mod linear_algebra;
-pub mod metrics;
 pub mod model;
 pub mod network;
 pub mod operator;
+pub mod options;
 pub mod plant;
-pub mod preprocessing;
 mod random;
-pub mod rate;
-pub mod record;
-pub mod scaling;
+pub mod significant;
 pub mod simd;
-mod stop_check;
-pub mod summary;
-pub mod training;
-pub mod turning_points;
-pub mod unit;
+pub mod stop_check;
+pub mod termination;
 pub mod validation;
-pub mod warning;
 
 pub use error::{Error, Result};
 

@@ -4,9 +4,12 @@
 mod band;
 mod ensemble;
 mod file;
+pub mod history;
 mod notes;
+pub mod preprocessing;
 mod ranges;
 mod runner;
+pub mod selection;
 mod simulation;
 mod stepper;
 
@@ -14,21 +17,21 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::automatic::Selection;
-use crate::classical::identification::Rival;
-use crate::classical::{Classical, Law};
+use crate::data::metrics::{ErrorSums, Errors};
+use crate::data::rate::RateMethod;
+use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
+use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
-use crate::identification::{ModelName, Request};
-use crate::metrics::{ErrorSums, Errors};
+use crate::law::{Classical, Law};
+use crate::model::history::Run;
+use crate::model::preprocessing::Preprocessing;
+use crate::model::selection::Selection;
 use crate::network::Network;
-use crate::preprocessing::Preprocessing;
-use crate::rate::RateMethod;
-use crate::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
-use crate::scaling::Scaling;
-use crate::training::history::Run;
-use crate::training::options::Regularisation;
-use crate::training::termination::Termination;
-use crate::warning::Warning;
+use crate::network::scaling::Scaling;
+use crate::options::classical::Rival;
+use crate::options::network::Regularisation;
+use crate::options::{ModelName, Request};
+use crate::termination::Termination;
 
 pub use band::{BAND_PROBABILITIES, Band, Prediction};
 pub(crate) use band::{HeldOutRow, disagreement};

@@ -7,11 +7,13 @@
 //! Everything here is in scaled units; [`crate::model::Model`] knows the user's.
 
 mod architecture;
+pub(crate) mod free_run;
 mod gradient;
 mod jacobian;
 mod memory;
 mod parameters;
 mod readout;
+pub mod scaling;
 mod sweep;
 mod tanh;
 mod transpose;

@@ -1,9 +1,17 @@
 //! Numbers without pattern that depend on nothing but what they are made from.
 
+use rand::{Rng, RngExt};
+
 /// A fixed hash (splitmix) in which every bit depends on every bit.
 pub(crate) fn mix(value: u64) -> u64 {
     let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     value ^ (value >> 31)
+}
+
+/// A standard normal number, by Box and Muller.
+pub(crate) fn normal(generator: &mut impl Rng) -> f64 {
+    let (u, v): (f64, f64) = (generator.random(), generator.random());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }

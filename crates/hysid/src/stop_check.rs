@@ -8,7 +8,7 @@ use std::fmt;
 
 /// Asked in the midst of long work: true once it should end. After one `true` it only says `true`.
 #[derive(Clone, Copy)]
-pub(crate) struct StopCheck<'a>(&'a (dyn Fn() -> bool + Sync + 'a));
+pub struct StopCheck<'a>(&'a (dyn Fn() -> bool + Sync + 'a));
 
 impl<'a> StopCheck<'a> {
     /// Asks this function, which may be called from any thread and takes no more than microseconds.
@@ -38,7 +38,7 @@ const BETWEEN: usize = 2_000_000;
 
 /// Counts the operations of a loop, and asks now and then whether to stop.
 #[derive(Debug, Clone)]
-pub(crate) struct Pace<'a> {
+pub struct Pace<'a> {
     stop: StopCheck<'a>,
     /// Operations until the next question.
     left: usize,
@@ -46,6 +46,7 @@ pub(crate) struct Pace<'a> {
 }
 
 impl<'a> Pace<'a> {
+    /// Nothing counted yet.
     pub fn new(stop: StopCheck<'a>) -> Self {
         Self { stop, left: BETWEEN, is_over: false }
     }

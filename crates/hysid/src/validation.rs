@@ -10,12 +10,11 @@ mod pooled;
 
 use serde::Serialize;
 
+use crate::data::FEWEST_ROWS;
+use crate::data::metrics::Errors;
+use crate::data::record::{Dataset, Record, measurements};
 use crate::error::{Error, Result};
-use crate::identification::{Request, identify};
-use crate::metrics::Errors;
 use crate::model::Model;
-use crate::record::{Dataset, Record, measurements};
-use crate::training::{FEWEST_ROWS, Observer, Progress};
 pub(crate) use pooled::PooledErrors;
 
 /// A part to fit to and a part to judge on.
@@ -236,47 +235,15 @@ impl<'d> CrossValidator<'d> {
     }
 }
 
-/// Identifies a model on each fold and judges it on what was held out. The observer is as in
-/// [`identify`]; its share of the work done is that of all folds. After it has said stop, the fold under way is
-/// judged with its best model so far, and no further one is begun.
-///
-/// # Errors
-/// Data too few for two folds, and as [`identify`].
-pub fn cross_validate(
-    data: &Dataset,
-    request: &Request,
-    most_folds: usize,
-    observer: &mut Observer<'_>,
-) -> Result<CrossValidation> {
-    let mut validator = CrossValidator::new(data, most_folds)?;
-    let count = validator.folds();
-    for place in 0..count {
-        let fold = validator.fold(place);
-        let mut stopped = false;
-        let mut of_fold = |progress: &Progress| {
-            let share = (place as f64 + progress.done) / count as f64;
-            let flow = observer(&progress.of_part(share));
-            stopped = flow.is_break();
-            flow
-        };
-        match identify(&fold.train, request, &mut of_fold) {
-            Err(Error::Stopped) if place > 0 => break,
-            fitted => validator.judge(&fold, &fitted?.model)?,
-        };
-        if stopped {
-            break;
-        }
-    }
-    Ok(validator.result().expect("every fold has rows to judge on"))
-}
-
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
-    use crate::classical::identification::{ClassicalOptions, Rival};
-    use crate::record::ColumnNames;
+    use crate::data::record::ColumnNames;
+    use crate::fit::{cross_validate, identify};
+    use crate::options::Request;
+    use crate::options::classical::{ClassicalOptions, Rival};
 
     /// A play of threshold 0.3 under growing oscillations.
     fn record(name: &str, rows: usize, size: f64) -> Record {

@@ -5,16 +5,19 @@ mod small_models;
 use std::ops::ControlFlow;
 use std::sync::OnceLock;
 
-use hysid::automatic::AutoOptions;
-use hysid::classical::Classical;
-use hysid::classical::identification::{ClassicalOptions, Rival};
-use hysid::identification::{ModelName, Request, identify};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::cross_validate;
+use hysid::fit::identify;
+use hysid::fit::network::{Observer, Progress};
+use hysid::law::Classical;
 use hysid::model::{Body, Ensemble, Group, Model, Speaker, Voice, Weights};
 use hysid::network::Family;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Observer, Progress, Termination};
-use hysid::validation::{cross_validate, folds};
+use hysid::options::auto::AutoOptions;
+use hysid::options::classical::{ClassicalOptions, Rival};
+use hysid::options::{ModelName, Request};
+use hysid::termination::Termination;
+use hysid::validation::folds;
 
 use small_models::{record, small};
 

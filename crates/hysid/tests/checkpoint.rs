@@ -3,11 +3,13 @@
 
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::network::{Checkpoint, Fit, Progress, fit, resume};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Checkpoint, Fit, FitOptions, Method, Progress, Termination, Trainer, fit, resume};
+use hysid::options::network::{FitOptions, Method, Trainer};
+use hysid::termination::Termination;
 
 fn data() -> Dataset {
     let x: Vec<f64> =

@@ -1,24 +1,32 @@
 //! The classical models that are linear in their weights: against each other, against published values,
 //! and against the memory laws they must obey or break.
 
-use hysid::classical::linear_fit::Sign;
-use hysid::classical::masing::{Masing, MasingOptions, MasingParts};
-use hysid::classical::modified_prandtl_ishlinskii::{
-    DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, ModifiedPrandtlIshlinskiiOptions,
-};
-use hysid::classical::prandtl_ishlinskii::{PrandtlIshlinskii, PrandtlIshlinskiiOptions};
-use hysid::classical::preisach::{Preisach, PreisachOptions, PreisachWeights};
-use hysid::classical::series::run;
-use hysid::classical::turning_point_stack::TurningPointStack;
-use hysid::classical::{Law, Sample};
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::{DataProblem, Error};
+use hysid::fit::law::Identify;
+use hysid::fit::law::masing::MasingOptions;
+use hysid::fit::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskiiOptions;
+use hysid::fit::law::prandtl_ishlinskii::PrandtlIshlinskiiOptions;
+use hysid::fit::law::preisach::PreisachOptions;
+use hysid::fit::law::search::SearchProgress;
+use hysid::fit::network::random_stops::{RandomStopsOptions, fit_random_stops};
+use hysid::law::masing::{Masing, MasingParts};
+use hysid::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
+use hysid::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use hysid::law::preisach::{Preisach, PreisachWeights};
+use hysid::law::series::run;
+use hysid::law::turning_point_stack::TurningPointStack;
+use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
+use hysid::options::classical::Sign;
 use hysid::plant::Ferromagnet;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::random_stops::{RandomStopsOptions, fit_random_stops};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+
+fn go_on(_: SearchProgress) -> std::ops::ControlFlow<()> {
+    std::ops::ControlFlow::Continue(())
+}
 
 fn repeatable() -> ProptestConfig {
     ProptestConfig {
@@ -346,23 +354,30 @@ fn a_fit_finds_the_weights_of_plays() {
     let data = dataset(x.clone(), outputs(&model, &x));
     let options =
         PrandtlIshlinskiiOptions { thresholds: Some(model.thresholds().to_vec()), ..Default::default() };
-    let fitted = PrandtlIshlinskii::fit(&data, &options).unwrap();
+    let fitted = PrandtlIshlinskii::fit(&data, &options, &mut go_on).unwrap().law;
     for (found, exact) in fitted.weights().iter().zip(model.weights()) {
         assert!((found - exact).abs() < 1e-4, "{found} and {exact}");
     }
     // With thresholds of its own it must find the same behaviour on another path.
     let other = path(&[0.0, 2.2, -0.7, 3.1, -3.9, 1.2, 0.2, 0.9], 23);
     for sign in [None, Some(Sign::NonNegative)] {
-        let fitted =
-            PrandtlIshlinskii::fit(&data, &PrandtlIshlinskiiOptions { sign, ..Default::default() }).unwrap();
+        let fitted = PrandtlIshlinskii::fit(
+            &data,
+            &PrandtlIshlinskiiOptions { sign, ..Default::default() },
+            &mut go_on,
+        )
+        .unwrap()
+        .law;
         let error = nrmse(&outputs(&model, &other), &outputs(&fitted, &other));
         assert!(error < 1.0, "{error} %");
     }
     let wrong = PrandtlIshlinskii::fit(
         &data,
         &PrandtlIshlinskiiOptions { sign: Some(Sign::NonPositive), ..Default::default() },
+        &mut go_on,
     )
-    .unwrap();
+    .unwrap()
+    .law;
     assert!(wrong.weights().iter().all(|&w| w <= 0.0));
     assert!(nrmse(&outputs(&model, &other), &outputs(&wrong, &other)) > 10.0);
 }
@@ -373,7 +388,8 @@ fn a_fit_finds_a_virgin_curve() {
     let x = path(&[0.0, 2.5, -2.0, 1.5, -1.0, 0.6, 2.5, -2.5, 2.8, -2.8], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
     let thresholds = Some(model.parts().thresholds.clone());
-    let fitted = Masing::fit(&data, &MasingOptions { thresholds, ..Default::default() }).unwrap();
+    let fitted =
+        Masing::fit(&data, &MasingOptions { thresholds, ..Default::default() }, &mut go_on).unwrap().law;
     for (found, exact) in fitted.parts().slopes.iter().zip(&model.parts().slopes) {
         assert!((found - exact).abs() < 1e-4, "{found} and {exact}");
     }
@@ -393,12 +409,15 @@ fn a_fit_finds_a_sheet_of_steel() {
     ]);
     b[70..90].fill(f64::NAN);
     let data = dataset(h, b);
-    let fitted = Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: None }).unwrap();
+    let fitted =
+        Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: None }, &mut go_on).unwrap().law;
     let (h, b) = sheet(&[0.0, 90.0, -90.0, 250.0, 60.0, 140.0, -30.0, 30.0, -250.0, -20.0, -100.0, 20.0]);
     let error = nrmse(&b, &outputs(&fitted, &h));
     assert!(error < 3.0, "{error} %");
     let signed =
-        Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: Some(Sign::NonNegative) }).unwrap();
+        Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: Some(Sign::NonNegative) }, &mut go_on)
+            .unwrap()
+            .law;
     assert!(signed.weights().cells.iter().all(|&w| w >= 0.0));
 }
 
@@ -409,11 +428,15 @@ fn a_fit_finds_plays_behind_dead_zones() {
     let data = dataset(x.clone(), outputs(&model, &x));
     let other = path(&[0.0, 2.2, -0.7, 2.9, -2.8, 1.2, 0.2, 0.9], 23);
     let expected = outputs(&model, &other);
-    let bent = ModifiedPrandtlIshlinskii::fit(&data, &ModifiedPrandtlIshlinskiiOptions::default()).unwrap();
+    let bent =
+        ModifiedPrandtlIshlinskii::fit(&data, &ModifiedPrandtlIshlinskiiOptions::default(), &mut go_on)
+            .unwrap()
+            .law;
     let error = nrmse(&expected, &outputs(&bent, &other));
     assert!(error < 1.5, "{error} %");
     assert!(bent.superposition().slopes().iter().all(|&slope| slope > 0.0));
-    let straight = PrandtlIshlinskii::fit(&data, &PrandtlIshlinskiiOptions::default()).unwrap();
+    let straight =
+        PrandtlIshlinskii::fit(&data, &PrandtlIshlinskiiOptions::default(), &mut go_on).unwrap().law;
     assert!(nrmse(&expected, &outputs(&straight, &other)) > 3.0 * error);
 }
 
@@ -476,19 +499,23 @@ fn unusable_parameters_are_refused() {
 fn data_and_options_without_meaning_are_refused() {
     let two = Record::new("r", vec![[0.0, 1.0].repeat(20), [1.0, 0.0].repeat(20)], [0.0, 1.0].repeat(20));
     let two = Dataset::new(ColumnNames::plain(2), vec![two.unwrap()]).unwrap();
-    let Err(Error::Data(defect)) = Preisach::fit(&two, &PreisachOptions::default()) else {
+    let Err(Error::Data(defect)) = Preisach::fit(&two, &PreisachOptions::default(), &mut go_on) else {
         panic!("two inputs were taken");
     };
     assert_eq!(defect.problem, DataProblem::Inputs { expected: 1, found: 2 });
     let x = path(&[0.0, 1.0, -1.0, 0.5], 20);
     let data = dataset(x.clone(), x);
-    assert!(Preisach::fit(&data, &PreisachOptions { intervals: 0, sign: None }).is_err());
+    assert!(Preisach::fit(&data, &PreisachOptions { intervals: 0, sign: None }, &mut go_on).is_err());
     assert!(
-        PrandtlIshlinskii::fit(&data, &PrandtlIshlinskiiOptions { operators: 0, ..Default::default() })
-            .is_err()
+        PrandtlIshlinskii::fit(
+            &data,
+            &PrandtlIshlinskiiOptions { operators: 0, ..Default::default() },
+            &mut go_on
+        )
+        .is_err()
     );
     // A straight line is no hysteresis, but is fitted all the same.
-    let line = Preisach::fit(&data, &PreisachOptions { intervals: 5, sign: None }).unwrap();
+    let line = Preisach::fit(&data, &PreisachOptions { intervals: 5, sign: None }, &mut go_on).unwrap().law;
     assert!((last(&line, &[0.3]) - 0.3).abs() < 1e-3);
 }
 

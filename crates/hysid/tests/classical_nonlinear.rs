@@ -5,22 +5,26 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use hysid::classical::bouc_wen::{BoucWen, BoucWenOptions, Degradation};
-use hysid::classical::generalized_prandtl_ishlinskii::{
-    Envelope, GeneralizedPrandtlIshlinskii, GeneralizedPrandtlIshlinskiiOptions, PlayWeights,
+use hysid::data::metrics::ErrorSums;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::law::Identify;
+use hysid::fit::law::bouc_wen::BoucWenOptions;
+use hysid::fit::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskiiOptions;
+use hysid::fit::law::jiles_atherton::JilesAthertonOptions;
+use hysid::fit::law::neuro_madelung::NeuroMadelungOptions;
+use hysid::fit::law::rate_dependent_prandtl_ishlinskii::{
+    RateDependentPrandtlIshlinskiiOptions, ThresholdForm,
 };
-use hysid::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm, JilesAthertonOptions};
-use hysid::classical::neuro_madelung::{NeuroMadelung, NeuroMadelungOptions};
-use hysid::classical::rate_dependent_prandtl_ishlinskii::{
-    RateDependentPrandtlIshlinskii, RateDependentPrandtlIshlinskiiOptions, ThresholdForm, Thresholds,
-};
-use hysid::classical::search::SearchProgress;
-use hysid::classical::series::{Series, run};
-use hysid::classical::{Law, Sample};
-use hysid::metrics::ErrorSums;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::Termination;
+use hysid::fit::law::search::SearchProgress;
+use hysid::law::bouc_wen::{BoucWen, Degradation};
+use hysid::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
+use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use hysid::law::neuro_madelung::NeuroMadelung;
+use hysid::law::rate_dependent_prandtl_ishlinskii::{RateDependentPrandtlIshlinskii, Thresholds};
+use hysid::law::series::{Series, run};
+use hysid::law::{Law, Sample};
+use hysid::termination::Termination;
 
 // ------------------------------------------------------------------------------- paths and laws
 

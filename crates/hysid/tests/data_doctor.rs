@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
 use hysid::operator::{Operator, Stop};
 use hysid::plant::{Ferromagnet, Specimen, with_noise};
-use hysid::record::{ColumnNames, Dataset, Record};
 
 /// Springs and sliders: a Prandtl-Ishlinskii law, as a force.
 fn sliders(x: &[f64]) -> Vec<f64> {

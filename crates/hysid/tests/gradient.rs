@@ -1,11 +1,11 @@
 //! Derivatives against difference quotients of the whole simulation, and the gradient of the
 //! objective against those of its value.
 
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::network::objective::Objective;
+use hysid::network::scaling::Scaling;
 use hysid::network::{Architecture, Drive, Family, Layout, Network, Sizes};
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::scaling::Scaling;
-use hysid::training::FitOptions;
-use hysid::training::objective::Objective;
+use hysid::options::network::FitOptions;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 
@@ -210,7 +210,7 @@ struct Case {
 fn case(family: Family, ridge: f64, decay: f64) -> Case {
     let time = family == Family::XpnnPlus;
     let data = measured(time);
-    let rate = time.then_some(hysid::rate::RateMethod::Central);
+    let rate = time.then_some(hysid::data::rate::RateMethod::Central);
     let sizes = Sizes { stops: 3, hidden: 2, relaxation: 2 };
     let architecture = Architecture::new(family, sizes, 1, time, time).unwrap();
     let options =

@@ -2,12 +2,13 @@
 
 use std::ops::ControlFlow;
 
-use hysid::classical::identification::{ClassicalOptions, Rival};
-use hysid::identification::{Request, identify};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::operator::{Operator, Stop};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::options::Request;
+use hysid::options::classical::{ClassicalOptions, Rival};
 
 /// Growing cycles of so many rows each, of three plays in parallel.
 fn cycles(rows: usize, period: usize) -> Dataset {

@@ -4,11 +4,12 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
+use hysid::fit::network::fit;
 use hysid::network::{Family, Sizes};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{FitOptions, fit};
+use hysid::options::network::FitOptions;
 
 fn folder() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

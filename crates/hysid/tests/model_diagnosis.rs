@@ -4,13 +4,14 @@ mod small_models;
 
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::model::TimeScale;
 use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
-use hysid::identification::{ModelName, identify};
+use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::network::Family;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::options::ModelName;
 
 use small_models::{record, small};
 

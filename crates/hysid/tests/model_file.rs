@@ -4,16 +4,17 @@
 use std::ops::ControlFlow;
 use std::sync::LazyLock;
 
-use hysid::classical::identification::Rival;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::data::warning::Warning;
 use hysid::error::Error;
-use hysid::identification::{ModelName, Request};
+use hysid::fit::network::fit;
 use hysid::model::{FORMAT_VERSION, Model};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{FitOptions, fit};
-use hysid::warning::Warning;
+use hysid::options::classical::Rival;
+use hysid::options::network::FitOptions;
+use hysid::options::{ModelName, Request};
 
 /// Uneven steps in time, so that no two rows are alike.
 fn record(inputs: usize, rows: usize) -> Record {
@@ -382,7 +383,7 @@ fn a_file_of_version_1_is_read() {
         (ModelName::Network(Family::XpnnPlus), Some(RateMethod::Central))
     );
     let Request::Network(options) = &model.provenance().options else { panic!("not a network") };
-    assert_eq!((options.training, options.epochs), (hysid::training::Trainer::LevenbergMarquardt, 6));
+    assert_eq!((options.training, options.epochs), (hysid::options::network::Trainer::LevenbergMarquardt, 6));
     let x = vec![0.0, 0.05218, 0.10412, 0.15493];
     let time = vec![0.0, 0.1, 0.2, 0.3];
     let record = Record::new("r", vec![x], vec![f64::NAN; 4]).unwrap().with_time(time).unwrap();

@@ -5,11 +5,12 @@ mod small_models;
 
 use std::ops::ControlFlow;
 
-use hysid::classical::identification::Rival;
-use hysid::identification::{ModelName, identify};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::identify;
 use hysid::model::Model;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
+use hysid::options::ModelName;
+use hysid::options::classical::Rival;
 
 use small_models::{record, small};
 

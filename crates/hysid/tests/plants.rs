@@ -5,6 +5,7 @@
 use std::f64::consts::{PI, TAU};
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use hysid::data::record::{Dataset, Record};
 use hysid::operator::{Operator, Play};
 use hysid::plant::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
 use hysid::plant::{
@@ -12,7 +13,6 @@ use hysid::plant::{
     RateDependentActuator, ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator,
     terfenol_rod, two_wire_actuator, with_noise,
 };
-use hysid::record::{Dataset, Record};
 
 /// Area that a closed curve encloses, counterclockwise counted positive.
 fn enclosed(x: &[f64], y: &[f64]) -> f64 {

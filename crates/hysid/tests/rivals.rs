@@ -5,15 +5,17 @@ mod small_models;
 
 use std::ops::ControlFlow;
 
-use hysid::classical::identification::{ClassicalOptions, Rival};
-use hysid::classical::{Dimension, Law};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::Error;
-use hysid::identification::{ModelName, Request, identify};
+use hysid::fit::identify;
+use hysid::fit::network::Fit;
+use hysid::law::{Dimension, Law};
 use hysid::model::{Body, Model};
 use hysid::network::Family;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Fit, Termination};
+use hysid::options::classical::{ClassicalOptions, Rival};
+use hysid::options::{ModelName, Request};
+use hysid::termination::Termination;
 
 use small_models::{record, small};
 

@@ -4,15 +4,16 @@ mod small_models;
 
 use std::ops::ControlFlow;
 
-use hysid::classical::identification::Rival;
+use hysid::data::metrics::ErrorSums;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Excitation, Record};
 use hysid::error::{DataProblem, Error};
-use hysid::identification::options::ChosenOptions;
-use hysid::identification::{ModelName, Request, identify};
-use hysid::metrics::ErrorSums;
+use hysid::fit::identify;
 use hysid::model::{Model, Prediction, Simulation};
 use hysid::network::Family;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Excitation, Record};
+use hysid::options::chosen::ChosenOptions;
+use hysid::options::classical::Rival;
+use hysid::options::{ModelName, Request};
 
 use small_models::{record, small};
 

@@ -1,8 +1,10 @@
 //! The minimiser of non-smooth functions, on functions whose minimum is known. The iterations allowed
 //! are about those of an independent implementation, with room for another starting point.
 
-use hysid::training::Termination;
-use hysid::training::space_dilation::{Dilation, DilationOptions, Limits, Minimum, SpaceDilation, minimise};
+use hysid::fit::network::space_dilation::{
+    Dilation, DilationOptions, Limits, Minimum, SpaceDilation, minimise,
+};
+use hysid::termination::Termination;
 
 fn solve(
     mut f: impl FnMut(&[f64], &mut [f64]) -> f64,

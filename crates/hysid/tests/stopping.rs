@@ -4,11 +4,14 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use hysid::Error;
-use hysid::identification::options::ChosenOptions;
-use hysid::identification::{ModelName, Request, identify};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::{Checkpoint, FitOptions, Progress, Termination, fit, resume};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::identify;
+use hysid::fit::network::{Checkpoint, Progress, fit, resume};
+use hysid::options::chosen::ChosenOptions;
+use hysid::options::network::FitOptions;
+use hysid::options::{ModelName, Request};
+use hysid::termination::Termination;
 use serde_json::json;
 
 /// After so long a fit is asked to stop.

@@ -2,16 +2,19 @@
 
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::{DataProblem, Error};
-use hysid::identification::Request;
+use hysid::fit::cross_validate;
+use hysid::fit::network::{Fit, Progress, fit};
+use hysid::model::history::{Phase, Run};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
+use hysid::options::Request;
+use hysid::options::network::FitOptions;
+use hysid::options::network::Regularisation;
 use hysid::plant::with_noise;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::training::options::Regularisation;
-use hysid::training::{Fit, FitOptions, Phase, Progress, Run, Termination, fit};
-use hysid::validation::cross_validate;
+use hysid::termination::Termination;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;
 

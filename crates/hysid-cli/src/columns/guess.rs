@@ -4,8 +4,8 @@
 use std::ops::Range;
 
 use anyhow::{Result, bail};
-use hysid::column::{Course, Part, one_signal};
-use hysid::unit;
+use hysid::data::column::{Course, Part, one_signal};
+use hysid::data::unit;
 
 use crate::cell::CellReader;
 use crate::table::Table;

@@ -6,13 +6,14 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::fit::network::objective::Objective;
+use hysid::fit::network::{Fit, fit};
+use hysid::network::scaling::Scaling;
 use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Dataset, Record};
-use hysid::scaling::Scaling;
-use hysid::training::objective::Objective;
-use hysid::training::{Fit, FitOptions, Method, Trainer, fit};
+use hysid::options::network::{FitOptions, Method, Trainer};
 
 use crate::Outcome;
 use crate::arguments::Bench;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use hysid::identification::ModelName;
-use hysid::identification::options::ChosenOptions;
-use hysid::summary::Summary;
+use hysid::data::summary::Summary;
+use hysid::options::ModelName;
+use hysid::options::chosen::ChosenOptions;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

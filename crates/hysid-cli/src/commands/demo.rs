@@ -5,8 +5,8 @@ use std::path::Path;
 
 use anyhow::Result;
 use clap::Parser;
+use hysid::data::record::Dataset;
 use hysid::plant::Specimen;
-use hysid::record::Dataset;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use hysid::data::summary::Summary;
 use hysid::diagnosis::DiagnosisOptions;
-use hysid::identification::options::RateChoice;
-use hysid::summary::Summary;
+use hysid::options::chosen::RateChoice;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

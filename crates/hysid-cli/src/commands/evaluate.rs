@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
+use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::error::{Channel, DataError, DataProblem};
-use hysid::metrics::{ErrorSums, Errors};
 
 use crate::Outcome;
 use crate::arguments::Evaluate;

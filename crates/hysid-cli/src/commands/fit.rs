@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use hysid::automatic::Selection;
-use hysid::identification::options::{ChosenOptions, RateChoice};
-use hysid::identification::{ModelName, Request};
-use hysid::metrics::Errors;
+use hysid::data::metrics::Errors;
+use hysid::data::rate::RateMethod;
+use hysid::fit::network::Checkpoint;
 use hysid::model::Model;
+use hysid::model::selection::Selection;
 use hysid::network::Architecture;
-use hysid::rate::RateMethod;
-use hysid::training::{Checkpoint, FitOptions, Termination};
+use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::network::FitOptions;
+use hysid::options::{ModelName, Request};
+use hysid::termination::Termination;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use anyhow::Result;
+use hysid::data::record::{ColumnNames, Dataset};
 use hysid::plant::{Specimen, with_noise};
-use hysid::record::{ColumnNames, Dataset};
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

@@ -1,12 +1,13 @@
 //! `hysid validate`: how well a model predicts data that it was not fitted to.
 
 use anyhow::{Context, Result, anyhow};
-use hysid::identification::identify;
+use hysid::data::unit;
+use hysid::fit::identify;
+use hysid::fit::network::Progress;
 use hysid::model::Model;
-use hysid::training::{Progress, Termination};
-use hysid::unit;
+use hysid::significant::Significant;
+use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
-use hysid::warning::Significant;
 
 use crate::Outcome;
 use crate::arguments::Validate;
@@ -142,7 +143,7 @@ fn cells(fold: &FoldErrors) -> [String; 4] {
     [percent(&fold.train), percent(&fold.unseen), number(fold.train.rmse), number(fold.unseen.rmse)]
 }
 
-fn percent(errors: &hysid::metrics::Errors) -> String {
+fn percent(errors: &hysid::data::metrics::Errors) -> String {
     errors.nrmse_std_percent.map_or_else(|| "-".into(), number)
 }
 

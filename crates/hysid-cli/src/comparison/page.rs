@@ -1,7 +1,7 @@
 //! The page of a comparison: table, error against size, loops of every model.
 
 use anyhow::Result;
-use hysid::record::Dataset;
+use hysid::data::record::Dataset;
 
 use super::{Fitted, HEADINGS, Row, cells, stopped_note};
 use crate::page::{figure, note, section, table, verdict, whole};

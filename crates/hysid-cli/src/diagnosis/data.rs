@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, verdicts};
@@ -50,7 +50,7 @@ impl<'a> DataDiagnosis<'a> {
     fn noise(&self) -> String {
         let names = self.data.set.names();
         let of = |column: &str, deviation: f64, (low, high): (f64, f64)| {
-            let unit = hysid::unit::suffix(hysid::unit::of_column(column).as_deref());
+            let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(column).as_deref());
             let percent = 100.0 * deviation / (high - low);
             format!(
                 "{} {:.2}{} ({} % of its range)",

@@ -1,7 +1,7 @@
 //! Findings in words and numbers: the table of verdicts for a terminal.
 
 use hysid::diagnosis::{Evidence, Finding, Property};
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 
 use crate::lines::{aligned, indented};
 

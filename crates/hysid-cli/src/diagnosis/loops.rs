@@ -1,7 +1,7 @@
 //! The loops of a record in numbers: first, last and largest for a terminal, all of them for a page.
 
 use hysid::diagnosis::Cycle;
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 
 use super::quantities::{Quantities, text_label};
 use crate::lines::aligned;

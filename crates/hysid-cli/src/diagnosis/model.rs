@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
+use hysid::data::unit;
 use hysid::diagnosis::model::{Basis, Claim, Criterion, ModelDiagnosis, NeuronKind, TimeScale, WidthAtSpeed};
 use hysid::diagnosis::{Finding, Property, Verdict};
 use hysid::model::Model;
-use hysid::unit;
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};

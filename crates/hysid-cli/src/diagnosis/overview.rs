@@ -1,7 +1,7 @@
 //! The record as a whole: its loops with backbone and turning points, and the way of its input.
 
+use hysid::data::record::Dataset;
 use hysid::diagnosis::Diagnosis;
-use hysid::record::Dataset;
 
 use super::quantities::Quantities;
 use crate::page::{count, figure, note, section};

@@ -1,7 +1,7 @@
 //! Names of input and output, and the units of what is made of them.
 
-use hysid::record::ColumnNames;
-use hysid::unit;
+use hysid::data::record::ColumnNames;
+use hysid::data::unit;
 
 /// What the loops are loops of.
 pub struct Quantities {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use hysid::warning::Significant;
+use hysid::significant::Significant;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::Ranged;
 

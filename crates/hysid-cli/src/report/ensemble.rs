@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use hysid::automatic::{CandidateResult, Selection};
+use hysid::model::selection::{CandidateResult, Selection};
 use hysid::model::{Ensemble, Group, Model, Speaker};
 
 use super::Report;

@@ -1,6 +1,6 @@
 //! The verdict and the table of errors.
 
-use hysid::metrics::Errors;
+use hysid::data::metrics::Errors;
 
 use super::{Report, unit};
 use crate::page::{note, number, section as section_of, table};

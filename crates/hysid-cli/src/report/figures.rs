@@ -1,9 +1,10 @@
 //! Loops, and how the training converged.
 
-use hysid::identification::Request;
+use hysid::data::record::Record;
+use hysid::model::history::{Phase, Run};
 use hysid::model::{Model, Provenance};
-use hysid::record::Record;
-use hysid::training::{Method, Phase, Run};
+use hysid::options::Request;
+use hysid::options::network::Method;
 
 use super::{ReportSet, unit};
 use crate::page::{count, figure, note, section};
@@ -139,8 +140,9 @@ pub fn convergence(model: &Model) -> Option<String> {
             (Phase::AllData, Method::Genetic) => (Colour::Input, 2.0),
             (Phase::AllData, _) => (Colour::Error, 2.0),
         };
-        let point =
-            |p: &hysid::training::HistoryPoint| (p.epoch as f64, p.train_nrmse_percent.max(LOWEST_PERCENT));
+        let point = |p: &hysid::model::history::HistoryPoint| {
+            (p.epoch as f64, p.train_nrmse_percent.max(LOWEST_PERCENT))
+        };
         curves.push(Curve {
             points: thin(&run.history.iter().map(point).collect::<Vec<_>>(), 1000),
             colour,

@@ -1,9 +1,9 @@
 //! The neurons: thresholds, capacities, relaxation times, output weights.
 
+use hysid::data::record::{Dataset, Record};
+use hysid::network::scaling::Scaling;
 use hysid::network::{Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator};
-use hysid::record::{Dataset, Record};
-use hysid::scaling::Scaling;
 
 use super::{Report, seen_label, unit};
 use crate::page::{count, figure, note, number, section as section_of, table};

@@ -1,8 +1,8 @@
 //! The parameters of a classical law, in the field's symbols and the user's units.
 
-use hysid::classical::Law;
+use hysid::data::unit::of_column;
+use hysid::law::Law;
 use hysid::model::Body;
-use hysid::unit::of_column;
 
 use super::{Report, seen_label};
 use crate::page::{count, note, number, section as section_of, table};

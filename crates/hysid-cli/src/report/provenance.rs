@@ -1,10 +1,10 @@
 //! What was understood of the data, warnings, and how the model came about.
 
-use hysid::automatic::AutoOptions;
-use hysid::classical::identification::ClassicalOptions;
-use hysid::identification::Request;
-use hysid::rate::RateMethod;
-use hysid::training::FitOptions;
+use hysid::data::rate::RateMethod;
+use hysid::options::Request;
+use hysid::options::auto::AutoOptions;
+use hysid::options::classical::ClassicalOptions;
+use hysid::options::network::FitOptions;
 
 use super::{Report, seen_label};
 use crate::page::{count, definitions, number, section as section_of};

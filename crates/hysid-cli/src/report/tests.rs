@@ -1,9 +1,10 @@
 use std::ops::ControlFlow;
 
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Record};
+use hysid::fit::network::fit;
 use hysid::network::Sizes;
-use hysid::rate::RateMethod;
-use hysid::record::{ColumnNames, Record};
-use hysid::training::{FitOptions, fit};
+use hysid::options::network::FitOptions;
 
 use super::*;
 

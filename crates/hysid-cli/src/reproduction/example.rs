@@ -4,13 +4,13 @@ pub mod catalogue;
 mod figures;
 
 use anyhow::{Context, Result};
-use hysid::identification::{ModelName, Request};
-use hysid::metrics::{ErrorSums, Errors};
+use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::data::record::{Dataset, Record};
 use hysid::model::Model;
 use hysid::network::Family;
+use hysid::options::network::FitOptions;
+use hysid::options::{ModelName, Request};
 use hysid::plant::Specimen;
-use hysid::record::{Dataset, Record};
-use hysid::training::FitOptions;
 
 use super::chapter::{Cell, Chapter, Part, Table, Target, capitalised, stands_in};
 use super::{Settings, fitting};

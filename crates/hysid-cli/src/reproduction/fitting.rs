@@ -4,12 +4,14 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::Result;
-use hysid::identification::{Request, identify};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::Dataset;
+use hysid::fit::identify;
+use hysid::fit::network::Fit;
 use hysid::network::{Family, Sizes};
-use hysid::rate::RateMethod;
-use hysid::record::Dataset;
-use hysid::training::{Fit, FitOptions, Trainer};
-use hysid::warning::Significant;
+use hysid::options::Request;
+use hysid::options::network::{FitOptions, Trainer};
+use hysid::significant::Significant;
 
 use super::Settings;
 use crate::interrupt;

@@ -4,11 +4,11 @@
 mod specimens;
 
 use anyhow::{Context, Result};
-use hysid::identification::Request;
+use hysid::data::record::Record;
 use hysid::model::Model;
 use hysid::network::Family;
-use hysid::record::Record;
-use hysid::training::FitOptions;
+use hysid::options::Request;
+use hysid::options::network::FitOptions;
 
 use super::chapter::{Cell, Chapter, Part, Table};
 use super::{Settings, fitting};

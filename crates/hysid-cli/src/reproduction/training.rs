@@ -7,12 +7,13 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use hysid::metrics::Errors;
+use hysid::data::metrics::Errors;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::Dataset;
+use hysid::fit::network::fit;
 use hysid::network::Family;
+use hysid::options::network::{FitOptions, Trainer};
 use hysid::plant::Specimen;
-use hysid::rate::RateMethod;
-use hysid::record::Dataset;
-use hysid::training::{FitOptions, Trainer, fit};
 
 use super::Settings;
 use super::chapter::Chapter;

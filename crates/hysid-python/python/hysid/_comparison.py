@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from hysid import _hysid
 from hysid._data import columns
 from hysid._fitting import as_json, fitted
+from hysid._html import number, table
 from hysid._warning import HysidWarning, warn
 from hysid.model import Errors, Model
 
@@ -123,9 +124,15 @@ class Comparison(Sequence[Compared]):
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        from hysid._html import comparison_html
-
-        return comparison_html(self.cells())
+        head = ["model", "unseen %", "train %", "parameters", "fit s"]
+        rows = []
+        for row in self.cells():
+            if row["error"] is not None:
+                rows.append([row["model"], row["error"], "", "", ""])
+                continue
+            errors = (number(row["unseen_percent"]), number(row["train_percent"]))
+            rows.append([row["model"], *errors, str(row["parameters"]), f"{row['fit_seconds']:.2g}"])
+        return table(head, rows)
 
 
 def compare(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
@@ -86,9 +87,13 @@ class _Findings:
         return "\n".join(f"{finding.name:<18}{finding.verdict}" for finding in self.properties)
 
     def _repr_html_(self) -> str:
-        from hysid._html import diagnosis_html
-
-        return diagnosis_html(self.properties)
+        rows = "".join(
+            f'<tr><td style="text-align: left">{escape(finding.name)}</td>'
+            f'<td style="text-align: left"><b>{escape(finding.verdict)}</b></td>'
+            f'<td style="text-align: left">{escape(finding.statement)}</td></tr>'
+            for finding in self.properties
+        )
+        return f"<table><tbody>{rows}</tbody></table>"
 
 
 class Diagnosis(_Findings):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from hysid import _hysid
 from hysid._data import columns
 from hysid._fitting import requested, told
+from hysid._html import number, table
 from hysid._warning import warn
 from hysid.model import Errors
 
@@ -57,9 +58,13 @@ class Validation:
     unseen_nrmse_std_percent: float | None
 
     def _repr_html_(self) -> str:
-        from hysid._html import validation_html
-
-        return validation_html(self)
+        head = ["held out", "unseen, % of std", "train, % of std"]
+        rows = [
+            [fold.held_out, number(fold.unseen.nrmse_std_percent), number(fold.train.nrmse_std_percent)]
+            for fold in self.folds
+        ]
+        rows.append(["geometric mean", number(self.unseen_nrmse_std_percent), ""])
+        return table(head, rows)
 
 
 def validate(

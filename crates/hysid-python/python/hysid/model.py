@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
+from hysid._html import number, table
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -561,9 +563,22 @@ class Model:
         return f"<hysid.Model {name}: {inputs} -> {self.output}, {self.parameters} parameters{error}>"
 
     def _repr_html_(self) -> str:
-        from hysid._html import model_html
+        inputs = ", ".join(self.inputs)
+        rate = "" if self.rate is None else f", rate by {self.rate} differences"
+        if self.rate in ("given", "savitzky-golay"):
+            rate = f", rate: {self.rate}"
+        about = f"{inputs} → {self.output}{rate}; {self.parameters} parameters; {self.termination}"
 
-        return model_html(self)
+        def row(name: str, errors: Errors) -> list[str]:
+            percents = (errors.nrmse_std_percent, errors.nrmse_range_percent)
+            return [name, *map(number, percents), number(errors.rmse), number(errors.max_abs_error)]
+
+        rows = [row("training", self.train)]
+        if self.validation is not None:
+            rows.append(row("held out", self.validation))
+        head = ["", "% of std", "% of range", f"RMSE of {self.output}", "largest"]
+        chosen = "".join(f"<p>{escape(line)}</p>" for line in self._native.selection() or ())
+        return f"<p><b>{escape(self.name)}</b>: {escape(about)}</p>{table(head, rows)}{chosen}"
 
 
 def _of_records(

@@ -4,10 +4,10 @@
 use serde::{Serialize, Serializer};
 
 use super::{Delay, Finding, Property, Verdict};
-use crate::classical::identification::Rival;
-use crate::identification::ModelName;
 use crate::network::Family;
-use crate::warning::Significant;
+use crate::options::ModelName;
+use crate::options::classical::Rival;
+use crate::significant::Significant;
 
 /// The simplest model that can hold what was found, and why.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -6,8 +6,8 @@ use super::noise;
 use super::opening::{Opening, openings};
 use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
-use crate::record::{Dataset, Record};
-use crate::turning_points::turning_points;
+use crate::data::record::{Dataset, Record};
+use crate::data::turning_points::turning_points;
 
 /// Branches of twice as many rows are averaged in blocks, to about so many points.
 const MOST_POINTS: usize = 400;

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::branch::{Branch, Survey};
 use super::rate_dependence::Speeds;
-use crate::record::Record;
+use crate::data::record::Record;
 
 /// Delays are sought up to this share of the shortest branch, either way.
 const LONGEST: f64 = 0.25;

@@ -6,7 +6,7 @@ use super::branch::Survey;
 use super::cycles::repeated;
 use super::noise;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// A loss of energy that matters, as a share of the first cycle's.
 const EFFECT: f64 = 0.05;

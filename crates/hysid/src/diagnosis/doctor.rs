@@ -16,10 +16,10 @@ use serde::Serialize;
 
 use super::branch::Survey;
 use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
+use crate::data::record::{Dataset, Record};
+use crate::data::unit;
 use crate::error::Result;
-use crate::record::{Dataset, Record};
-use crate::unit;
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// Complaints of one kind are told one by one up to this many.
 const TOLD: usize = 2;

@@ -7,9 +7,10 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use hysid::classical::identification::Rival;
+//! use hysid::options::classical::Rival;
 //! use hysid::diagnosis::{ModelDiagnosis, Property, Verdict};
-//! use hysid::identification::{ModelName, Request, identify};
+//! use hysid::options::{ModelName, Request};
+//! use hysid::fit::identify;
 //! use hysid::plant::Specimen;
 //! let data = Specimen::named("terfenol-actuator").unwrap().train();
 //! let request = Request::of(ModelName::Rival(Rival::PrandtlIshlinskii), None, 1);
@@ -36,8 +37,8 @@ use serde::Serialize;
 
 use super::{Finding, Property, Verdict};
 use crate::error::Result;
-use crate::identification::ModelName;
 use crate::model::Model;
+use crate::options::ModelName;
 pub use certificate::{Basis, Bound, Claim, MemoryCertificate, Refinement};
 pub use loop_widths::{LoopWidths, WidthAtSpeed};
 pub use neurons::{Neuron, NeuronKind};

@@ -76,7 +76,7 @@ mod tests {
     fn noise_on_a_curve_is_found_within_its_sampling_error() {
         let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
         let values: Vec<f64> = (0..4000)
-            .map(|k| (0.01 * k as f64).sin() + 0.02 * crate::training::start::normal(&mut generator))
+            .map(|k| (0.01 * k as f64).sin() + 0.02 * crate::random::normal(&mut generator))
             .collect();
         assert!((deviation(std::iter::once(values.as_slice())) / 0.02 - 1.0).abs() < 0.05);
     }

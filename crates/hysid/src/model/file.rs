@@ -6,16 +6,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::classical::Classical;
+use crate::data::rate::RateMethod;
+use crate::data::record::ColumnNames;
+use crate::data::unit;
 use crate::error::{Error, Result};
-use crate::identification::ModelName;
+use crate::law::Classical;
+use crate::model::preprocessing::Preprocessing;
 use crate::model::{Band, Body, Ensemble, Group, Model, Provenance, TrainedRanges};
+use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Layout, Network};
-use crate::preprocessing::Preprocessing;
-use crate::rate::RateMethod;
-use crate::record::ColumnNames;
-use crate::scaling::Scaling;
-use crate::unit;
+use crate::options::ModelName;
 
 /// Version of the layout that is written.
 pub const FORMAT_VERSION: u64 = 5;

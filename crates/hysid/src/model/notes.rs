@@ -1,9 +1,10 @@
 //! What a user should know of a fitted model beside its errors.
 
-use crate::automatic::{Selection, WarmUp};
-use crate::metrics::Errors;
+use crate::data::metrics::Errors;
+use crate::data::warning::Warning;
+use crate::model::selection::{Selection, WarmUp};
 use crate::model::{Ensemble, Model};
-use crate::warning::{Significant, Warning};
+use crate::significant::Significant;
 
 /// Weights of a law that a row may stand for.
 const WEIGHTS_A_ROW: usize = 2;

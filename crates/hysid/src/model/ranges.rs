@@ -1,7 +1,7 @@
 //! Inputs and rates beyond what a model was trained on.
 
+use crate::data::warning::Warning;
 use crate::model::Model;
-use crate::warning::Warning;
 
 /// What the rows so far are compared with.
 #[derive(Debug, Clone)]

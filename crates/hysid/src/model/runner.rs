@@ -3,16 +3,16 @@
 //! Rows are taken in chunks, with the rates of their first input and the time steps before them. However a record is
 //! cut, the outputs are the same to the last bit, since each row's rate and step follow from the rows around it.
 
-use crate::classical::{Classical, ClassicalState, Law, Sample};
+use crate::data::rate::RateMethod;
+use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
-use crate::free_run::{CHUNK, FreeRun};
+use crate::law::{Classical, ClassicalState, Law, Sample};
 use crate::model::band::disagreement;
 use crate::model::ensemble::{Council, Excursion};
+use crate::model::preprocessing::{Past, Preprocessing};
 use crate::model::ranges::Ranges;
 use crate::model::{Body, Ensemble, Model};
-use crate::preprocessing::{Past, Preprocessing};
-use crate::rate::RateMethod;
-use crate::record::Excitation;
+use crate::network::free_run::{CHUNK, FreeRun};
 
 /// How sure an output is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

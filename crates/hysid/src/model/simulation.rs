@@ -2,11 +2,11 @@
 
 use std::mem;
 
+use crate::data::record::Excitation;
+use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::model::runner::{Runner, Spread};
 use crate::model::{Band, Model, Prediction};
-use crate::record::Excitation;
-use crate::warning::Warning;
 
 /// A free run that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
 /// [`Model::predict`] to the last bit, however the record is cut.

@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use crate::classical::{ClassicalState, Law, Sample};
 use crate::error::{Error, Result};
+use crate::law::{ClassicalState, Law, Sample};
 use crate::model::ensemble::{Council, Excursion};
+use crate::model::preprocessing::{Past, limited};
 use crate::model::{Body, Model};
 use crate::network::Simulator;
-use crate::preprocessing::{Past, limited};
 
 /// A model that is run sample by sample. Fed with the rates that [`Model::simulate`] would use, it
 /// gives the same outputs to the last bit.

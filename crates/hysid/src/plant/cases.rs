@@ -16,8 +16,8 @@ mod structures;
 mod subject;
 mod timed;
 
+use crate::data::record::{ColumnNames, Dataset, Record};
 use crate::error::Result;
-use crate::record::{ColumnNames, Dataset, Record};
 
 use super::noise::with_noise;
 use draw::Draw;

@@ -17,8 +17,8 @@
 //! drew it), that partial unloading keeps the permanent strain, the values of the concrete (typical
 //! ones) and the strain history.
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::path;
 use super::specimen::{Columns, Specimen};

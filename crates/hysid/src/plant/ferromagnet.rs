@@ -19,8 +19,8 @@
 
 use std::f64::consts::FRAC_2_PI;
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::path;
 use super::specimen::{Columns, Specimen};

@@ -9,8 +9,8 @@
 //! damper of Spencer, Dyke, Sain and Carlson; the hyperbolic tangent of the speed of Kwok and co-workers.
 //! *Designed*: that both are added behind a lag, and the values.
 
-use crate::classical::bouc_wen::{BoucWen, BoucWenState};
-use crate::classical::{Law, Sample};
+use crate::law::bouc_wen::{BoucWen, BoucWenState};
+use crate::law::{Law, Sample};
 use crate::operator::relaxation;
 
 /// Values of a damper.

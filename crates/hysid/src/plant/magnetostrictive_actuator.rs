@@ -18,8 +18,8 @@
 
 use std::f64::consts::TAU;
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::generalized_play::GeneralizedPlays;
 use super::specimen::{Columns, Specimen};

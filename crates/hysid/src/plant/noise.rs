@@ -3,8 +3,8 @@
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::record::{Dataset, Record};
 
 /// The data with Gaussian noise on the output. Its deviation is `percent` of the population standard
 /// deviation of all scored outputs together. The same data, `percent` and `seed` give the same noise;

@@ -1,6 +1,6 @@
 //! Paths that drive specimens, and what they have in common when made into records.
 
-use crate::record::Record;
+use crate::data::record::Record;
 
 /// Fewest steps of a swing, so that a small loop is a loop.
 const FEWEST_STEPS: f64 = 4.0;

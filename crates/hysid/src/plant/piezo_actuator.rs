@@ -12,8 +12,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::specimen::{Columns, Specimen};
 

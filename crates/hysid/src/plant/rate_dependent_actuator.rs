@@ -12,8 +12,8 @@
 //! *Published*: the law. *Designed*: all values; those that the paper identified for its example 6, and
 //! its inputs, are not published.
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::specimen::{Columns, Specimen};
 use super::tones::{self, Tone};

@@ -19,8 +19,8 @@
 //! [`BoucWenBaberNoori::joint`] the scales of force, displacement and energy, α and the pinching but
 //! for p; the rest of it is that published set. The drift history is designed as well.
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::path;
 use super::specimen::{Columns, Specimen};

@@ -18,8 +18,8 @@
 //! licence is not stated. *Designed*: our path of the voltage
 //! and its speed.
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::generalized_play::{Envelope, GeneralizedPlays, Start};
 use super::path;

@@ -1,8 +1,8 @@
 //! The catalogue of specimens: those of the paper's examples, with what is known about it and
 //! how it is tested.
 
+use crate::data::record::{ColumnNames, Dataset, Record};
 use crate::error::Result;
-use crate::record::{ColumnNames, Dataset, Record};
 
 use super::{
     concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator, rate_dependent_actuator,

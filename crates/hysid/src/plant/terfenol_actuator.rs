@@ -12,8 +12,8 @@
 //! *Published*: the law, and that triangular currents between -0.7 and 1.2 A drove the actuator.
 //! *Designed*: all values, and the turning points of the current.
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::generalized_play::{Envelope, GeneralizedPlays, Start};
 use super::path;

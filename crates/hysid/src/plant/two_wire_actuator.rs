@@ -19,8 +19,8 @@
 //!
 //! [`shape_memory_actuator`]: super::shape_memory_actuator
 
+use crate::data::record::Record;
 use crate::error::Result;
-use crate::record::Record;
 
 use super::ferromagnet::Ferromagnet;
 use super::path;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::metrics::{ErrorSums, Errors, ScoredRow};
-use crate::record::Dataset;
+use crate::data::metrics::{ErrorSums, Errors, ScoredRow};
+use crate::data::record::Dataset;
 
 /// Errors on rows held out, of which some may have been held out more than once: a row counts once, with the
 /// mean of its squared errors.
@@ -61,7 +61,7 @@ impl PooledErrors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{ColumnNames, Record};
+    use crate::data::record::{ColumnNames, Record};
 
     #[test]
     fn a_row_held_out_twice_counts_once() {

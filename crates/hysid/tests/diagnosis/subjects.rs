@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use hysid::classical::bouc_wen::BoucWen;
-use hysid::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm};
-use hysid::classical::{Law, Sample};
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::Property;
+use hysid::law::bouc_wen::BoucWen;
+use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use hysid::law::{Law, Sample};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::plant::{Ferromagnet, Specimen, shape_memory_actuator};
-use hysid::record::{ColumnNames, Dataset, Record};
 
 /// Turning points of the protocol.
 const TURNING: [f64; 30] = [

@@ -1,13 +1,13 @@
 //! A record that every model can be fitted to, and requests small enough that all of them are quick.
 
-use hysid::automatic::AutoOptions;
-use hysid::classical::identification::ClassicalOptions;
-use hysid::identification::{ModelName, Request};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::Record;
 use hysid::network::Sizes;
 use hysid::operator::{Operator, Stop};
-use hysid::rate::RateMethod;
-use hysid::record::Record;
-use hysid::training::FitOptions;
+use hysid::options::auto::AutoOptions;
+use hysid::options::classical::ClassicalOptions;
+use hysid::options::network::FitOptions;
+use hysid::options::{ModelName, Request};
 
 /// A play-like output that lags behind its input, so that every model has something to find. Another name is
 /// another measurement.

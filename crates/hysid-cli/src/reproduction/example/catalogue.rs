@@ -1,7 +1,7 @@
 //! The paper's examples as data: specimens, rivals, what the paper reports and what is to be reached.
 
-use hysid::classical::identification::Rival;
 use hysid::network::Family;
+use hysid::options::classical::Rival;
 
 /// An example of the paper.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Loops, histories and errors of several models on the same data.
 
-use hysid::record::Dataset;
+use hysid::data::record::Dataset;
 
 use super::largest;
 use crate::plot::thin::{Point, thin, thin_path};

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
-use hysid::record::{ColumnNames, Dataset, Record};
 
 /// A property and the specimen that has just that.
 pub struct Property {

@@ -1,7 +1,7 @@
 //! What the comparison of trainers comes to: tables, figures, and the sentence on the paper's claim.
 
-use hysid::training::Trainer;
-use hysid::warning::Significant;
+use hysid::options::network::Trainer;
+use hysid::significant::Significant;
 use hysid_files::Kind;
 
 use super::super::chapter::{Cell, Chapter, Part, Table, stands_in};
@@ -251,7 +251,7 @@ fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
 fn csv(repetitions: &[Repetition]) -> String {
     let mut text = String::from(SEEDS_HEADER);
     for training in repetitions.iter().flat_map(|repetition| &repetition.trainings) {
-        let percent = |errors: &hysid::metrics::Errors| errors.nrmse_std_percent.unwrap_or(f64::NAN);
+        let percent = |errors: &hysid::data::metrics::Errors| errors.nrmse_std_percent.unwrap_or(f64::NAN);
         text += &format!(
             "{},{},{},{},{},{},{:.4},{}\n",
             training.seed,

@@ -1,4 +1,4 @@
-use hysid::metrics::ErrorSums;
+use hysid::data::metrics::ErrorSums;
 
 use super::*;
 

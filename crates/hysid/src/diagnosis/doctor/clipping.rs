@@ -3,9 +3,9 @@
 //! both sides of the turning point, and comes to it abruptly.
 
 use super::{Complaint, ComplaintKind, Severity, Units, piece};
+use crate::data::record::{Dataset, Record};
 use crate::diagnosis::Piece;
 use crate::diagnosis::branch::Survey;
-use crate::record::{Dataset, Record};
 
 /// Rows that repeat the extreme.
 const FEWEST_ROWS: usize = 5;

@@ -2,10 +2,10 @@
 //! stand far from all others; a mark within the range is known by its value and by the jumps to it and back.
 
 use super::{Complaint, ComplaintKind, Severity, piece};
+use crate::data::record::{Dataset, Record};
+use crate::data::unit;
 use crate::diagnosis::Piece;
-use crate::record::{Dataset, Record};
-use crate::unit;
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// Numbers that mark missing values, or are the full scale of an integer or of a number of single precision.
 const MARKS: [f64; 22] = [

@@ -173,10 +173,10 @@ fn coarse_resolution(survey: &Survey, of_output: bool) -> Option<Complaint> {
     })
 }
 
-fn input(record: &crate::record::Record) -> &[f64] {
+fn input(record: &crate::data::record::Record) -> &[f64] {
     &record.inputs()[0]
 }
 
-fn output(record: &crate::record::Record) -> &[f64] {
+fn output(record: &crate::data::record::Record) -> &[f64] {
     record.output()
 }

@@ -1,10 +1,10 @@
 //! Bounds of a model's output for bounded inputs, from its parameters alone, theory.md (10.42).
 
-use crate::classical::Classical;
-use crate::classical::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::Classical;
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::model::{Body, Model};
+use crate::network::scaling::Scaling;
 use crate::network::{Layout, Network};
-use crate::scaling::Scaling;
 
 /// What rounding may add to a bound, as a share of its magnitude.
 const ROUNDING: f64 = 1e-9;

@@ -9,11 +9,11 @@ use super::probe::{Probe, extent, path, times};
 use super::properties::PROTOCOL;
 use super::structure::{law_sees_rate, sees_time};
 use super::weights::WeightDiagnosis;
-use crate::classical::Classical;
 use crate::diagnosis::{Finding, Property, Verdict};
 use crate::error::Result;
+use crate::law::Classical;
 use crate::model::Body;
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// Rows to half the range of the path that is refined.
 const COARSE: u32 = 20;

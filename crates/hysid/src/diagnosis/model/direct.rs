@@ -1,13 +1,13 @@
 //! Tests that only a model allows: the same way at other speeds, its mirror image, an excursion repeated.
 
 use super::probe::{Path, Probe, STEPS, extent, path};
+use crate::data::record::Record;
 use crate::diagnosis::odd_symmetry::EFFECT as ODD_EFFECT;
 use crate::diagnosis::rate_dependence::EFFECT as RATE_EFFECT;
 use crate::diagnosis::wiping_out::{EFFECT as GAP_EFFECT, loops};
 use crate::diagnosis::{Evidence, Finding, Picture, PictureCurve, Piece, Property, Verdict};
 use crate::error::Result;
-use crate::record::Record;
-use crate::warning::Significant;
+use crate::significant::Significant;
 
 /// Below this share of the range of the output a difference is rounding.
 pub(super) const ROUNDING: f64 = 1e-9;

@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::probe::{Probe, extent, times};
 use super::properties::{PROTOCOL, repeated_loops};
 use crate::error::Result;
+use crate::network::scaling::Scaling;
 use crate::network::{Drive, Layout, Network};
 use crate::operator::{deteriorating_stop, play, relaxation, stop};
-use crate::scaling::Scaling;
 
 /// A part without which the output changes by less than this share of its range does not matter.
 pub(super) const MATTERS: f64 = 1e-3;

@@ -3,11 +3,11 @@
 
 use serde::Serialize;
 
+use crate::data::rate::RateMethod;
+use crate::data::record::{ColumnNames, Dataset, Record};
 use crate::error::{Error, Result};
 use crate::model::{Body, Model};
 use crate::network::Layout;
-use crate::rate::RateMethod;
-use crate::record::{ColumnNames, Dataset, Record};
 
 /// Rows from the middle of the range to its end. Every tenth of the way falls on a row, and a branch over the
 /// whole range has few enough rows that none are averaged.

@@ -3,6 +3,7 @@
 
 use super::direct;
 use super::probe::{Probe, data, extent};
+use crate::data::record::{Dataset, Record};
 use crate::diagnosis::branch::Survey;
 use crate::diagnosis::cycles::{Cycle, cycles};
 use crate::diagnosis::{
@@ -10,7 +11,6 @@ use crate::diagnosis::{
     orientation, saturation, static_hysteresis, wiping_out,
 };
 use crate::error::{DataProblem, Result};
-use crate::record::{Dataset, Record};
 
 /// The protocol of theory.md (10.30): nested and shifted loops between repeated whole ones.
 pub(super) const PROTOCOL: [f64; 29] = [

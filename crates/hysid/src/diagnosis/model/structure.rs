@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::direct::about_origin;
 use super::probe::Probe;
-use crate::classical::Classical;
 use crate::diagnosis::{Finding, Property, Verdict};
+use crate::law::Classical;
 use crate::model::{Body, Ensemble, Model};
 use crate::network::Architecture;
 

@@ -1,20 +1,21 @@
 //! Models of known weights: closed forms, and what each neuron is.
 
 use super::*;
-use crate::classical::bouc_wen::{BoucWen, Degradation};
-use crate::classical::identification::{ClassicalOptions, Rival};
-use crate::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm};
-use crate::classical::rate_dependent_prandtl_ishlinskii::{
+use crate::data::rate::RateMethod;
+use crate::data::record::{ColumnNames, Dataset, Record};
+use crate::law::bouc_wen::{BoucWen, Degradation};
+use crate::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use crate::law::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
 };
-use crate::identification::Request;
+use crate::model::preprocessing::Preprocessing;
 use crate::model::{Body, Found};
+use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Family, Network, Sizes};
-use crate::preprocessing::Preprocessing;
-use crate::rate::RateMethod;
-use crate::record::{ColumnNames, Dataset, Record};
-use crate::scaling::Scaling;
-use crate::training::{FitOptions, Termination};
+use crate::options::Request;
+use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::network::FitOptions;
+use crate::termination::Termination;
 
 /// Largest input and rate of the models here, in the user's units.
 const X: f64 = 3.0;
@@ -176,7 +177,7 @@ fn a_mixing_readout_is_not_congruent() {
     assert!(criteria.iter().all(|criterion| criterion.agrees == Some(true)), "{criteria:?}");
 }
 
-fn law(law: impl Into<crate::classical::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
+fn law(law: impl Into<crate::law::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
     let request = Request::Classical(ClassicalOptions::of(rival));
     let model = model(Body::Law(law.into()), request, rate.then_some(RateMethod::Central));
     let diagnosis = ModelDiagnosis::of(&model).unwrap();

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::classical::Law;
-use crate::classical::bouc_wen::BoucWen;
-use crate::classical::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
-use crate::classical::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::error::Result;
+use crate::law::Law;
+use crate::law::bouc_wen::BoucWen;
+use crate::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii};
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::operator::Relaxation;
 use crate::plant::elastomer::{Elastomer, ElastomerParameters};
 use crate::plant::generalized_play::{Envelope, GeneralizedPlays, Start};

@@ -1,9 +1,9 @@
 //! Soft magnets and ferroelectrics of the cases.
 
-use crate::classical::jiles_atherton::{JilesAtherton, JilesAthertonForm};
-use crate::classical::preisach::{Preisach, PreisachWeights};
-use crate::classical::{Law, Sample};
 use crate::error::Result;
+use crate::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
+use crate::law::preisach::{Preisach, PreisachWeights};
+use crate::law::{Law, Sample};
 use crate::operator::Relaxation;
 use crate::plant::{Everett, Ferromagnet};
 

@@ -1,8 +1,8 @@
 //! Cases of one loop: what most magnetics laboratories measure, and what says nothing of smaller loops.
 
+use crate::data::record::{ColumnNames, Dataset, Record};
 use crate::error::Result;
 use crate::plant::path;
-use crate::record::{ColumnNames, Dataset, Record};
 
 use super::draw::Draw;
 use super::plans::{PLANS, Plan};

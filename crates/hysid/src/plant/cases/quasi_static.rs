@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::data::record::Record;
 use crate::error::Result;
 use crate::plant::path;
-use crate::record::Record;
 
 use super::Parts;
 use super::draw::Draw;

@@ -1,8 +1,8 @@
 //! Structures and metals of the cases: members in cyclic tests.
 
-use crate::classical::bouc_wen::BoucWen;
-use crate::classical::masing::{Masing, MasingParts};
 use crate::error::Result;
+use crate::law::bouc_wen::BoucWen;
+use crate::law::masing::{Masing, MasingParts};
 use crate::operator::{DeterioratingStop, Operator};
 use crate::plant::cyclic_plasticity::{Backstress, CyclicPlasticity, CyclicPlasticityParameters};
 use crate::plant::peak_oriented::{PeakOriented, PeakOrientedParameters};

@@ -1,6 +1,6 @@
 //! What is measured in a case: any law, untouched at the beginning of each record.
 
-use crate::classical::{Law, Sample};
+use crate::law::{Law, Sample};
 
 /// A law that gives the outputs of a record from its samples.
 type Run = Box<dyn Fn(&[Sample]) -> Vec<f64>>;

@@ -78,7 +78,7 @@ fn one_loop_has_no_reversal_inside_and_its_test_has() {
             |x: &f64| x.min(high - 1e-9 * (high - low)) <= low || *x >= high - 1e-9 * (high - low);
         let turning = |record: &Record| -> Vec<f64> {
             let x = &record.inputs()[0];
-            crate::turning_points::turning_points(x, 0.02 * (high - low))
+            crate::data::turning_points::turning_points(x, 0.02 * (high - low))
                 .into_iter()
                 .map(|row| x[row])
                 .collect()

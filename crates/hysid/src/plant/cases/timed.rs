@@ -1,11 +1,11 @@
 //! Designs of experiments where time may matter: frequencies, pairs of amplitude and frequency, random
 //! histories, a steady sine.
 
-use crate::classical::Sample;
+use crate::data::record::Record;
 use crate::error::Result;
+use crate::law::Sample;
 use crate::plant::path;
 use crate::plant::tones::{self, Tone};
-use crate::record::Record;
 
 use super::Parts;
 use super::draw::Draw;

@@ -280,8 +280,8 @@ fn what_is_left(mut products: [[f64; COLUMNS]; COLUMNS]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::diagnosis::DiagnosisOptions;
-    use crate::record::{ColumnNames, Dataset, Record};
 
     /// A sine at first, and what cubics on both sides of its top answer to it `lag` later, with `beside` added.
     fn around_a_top(lag: f64, beside: impl Fn(f64) -> f64) -> Dataset {

@@ -1,0 +1,198 @@
+//! What the values and the name of a column tell about its meaning: a counter or time is no input, two columns may
+//! be one signal, and a force is mostly the output.
+
+use crate::data::unit;
+
+/// A column with fewer values than this tells nothing.
+const FEWEST: usize = 10;
+
+/// Columns whose correlation is at least this in magnitude are one signal: one deviates from a multiple of the other
+/// by a tenth of its standard deviation at most.
+const ONE_SIGNAL: f64 = 0.995;
+
+/// How the values of a column go on from row to row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Course {
+    /// Whole numbers, each one more than that before.
+    Counts,
+    /// It grows from every row to the next.
+    Grows,
+    /// Whole numbers that stay for some rows, and then grow by one.
+    CountsInSteps,
+    /// One value throughout.
+    Constant,
+    /// It goes up and down, or there are too few values to tell.
+    Varies,
+}
+
+impl Course {
+    /// Of the values of each record.
+    pub fn of<'a>(records: impl IntoIterator<Item = &'a [f64]> + Clone) -> Self {
+        if records.clone().into_iter().map(<[f64]>::len).sum::<usize>() < FEWEST {
+            return Self::Varies;
+        }
+        let steps = || {
+            let records = records.clone().into_iter();
+            records.flat_map(|values| values.windows(2).map(|pair| (pair[0], pair[1] - pair[0])))
+        };
+        let is_whole = || records.clone().into_iter().flatten().all(|value| value.fract() == 0.0);
+        let mut values = records.clone().into_iter().flatten();
+        let first = values.next();
+        if values.all(|value| Some(value) == first) {
+            return Self::Constant;
+        }
+        if steps().all(|(_, step)| step > 0.0) {
+            return if is_whole() && steps().all(|(_, step)| step == 1.0) {
+                Self::Counts
+            } else {
+                Self::Grows
+            };
+        }
+        let rises = steps().filter(|(_, step)| *step == 1.0).count();
+        let is_stair = steps().all(|(_, step)| step == 0.0 || step == 1.0);
+        // Of few rows to a step, and of a single step, it may be a measured one too.
+        if is_stair && is_whole() && rises >= 2 && 3 * rises <= steps().count() {
+            return Self::CountsInSteps;
+        }
+        Self::Varies
+    }
+}
+
+/// The correlation of two columns if it is so close to 1 or -1 that they are one signal.
+pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
+    let rows = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let count = rows().count();
+    if count < FEWEST {
+        return None;
+    }
+    let (sum_a, sum_b) = rows().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
+    let (mean_a, mean_b) = (sum_a / count as f64, sum_b / count as f64);
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in rows() {
+        let (x, y) = (x - mean_a, y - mean_b);
+        (aa, ab, bb) = (aa + x * x, ab + x * y, bb + y * y);
+    }
+    let correlation = ab / (aa * bb).sqrt();
+    (correlation.abs() >= ONE_SIGNAL).then_some(correlation)
+}
+
+/// The part that a quantity mostly has in hysteresis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// What drives: displacement, strain, magnetic field, electric voltage.
+    Drives(Domain),
+    /// What follows: force, stress, flux density, polarization.
+    Follows(Domain),
+}
+
+/// The field of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Domain {
+    /// Displacements and forces.
+    Mechanics,
+    /// Fields and flux densities.
+    Magnetism,
+    /// Voltages and charges.
+    Electricity,
+}
+
+const DISPLACEMENTS: [&str; 14] = [
+    "displacement",
+    "disp",
+    "strain",
+    "deflection",
+    "elongation",
+    "stroke",
+    "travel",
+    "drift",
+    "rotation",
+    "angle",
+    "weg",
+    "dehnung",
+    "verschiebung",
+    "position",
+];
+const FORCES: [&str; 7] = ["force", "load", "stress", "torque", "moment", "kraft", "pressure"];
+
+impl Part {
+    /// What a column's name and its unit tell, if anything.
+    pub fn of(name: &str) -> Option<Self> {
+        let (quantity, unit) = unit::split(name);
+        let lower = quantity.to_lowercase();
+        let is_among =
+            |words: &[&str]| lower.split(|c: char| !c.is_alphanumeric()).any(|word| words.contains(&word));
+        match (is_among(&DISPLACEMENTS), is_among(&FORCES)) {
+            (true, false) => return Some(Self::Drives(Domain::Mechanics)),
+            (false, true) => return Some(Self::Follows(Domain::Mechanics)),
+            _ => {}
+        }
+        match (quantity, &unit) {
+            ("H", None) => Some(Self::Drives(Domain::Magnetism)),
+            ("B", None) => Some(Self::Follows(Domain::Magnetism)),
+            (_, Some(unit)) => unit::part(unit),
+            _ => None,
+        }
+    }
+
+    /// True if an input and an output with these parts have them the other way round.
+    pub fn are_swapped(input: Option<Self>, output: Option<Self>) -> bool {
+        matches!((input, output), (Some(Self::Follows(one)), Some(Self::Drives(other))) if one == other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn courses_are_told_apart() {
+        let of = |value: &dyn Fn(f64) -> f64| -> Course {
+            let values: Vec<f64> = (0..30).map(|k| value(f64::from(k))).collect();
+            Course::of([values.as_slice()])
+        };
+        assert_eq!(of(&|k| k + 1.0), Course::Counts);
+        assert_eq!(of(&|k| 0.1 * k), Course::Grows);
+        assert_eq!(of(&|k| 2.0 * k), Course::Grows);
+        assert_eq!(of(&|k| (k / 10.0).floor()), Course::CountsInSteps);
+        assert_eq!(of(&|k| f64::from(k > 10.0)), Course::Varies);
+        assert_eq!(of(&|_| 20.0), Course::Constant);
+        assert_eq!(of(&|k| k.sin()), Course::Varies);
+        // Every record begins anew.
+        let count: Vec<f64> = (0..30).map(|k| f64::from(k % 10)).collect();
+        assert_eq!(Course::of(count.chunks(10)), Course::Counts);
+        assert_eq!(Course::of([count.as_slice()]), Course::Varies);
+        assert_eq!(Course::of([&count[..9]]), Course::Varies, "too few");
+    }
+
+    #[test]
+    fn one_signal_is_told_from_two() {
+        let column = |value: &dyn Fn(f64) -> f64| (0..200).map(|k| value(0.1 * f64::from(k))).collect();
+        let command: Vec<f64> = column(&f64::sin);
+        let measured: Vec<f64> = column(&|k| -2.0 * (k - 0.02).sin() + 0.01 * (7.0 * k).cos() + 5.0);
+        let other: Vec<f64> = column(&|k| (k - 0.5).sin());
+        assert!(one_signal(&command, &measured).unwrap() < -0.99);
+        assert_eq!(one_signal(&command, &other), None);
+        assert_eq!(one_signal(&command, &[1.0; 200]), None);
+    }
+
+    #[test]
+    fn forces_follow_displacements() {
+        let swapped = |input: &str, output: &str| Part::are_swapped(Part::of(input), Part::of(output));
+        for (drives, follows) in [
+            ("disp_mm", "force_kN"),
+            ("x_mm", "F_N"),
+            ("strain_true", "stress_true_MPa"),
+            ("Weg [mm]", "Kraft [kN]"),
+            ("H_A_per_m", "B_T"),
+            ("H", "B"),
+            ("V_V", "P_uC_per_cm2"),
+            ("theta_deg", "M_kN_m"),
+        ] {
+            assert!(swapped(follows, drives), "{follows} {drives}");
+            assert!(!swapped(drives, follows), "{drives} {follows}");
+        }
+        for (input, output) in [("u_V", "y_um"), ("x", "y"), ("H_fit_V", "B_V_us"), ("y_um", "u_V")] {
+            assert!(!swapped(input, output), "{input} {output}");
+        }
+    }
+}

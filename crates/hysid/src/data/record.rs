@@ -1,0 +1,430 @@
+//! Measured data: a [`Record`] is one run of an experiment, a [`Dataset`] several of them with
+//! names.
+//!
+//! A blank output is NaN: such a row drives the memory and is neither trained on nor scored.
+
+mod copies;
+mod excitation;
+mod fingerprint;
+mod thinning;
+
+use crate::data::warning::Warning;
+use crate::error::{Channel, DataProblem, Error, Result};
+pub use copies::Likeness;
+pub(crate) use copies::{Copy, copies, likeness, measurements};
+pub use excitation::Excitation;
+pub use fingerprint::Fingerprint;
+pub(crate) use thinning::Thinning;
+
+/// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    name: String,
+    time: Option<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+    given_rate: Option<Vec<f64>>,
+    output: Vec<f64>,
+}
+
+impl Record {
+    /// A record from its input channels (each of the same length, in the user's units) and its
+    /// output, in which NaN is a blank.
+    ///
+    /// # Errors
+    /// No rows, differing lengths, an input that is not finite, values beyond [`crate::error::LARGEST_VALUE`].
+    pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
+        let record = Self { name: name.into(), time: None, inputs, given_rate: None, output };
+        Excitation::new(&record.name, columns(&record.inputs))?;
+        record.excitation().check_column(Channel::Output, &record.output, true)?;
+        Ok(record)
+    }
+
+    /// The same record with time stamps, strictly increasing; their unit becomes the unit of time.
+    ///
+    /// # Errors
+    /// Another length, not finite, or not increasing.
+    pub fn with_time(mut self, time: Vec<f64>) -> Result<Self> {
+        self.excitation().with_time(&time)?;
+        self.time = Some(time);
+        Ok(self)
+    }
+
+    /// The same record with a measured or otherwise given rate of the first input.
+    ///
+    /// # Errors
+    /// Another length or not finite.
+    pub fn with_given_rate(mut self, rate: Vec<f64>) -> Result<Self> {
+        self.excitation().with_given_rate(&rate)?;
+        self.given_rate = Some(rate);
+        Ok(self)
+    }
+
+    /// The same record with another output, in which NaN is a blank.
+    ///
+    /// # Errors
+    /// Another length, values beyond [`crate::error::LARGEST_VALUE`].
+    pub(crate) fn with_output(mut self, output: Vec<f64>) -> Result<Self> {
+        self.excitation().check_column(Channel::Output, &output, true)?;
+        self.output = output;
+        Ok(self)
+    }
+
+    /// What drives a model: all but the output.
+    pub fn excitation(&self) -> Excitation<'_> {
+        Excitation {
+            name: &self.name,
+            time: self.time(),
+            inputs: columns(&self.inputs),
+            given_rate: self.given_rate(),
+        }
+    }
+
+    pub(crate) fn defect(&self, row: Option<usize>, channel: Option<Channel>, problem: DataProblem) -> Error {
+        self.excitation().defect(row, channel, problem)
+    }
+
+    /// Name of the record.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.inputs.first().map_or(0, Vec::len)
+    }
+
+    /// True if there is no row; no record that was made by [`Record::new`] is empty.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The input channels, each with one value a row.
+    pub fn inputs(&self) -> &[Vec<f64>] {
+        &self.inputs
+    }
+
+    /// Time stamps, if there are any.
+    pub fn time(&self) -> Option<&[f64]> {
+        self.time.as_deref()
+    }
+
+    /// The given rate of the first input, if there is one.
+    pub fn given_rate(&self) -> Option<&[f64]> {
+        self.given_rate.as_deref()
+    }
+
+    /// The output; NaN is a blank.
+    pub fn output(&self) -> &[f64] {
+        &self.output
+    }
+
+    /// Number of rows with an output.
+    pub fn scored(&self) -> usize {
+        self.output.iter().filter(|y| !y.is_nan()).count()
+    }
+
+    /// By what the record is known again.
+    pub fn fingerprint(&self) -> Fingerprint {
+        let mut fingerprint = Fingerprint::default();
+        for (row, &output) in self.output.iter().enumerate() {
+            fingerprint.add(self.inputs.iter().map(|input| input[row]), output);
+        }
+        fingerprint
+    }
+
+    /// Splits at a fraction of the rows that have an output: the head ends there; the tail is the
+    /// whole record with the head's outputs blanked, so that its memory is carried over.
+    ///
+    /// `fraction` is clamped so that both parts keep at least one scored row; a record with fewer
+    /// than two scored rows cannot be split and gives `None`.
+    pub fn split_at_fraction(&self, fraction: f64) -> Option<(Record, Record)> {
+        let scored: Vec<usize> = (0..self.len()).filter(|&row| !self.output[row].is_nan()).collect();
+        if scored.len() < 2 {
+            return None;
+        }
+        let kept = (fraction * scored.len() as f64).round() as usize;
+        let end = scored[kept.clamp(1, scored.len() - 1)];
+        Some((self.rows_up_to(end), self.clone().scored_where(|row| row >= end)))
+    }
+
+    /// The beginning of the record, without the row at `end` and those behind it.
+    pub(crate) fn rows_up_to(&self, end: usize) -> Record {
+        let cut = |column: &Vec<f64>| column[..end].to_vec();
+        Record {
+            name: self.name.clone(),
+            time: self.time.as_ref().map(cut),
+            inputs: self.inputs.iter().map(cut).collect(),
+            given_rate: self.given_rate.as_ref().map(cut),
+            output: cut(&self.output),
+        }
+    }
+
+    /// The same record with its other outputs blanked.
+    pub(crate) fn scored_where(mut self, is_scored: impl Fn(usize) -> bool) -> Record {
+        for (row, y) in self.output.iter_mut().enumerate() {
+            if !is_scored(row) {
+                *y = f64::NAN;
+            }
+        }
+        self
+    }
+}
+
+fn columns(inputs: &[Vec<f64>]) -> Vec<&[f64]> {
+    inputs.iter().map(Vec::as_slice).collect()
+}
+
+/// Of more pairs of records than this none is compared with the other.
+const MOST_COMPARED: usize = 100_000;
+
+/// Names of the columns, as the user wrote them.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ColumnNames {
+    /// The time column, if there is one.
+    pub time: Option<String>,
+    /// The inputs, at least one.
+    pub inputs: Vec<String>,
+    /// The column of the given rate, if there is one.
+    pub rate: Option<String>,
+    /// The output.
+    pub output: String,
+}
+
+impl ColumnNames {
+    /// Plain names: `t`, `x` (or `x1`, `x2`, ...), `y`.
+    pub fn plain(inputs: usize) -> Self {
+        let name = |index| {
+            if inputs == 1 { "x".into() } else { format!("x{}", index + 1) }
+        };
+        Self {
+            time: Some("t".into()),
+            inputs: (0..inputs).map(name).collect(),
+            rate: None,
+            output: "y".into(),
+        }
+    }
+}
+
+/// Records of the same channels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset {
+    names: ColumnNames,
+    records: Vec<Record>,
+}
+
+impl Dataset {
+    /// Several records with the same channels.
+    ///
+    /// # Errors
+    /// No record, or one whose channels are not those of `names`.
+    pub fn new(names: ColumnNames, records: Vec<Record>) -> Result<Self> {
+        if records.is_empty() {
+            return Err(Error::Option("a data set needs at least one record".into()));
+        }
+        for record in &records {
+            let (expected, found) = (names.inputs.len(), record.inputs.len());
+            if expected != found {
+                return Err(record.defect(None, None, DataProblem::Inputs { expected, found }));
+            }
+            if record.time.is_some() != records[0].time.is_some() {
+                return Err(record.defect(None, Some(Channel::Time), DataProblem::NoTime));
+            }
+            if record.given_rate.is_some() != records[0].given_rate.is_some() {
+                return Err(record.defect(None, Some(Channel::Rate), DataProblem::NoGivenRate));
+            }
+        }
+        Ok(Self { names, records })
+    }
+
+    /// Names of the columns.
+    pub fn names(&self) -> &ColumnNames {
+        &self.names
+    }
+
+    /// The records.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// True if the records carry time stamps.
+    pub fn has_time(&self) -> bool {
+        self.records[0].time.is_some()
+    }
+
+    /// True if the records carry a given rate.
+    pub fn has_given_rate(&self) -> bool {
+        self.records[0].given_rate.is_some()
+    }
+
+    /// Number of rows of all records together.
+    pub fn rows(&self) -> usize {
+        self.records.iter().map(Record::len).sum()
+    }
+
+    /// Number of rows with an output.
+    pub fn scored(&self) -> usize {
+        self.records.iter().map(Record::scored).sum()
+    }
+
+    /// Smallest and largest value of an input over all records, in the user's unit.
+    pub fn input_range(&self, input: usize) -> (f64, f64) {
+        range(self.records.iter().flat_map(|record| &record.inputs[input]))
+    }
+
+    /// Smallest and largest output over all scored rows; `(inf, -inf)` if all are blank.
+    pub fn output_range(&self) -> (f64, f64) {
+        range(self.records.iter().flat_map(|record| &record.output))
+    }
+
+    /// The same data with at most so many scored rows; the others drive the memory.
+    pub(crate) fn thinned(&self, most: usize) -> Dataset {
+        let thinning = Thinning::new(self.scored(), most);
+        let mut thinned = self.clone();
+        thinning.blank(thinned.records.iter_mut().flat_map(|record| &mut record.output));
+        thinned
+    }
+
+    /// The same data with the outputs of the first rows of each record blanked.
+    pub(crate) fn warmed_up(mut self, rows: usize) -> Dataset {
+        for record in &mut self.records {
+            let rows = rows.min(record.len());
+            record.output[..rows].fill(f64::NAN);
+        }
+        self
+    }
+
+    /// Warns of records that are copies, or parts, of others, or have copies or parts among them: those that were
+    /// trained on.
+    pub fn copies_of(&self, trained: &Dataset) -> Vec<Warning> {
+        if self.records.len().saturating_mul(trained.records.len()) > MOST_COMPARED {
+            return Vec::new();
+        }
+        let found = |record: &Record| {
+            let likeness = trained.records.iter().find_map(|other| match record.len() <= other.len() {
+                true => likeness(record, other),
+                false => likeness(other, record).map(|_| Likeness::Contains),
+            })?;
+            Some(Warning::TrainedOn { record: record.name.clone(), likeness })
+        };
+        self.records.iter().filter_map(found).collect()
+    }
+
+    /// Those records that are chosen by their place, and the others.
+    pub(crate) fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
+        let pick = |chosen: bool| {
+            let records = self.records.iter().enumerate();
+            let picked = records.filter(|(index, _)| is_chosen(*index) == chosen);
+            Dataset { names: self.names.clone(), records: picked.map(|(_, record)| record.clone()).collect() }
+        };
+        (pick(true), pick(false))
+    }
+
+    /// A record with the same channels, alone.
+    pub(crate) fn of_record(&self, record: Record) -> Dataset {
+        Dataset { names: self.names.clone(), records: vec![record] }
+    }
+
+    /// Splits for validation: from several measurements some are held out; a single one is cut at the
+    /// fraction `1 - held_out`, with the memory carried over into its tail.
+    ///
+    /// The records held out are those in the middle when ordered by the range of the first input, so
+    /// that what is judged lies between what is trained on. `None` if the data are too few to split.
+    pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
+        let mut order = measurements(&self.records);
+        if let [alone] = order.as_slice() {
+            let (head, tail) = self.records[alone[0]].split_at_fraction(1.0 - held_out)?;
+            return Some((self.of_record(head), self.of_record(tail)));
+        }
+        order.retain(|records| self.records[records[0]].scored() > 0);
+        if order.len() < 2 {
+            return None;
+        }
+        let travel = |records: &[usize]| {
+            let (low, high) = range(self.records[records[0]].inputs[0].iter());
+            high - low
+        };
+        order.sort_by(|a, b| travel(a).total_cmp(&travel(b)));
+        let count = ((held_out * order.len() as f64).round() as usize).clamp(1, order.len() - 1);
+        let first = (order.len() - count) / 2;
+        let chosen = &order[first..first + count];
+        let (held, kept) = self.partition(|index| chosen.iter().flatten().any(|held| *held == index));
+        Some((kept, held))
+    }
+
+    /// Refuses what no model can be identified from: a constant input, a constant or blank output,
+    /// fewer than `needed` scored rows.
+    ///
+    /// # Errors
+    /// As named.
+    pub fn check_identifiable(&self, needed: usize) -> Result<()> {
+        let first = &self.records[0];
+        let found = self.scored();
+        if found == 0 {
+            return Err(first.defect(None, Some(Channel::Output), DataProblem::NothingToScore));
+        }
+        if found < needed {
+            let problem = DataProblem::TooFewRows { found, needed };
+            return Err(first.defect(None, Some(Channel::Output), problem));
+        }
+        for input in 0..self.names.inputs.len() {
+            let (low, high) = self.input_range(input);
+            if high - low <= low.abs().max(high.abs()) * 1e-12 + 1e-100 {
+                let problem = DataProblem::ConstantInput(low);
+                return Err(first.defect(None, Some(Channel::Input(input)), problem));
+            }
+        }
+        let (low, high) = self.output_range();
+        if high - low <= low.abs().max(high.abs()) * 1e-14 + 1e-100 {
+            return Err(first.defect(None, Some(Channel::Output), DataProblem::ConstantOutput(low)));
+        }
+        Ok(())
+    }
+}
+
+/// Smallest and largest of the values that are not NaN.
+fn range<'a>(values: impl Iterator<Item = &'a f64>) -> (f64, f64) {
+    values
+        .filter(|v| !v.is_nan())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(output: Vec<f64>) -> Record {
+        let x = (0..output.len()).map(|k| k as f64).collect();
+        Record::new("r", vec![x], output).unwrap()
+    }
+
+    #[test]
+    fn tail_carries_the_whole_input_and_blanks_what_the_head_scored() {
+        let whole = record(vec![f64::NAN, 1.0, 2.0, 3.0, 4.0]);
+        let (head, tail) = whole.split_at_fraction(0.5).unwrap();
+        assert_eq!((head.len(), head.scored()), (3, 2));
+        assert_eq!((tail.len(), tail.scored()), (5, 2));
+        assert_eq!(tail.inputs(), whole.inputs());
+        assert_eq!(&tail.output()[3..], &[3.0, 4.0]);
+    }
+
+    #[test]
+    fn records_of_middling_range_are_held_out() {
+        let scaled =
+            |factor: f64, name: &str| Record::new(name, vec![vec![0.0, factor]], vec![0.0, 1.0]).unwrap();
+        let records = vec![scaled(3.0, "large"), scaled(1.0, "small"), scaled(2.0, "middle")];
+        let data = Dataset::new(ColumnNames::plain(1), records).unwrap();
+        let (kept, held) = data.split_for_validation(0.25).unwrap();
+        assert_eq!(held.records()[0].name(), "middle");
+        assert_eq!(kept.records().len(), 2);
+    }
+
+    #[test]
+    fn defects_name_their_place() {
+        let error = record(vec![0.0; 3]).with_time(vec![0.0, 1.0, 1.0]).unwrap_err();
+        let Error::Data(defect) = error else { panic!("{error}") };
+        assert_eq!((defect.row, defect.channel), (Some(2), Some(Channel::Time)));
+        let error = Record::new("r", vec![vec![0.0, f64::NAN]], vec![0.0; 2]).unwrap_err();
+        assert_eq!(error.to_string(), "record \"r\", row 2, input: NaN is not a finite number");
+    }
+}

@@ -1,0 +1,233 @@
+//! Units in the names of columns: `force [kN]`, `Time (s)`, `x / mm`, `H_A_per_m`.
+
+mod quantity;
+
+use crate::data::column::Part;
+use quantity::Quantity;
+
+/// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
+const OTHER: [&str; 1] = ["degC"];
+
+/// Names of time that no other quantity has.
+const TIME_NAMES: [&str; 2] = ["t", "time"];
+
+/// Further names of time, without blanks and underscores, in small letters. The values must confirm them.
+const FURTHER_TIME_NAMES: [&str; 25] = [
+    "timestamp",
+    "elapsed",
+    "elapsedtime",
+    "timeelapsed",
+    "testtime",
+    "runtime",
+    "clock",
+    "date",
+    "datetime",
+    "sec",
+    "secs",
+    "second",
+    "seconds",
+    "zeit",
+    "zeitstempel",
+    "messzeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "tijd",
+    "czas",
+    "tid",
+    "время",
+    "时间",
+    "時間",
+];
+
+/// The part that a quantity with this unit mostly has in hysteresis, if it has one.
+pub(crate) fn part(unit: &str) -> Option<Part> {
+    Quantity::of(unit)?.part()
+}
+
+/// How the numbers of a column become those of another unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Conversion {
+    /// The units are the same, or one of them is not known from the name.
+    Same,
+    /// The number is multiplied by this.
+    Factor(f64),
+    /// The units differ, and there is no factor between them.
+    Impossible,
+}
+
+impl Conversion {
+    /// From the unit that one column's name tells to that of another's.
+    pub fn between(from: &str, to: &str) -> Self {
+        let (Some(from), Some(to)) = (of_column(from), of_column(to)) else { return Self::Same };
+        if from == to {
+            return Self::Same;
+        }
+        match (Quantity::of(&from), Quantity::of(&to)) {
+            (Some(from), Some(to)) if from.dimension == to.dimension => match from.factor / to.factor {
+                // Such as `us` and `µs`.
+                1.0 => Self::Same,
+                // A quotient of factors is off by a rounding where 1000 is meant.
+                factor => Self::Factor(rounded(factor)),
+            },
+            _ => Self::Impossible,
+        }
+    }
+}
+
+/// The power of ten that a number is, but for roundings; otherwise the number.
+fn rounded(factor: f64) -> f64 {
+    let power = 10f64.powi(factor.log10().round() as i32);
+    if (factor / power - 1.0).abs() < 1e-12 { power } else { factor }
+}
+
+/// The unit that a column's name tells, if any.
+pub fn of_column(name: &str) -> Option<String> {
+    split(name).1
+}
+
+/// True for `t`, `time`, and either with a unit of time.
+pub fn is_time(name: &str) -> bool {
+    is_named_time(name, &TIME_NAMES)
+}
+
+/// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and for all
+/// names with a unit of time. The values tell whether they do.
+pub fn may_be_time(name: &str) -> bool {
+    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_unit_of_time(split(name).1.as_deref())
+}
+
+fn is_named_time(name: &str, names: &[&str]) -> bool {
+    let (quantity, unit) = split(name);
+    let plain: String = quantity.to_lowercase().chars().filter(|c| !" _-.".contains(*c)).collect();
+    (unit.is_none() || is_in_unit_of_time(unit.as_deref())) && names.contains(&plain.as_str())
+}
+
+fn is_in_unit_of_time(unit: Option<&str>) -> bool {
+    let quantity = unit.and_then(Quantity::of);
+    quantity.is_some_and(|quantity| quantity.dimension == quantity::TIME)
+}
+
+/// A number's unit as it is printed after it.
+pub fn suffix(unit: Option<&str>) -> String {
+    unit.map_or_else(String::new, |unit| format!(" {unit}"))
+}
+
+/// A name as quantity and unit.
+pub fn split(name: &str) -> (&str, Option<String>) {
+    let name = name.trim();
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some(inner) = name.strip_suffix(close)
+            && let Some((quantity, unit)) = inner.rsplit_once(open)
+        {
+            let unit = Some(unit.trim().to_string()).filter(|unit| !unit.is_empty() && unit != "-");
+            return (quantity.trim_end_matches([' ', '_']), unit);
+        }
+    }
+    if let Some((quantity, unit)) = name.rsplit_once('/')
+        && is_known(unit.trim())
+    {
+        return (quantity.trim(), Some(unit.trim().to_string()));
+    }
+    // The longest known ending; something must be left to name the quantity.
+    for (place, _) in name.char_indices().filter(|&(_, c)| c == '_') {
+        if place > 0
+            && let Some(unit) = from_words(&name[place + 1..])
+        {
+            return (&name[..place], Some(unit));
+        }
+    }
+    (name, None)
+}
+
+/// `A_per_m` is A/m, `V_us` is V us, `mm_s` is mm/s.
+fn from_words(text: &str) -> Option<String> {
+    if let Some((above, below)) = text.split_once("_per_") {
+        return (is_known(above) && is_known(below)).then(|| format!("{above}/{below}"));
+    }
+    match text.split_once('_') {
+        None => is_known(text).then(|| text.to_string()),
+        Some((length, time)) if is_length(length) && is_in_unit_of_time(Some(time)) => {
+            Some(format!("{length}/{time}"))
+        }
+        Some((force, arm)) if ["N", "kN"].contains(&force) && is_length(arm) => {
+            Some(format!("{force} {arm}"))
+        }
+        Some((unit, time)) if is_known(unit) && is_in_unit_of_time(Some(time)) => {
+            Some(format!("{unit} {time}"))
+        }
+        Some(_) => None,
+    }
+}
+
+fn is_known(unit: &str) -> bool {
+    OTHER.contains(&unit) || quantity::may_end_a_name(unit)
+}
+
+fn is_length(unit: &str) -> bool {
+    is_known(unit) && Quantity::of(unit).is_some_and(|quantity| quantity.dimension == quantity::LENGTH)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_found_in_names() {
+        for (name, unit) in [
+            ("force [kN]", "kN"),
+            ("Time (s)", "s"),
+            ("x / mm", "mm"),
+            ("force_kN", "kN"),
+            ("H_A_per_m", "A/m"),
+            ("P_uC_per_cm2", "uC/cm2"),
+            ("B_V_us", "V us"),
+            ("H_fit_V", "V"),
+            ("V_V", "V"),
+            ("stress_true_MPa", "MPa"),
+            ("v_mm_s", "mm/s"),
+            ("M_kN_m", "kN m"),
+            ("t_µs", "µs"),
+        ] {
+            assert_eq!(of_column(name).as_deref(), Some(unit), "{name}");
+        }
+        for name in ["V", "x", "force", "V_in", "x_1", "ratio [-]", "_s"] {
+            assert_eq!(of_column(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn time_is_recognised() {
+        for name in ["t", "T", "time", "Time (s)", "time [ms]", "t_us", "TIME_s", "t/s"] {
+            assert!(is_time(name), "{name}");
+        }
+        for name in ["t_mm", "temperature", "time_index", "x_s", "t1"] {
+            assert!(!is_time(name), "{name}");
+        }
+        for name in ["time [sec]", "t (seconds)"] {
+            assert!(is_time(name), "{name}");
+        }
+        for name in ["timestamp", "Zeit", "Elapsed Time", "elapsed_ms", "Time_Stamp (s)", "x_s"] {
+            assert!(may_be_time(name), "{name}");
+        }
+        for name in ["temperature", "x_mm", "v_mm_s", "index", "Zeit [mm]"] {
+            assert!(!may_be_time(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_converted_where_units_are_known() {
+        let between = Conversion::between;
+        assert_eq!(between("displacement_m", "disp_mm"), Conversion::Factor(1000.0));
+        assert_eq!(between("force_N", "F [kN]"), Conversion::Factor(1e-3));
+        assert_eq!(between("t_ms", "t_s"), Conversion::Factor(1e-3));
+        assert_eq!(between("t_min", "t_s"), Conversion::Factor(60.0));
+        assert_eq!(between("sigma [N/mm²]", "stress_MPa"), Conversion::Same);
+        assert_eq!(between("t_us", "t_µs"), Conversion::Same);
+        assert_eq!(between("x", "x_mm"), Conversion::Same);
+        assert_eq!(between("x [ticks]", "y [ticks]"), Conversion::Same);
+        assert_eq!(between("x [ticks]", "x_mm"), Conversion::Impossible);
+        assert_eq!(between("force_N", "x_mm"), Conversion::Impossible);
+        assert_eq!(between("T_K", "T_degC"), Conversion::Impossible);
+    }
+}

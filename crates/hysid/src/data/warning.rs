@@ -1,0 +1,152 @@
+//! Things to know that are no errors: each says what, why, and what helps.
+
+use std::fmt;
+
+use crate::data::record::Likeness;
+use crate::significant::Significant;
+
+/// A warning, with its likely cause and a remedy.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Warning {
+    /// A record hardly ever turns, so that there is little memory to learn from.
+    FewTurningPoints {
+        /// The record.
+        record: String,
+        /// Turning points of the first input.
+        found: usize,
+    },
+    /// Values beyond what the model was trained on.
+    OutsideTrainedRange {
+        /// The input, or its rate.
+        name: String,
+        /// Rows outside, in percent.
+        share_percent: f64,
+        /// Range in training.
+        trained: (f64, f64),
+        /// Range in the data.
+        seen: (f64, f64),
+    },
+    /// Time steps of very different length in one record.
+    UnevenTimeSteps {
+        /// The record.
+        record: String,
+        /// Shortest step.
+        shortest: f64,
+        /// Longest step.
+        longest: f64,
+    },
+    /// A record whose measured output has one value throughout.
+    ConstantOutput {
+        /// The record.
+        record: String,
+        /// The value.
+        value: f64,
+    },
+    /// Two records that are one measurement.
+    SameMeasurement {
+        /// The record that is a copy or a part.
+        copy: String,
+        /// The other.
+        of: String,
+        /// How like they are.
+        likeness: Likeness,
+    },
+    /// A record to test on that is one that was trained on.
+    TrainedOn {
+        /// The record.
+        record: String,
+        /// How it is like the record that was trained on.
+        likeness: Likeness,
+    },
+    /// A record whose input jumps at random from row to row, as where rows are not in the order of time.
+    RowsOutOfOrder {
+        /// The record.
+        record: String,
+    },
+    /// More parameters than rows to find them from.
+    MoreParametersThanRows {
+        /// Parameters of the model, or of the largest member of an ensemble.
+        parameters: usize,
+        /// Rows with an output.
+        rows: usize,
+    },
+}
+
+impl Warning {
+    /// Of more parameters than rows to find them from.
+    pub(crate) fn of_size(parameters: usize, rows: usize) -> Option<Self> {
+        (parameters > rows).then_some(Self::MoreParametersThanRows { parameters, rows })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FewTurningPoints { record, found } => {
+                let times = match found {
+                    0 => "never turns".to_string(),
+                    1 => "turns only once".to_string(),
+                    n => format!("turns only {n} times"),
+                };
+                write!(
+                    f,
+                    "record \"{record}\": the input {times}, so there is little memory to learn from \
+                     (measure several cycles of different amplitude)"
+                )
+            }
+            Self::OutsideTrainedRange { name, share_percent, trained, seen } => write!(
+                f,
+                "{name}: {share_percent:.1} % of the rows are outside the trained range {:.4} to {:.4} (here {:.4} to {:.4}); \
+                 the model extrapolates there (train on data that cover the range)",
+                Significant(trained.0),
+                Significant(trained.1),
+                Significant(seen.0),
+                Significant(seen.1)
+            ),
+            Self::UnevenTimeSteps { record, shortest, longest } => write!(
+                f,
+                "record \"{record}\": time steps vary from {:.3} to {:.3}, so rates are uncertain \
+                 (are records joined, or samples missing? name records in a column `record`, or use --rate none)",
+                Significant(*shortest),
+                Significant(*longest)
+            ),
+            Self::SameMeasurement { copy, of, likeness } => write!(
+                f,
+                "record \"{copy}\" is {likeness} record \"{of}\": they count as one measurement and are held out together \
+                 (remove one of them: the fit counts the same data twice)"
+            ),
+            Self::TrainedOn { record, likeness } => write!(
+                f,
+                "record \"{record}\" is {likeness} what the model was trained on: its error says nothing about unseen data"
+            ),
+            Self::RowsOutOfOrder { record } => write!(
+                f,
+                "record \"{record}\": the input jumps at random from row to row: are the rows in the order of time? (a model \
+                 with memory needs that order; a shuffled split, such as ShuffleSplit, destroys it)"
+            ),
+            Self::MoreParametersThanRows { parameters, rows } => write!(
+                f,
+                "{parameters} parameters are found from {rows} rows: the model follows these rows and may be wrong everywhere \
+                 else (measure more, or choose a smaller model, such as fewer stops and hidden neurons)"
+            ),
+            Self::ConstantOutput { record, value } => write!(
+                f,
+                "record \"{record}\": the output is {} throughout, so it tells nothing (was the sensor connected?)",
+                Significant(*value)
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_say_what_helps() {
+        let warning = Warning::FewTurningPoints { record: "r1".into(), found: 1 };
+        assert!(warning.to_string().contains("turns only once"));
+        assert!(warning.to_string().contains("several cycles"));
+    }
+}

@@ -1,0 +1,115 @@
+//! Identification of any model by its name: a network of the family, or one of its rivals.
+
+pub mod auto;
+mod cautions;
+pub mod law;
+mod memory_need;
+pub mod network;
+mod validate;
+
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::search::SearchProgress;
+use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
+use crate::model::preprocessing::Seen;
+use crate::model::{Body, Found, Model};
+use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::shaping::Origin;
+use crate::stop_check::StopCheck;
+pub use memory_need::{MemoryNeed, memory_need};
+pub use validate::cross_validate;
+
+use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
+use crate::model::history::{HistoryPoint, Phase, Run};
+use crate::options::Request;
+use crate::options::network::Method;
+use crate::termination::Termination;
+
+/// Identifies a model. The observer is as in [`network::fit`]; of a classical model it hears after every
+/// round of its search, or now and then if there is none, and there is no checkpoint.
+///
+/// # Errors
+/// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
+pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) -> Result<Fit> {
+    match request {
+        Request::Network(options) => network::fit(data, options, observer),
+        Request::Auto(options) => auto::fit(data, options, observer),
+        Request::Classical(options) if options.model == Rival::RandomStops => {
+            random_stops(data, options, observer)
+        }
+        Request::Classical(options) => of_law(data, options, observer),
+    }
+}
+
+fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+    let defaults = RandomStopsOptions::default();
+    let wanted = RandomStopsOptions {
+        stops: options.operators.unwrap_or(defaults.stops),
+        hidden: options.hidden,
+        rate: options.rate,
+        deterioration: options.deterioration,
+        seed: options.seed,
+    };
+    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
+    let found = fit_random_stops_until(&seen.data, &wanted, stop)?;
+    let body = Body::Network { network: found.network, scaling: found.scaling };
+    finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
+}
+
+fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+    let mut history = Vec::new();
+    let seen = Seen::of(data, &options.shaping, options.rate, options.model.origin())?;
+    let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
+    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let is_to_stop = || observer.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let mut of_round = |progress: SearchProgress| {
+        if !progress.train_nrmse_percent.is_nan() {
+            history.push(HistoryPoint {
+                epoch: progress.round,
+                evaluations: progress.evaluations,
+                train_nrmse_percent: progress.train_nrmse_percent,
+            });
+        }
+        observer.tell(&Progress::of_search(options.model, &progress))
+    };
+    let found = law::fit(&seen.data, &of_seen, &mut of_round, stop)?;
+    let termination = observer.termination(found.termination);
+    let run = Run {
+        phase: Phase::AllData,
+        start: 0,
+        method: Method::LeastSquares,
+        history,
+        termination,
+        fold: None,
+        validation_nrmse_percent: None,
+    };
+    let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
+    finished(data, options, &seen, Body::Law(found.law), found.evaluations, termination, runs)
+}
+
+fn finished(
+    data: &Dataset,
+    options: &ClassicalOptions,
+    seen: &Seen,
+    body: Body,
+    evaluations: usize,
+    termination: Termination,
+    runs: Vec<Run>,
+) -> Result<Fit> {
+    let request = Request::Classical(options.clone());
+    let found = Found {
+        options: request,
+        chosen_start: 0,
+        termination,
+        validation: None,
+        penalties: None,
+        runs,
+        selection: None,
+    };
+    Ok(Fit { model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?, evaluations })
+}

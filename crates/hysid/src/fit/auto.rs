@@ -1,0 +1,272 @@
+//! The automatic model: candidates are cross-validated, and the best are combined.
+//!
+//! 1. *Folds* of the training data, [`crate::validation::folds`].
+//! 2. *Candidates*: networks, random stops and all classical laws, with and without rate, deterioration,
+//!    relaxation and companding. Each is fitted to every fold, from several starts where it has any; its
+//!    prediction is the median of its starts. Laws whose parameters are searched are fitted in haste first,
+//!    and dropped if they stay far behind.
+//! 3. *Weights*: candidates of a kind are weighted by the mean logarithm of their errors on the folds, and the
+//!    best three are combined by their weighted median; the kinds in the same way. Rows inside the trained
+//!    range and beyond it are weighted apart.
+//! 4. *Fit on everything* of all that have a weight: an [`Ensemble`](crate::model::Ensemble), or one small model.
+//! 5. *Band*, calibrated on the folds.
+//!
+//! Which settings were tried, on which cases, and what they gave: docs/accuracy.md.
+
+mod candidates;
+mod combination;
+mod prior;
+mod score;
+mod selection;
+mod single;
+mod stages;
+mod trial;
+mod warm_up;
+mod work;
+
+use crate::data::FEWEST_ROWS;
+use crate::data::metrics::Errors;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::network::{Fit, Observer};
+use crate::model::preprocessing::Preprocessing;
+use crate::model::selection::Selection;
+use crate::model::selection::WarmUp;
+use crate::model::{Band, Body, Found, HeldOutRow, Model, Provenance};
+use crate::options::Request;
+use crate::options::auto::AutoOptions;
+use crate::options::auto::MOST_MEMBERS;
+use crate::termination::Termination;
+use crate::validation::{PooledErrors, folds};
+use candidates::{Candidate, candidates, quick};
+use combination::Combination;
+use prior::Evidence;
+use selection::selection;
+use stages::Stages;
+use trial::{Bench, HeldOut, Trial, fit_members};
+use work::Work;
+
+/// Most folds.
+const MOST_FOLDS: usize = 5;
+
+/// Starts of a random candidate on each fold.
+const STARTS_ON_FOLDS: usize = 4;
+
+/// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
+const MOST_ROWS: usize = 6000;
+
+/// Fits expected before anything is known.
+const FITS_EXPECTED: usize = 200;
+
+/// What is fitted to the data, each from its first start.
+pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<Request> {
+    wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
+}
+
+/// The candidates: all that suit the data, or the one model that was asked for.
+fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    match &options.only {
+        Some(request) => vec![Candidate::alone(request)],
+        None => candidates(data, options),
+    }
+}
+
+/// Identifies by cross-validation.
+///
+/// # Errors
+/// Data that nothing can be identified from, and decisions that leave no candidate.
+pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    if options.members == 0 || options.members > MOST_MEMBERS {
+        return Err(Error::Option(format!("{} members: choose 1 to {MOST_MEMBERS}", options.members)));
+    }
+    let candidates = wanted(data, options);
+    let Some(first) = candidates.first() else {
+        let advice = "no candidate is left by these decisions: take one of them back";
+        return Err(Error::Option(advice.into()));
+    };
+    let few = data.thinned(MOST_ROWS);
+    let folds = folds(&few, MOST_FOLDS);
+    let work = Work::new(observer, FITS_EXPECTED);
+
+    // Should the observer stop everything soon, this is what there is.
+    let alone = work.first_fit(first, &few)?;
+    let warm_up = match options.warm_up {
+        Some(rows) => WarmUp::decided(rows),
+        None => warm_up::better(quick(options), &few, &folds, &work),
+    };
+    let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
+    let held_out: Vec<HeldOut> = folds.into_iter().map(HeldOut::of).collect();
+    let first_member = (warm_up.rows == 0 && !work.is_stopped()).then(|| alone.clone());
+    if held_out.is_empty() {
+        return without_folds(data, &few, options, &candidates[0], alone, &work);
+    }
+    let (work, evidence) = (&work, Evidence::of(data));
+    let bench = Bench { data: &few, folds: &held_out, work };
+    let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
+    stages.run(candidates, first_member);
+    let Stages { trials, dropped, .. } = stages;
+    Chosen { data, options, bench, evidence, trials, dropped, warm_up }.fit(alone)
+}
+
+/// Data too few to hold any out: the first candidate, unjudged.
+fn without_folds(
+    data: &Dataset,
+    few: &Dataset,
+    options: &AutoOptions,
+    candidate: &Candidate,
+    alone: Model,
+    work: &Work,
+) -> Result<Fit> {
+    let mut trials = [Trial::of(candidate.clone())];
+    let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
+    fit_members(&mut trials, &[starts], few, work);
+    let [trial] = trials;
+    if trial.members.is_empty() || options.members == 1 {
+        let model = trial.members.into_iter().next().unwrap_or(alone);
+        let provenance = provenance_of(&model, None, None, work);
+        return Ok(Fit { model: model.with_provenance(provenance), evaluations: work.done() });
+    }
+    let combination = Combination::alone(candidate.kind, 0);
+    let trials = [trial];
+    let members = |_: usize| trials[0].members.clone();
+    let body = Body::Ensemble(combination.ensemble(&trials, members, data.input_range(0))?);
+    let model = ensemble(body, data, options, None, None, work)?;
+    Ok(Fit { model, evaluations: work.done() })
+}
+
+/// What was tried, from which the model is made.
+struct Chosen<'w, 'o, 'a> {
+    data: &'w Dataset,
+    options: &'w AutoOptions,
+    bench: Bench<'w, 'o, 'a>,
+    evidence: Evidence,
+    trials: Vec<Trial>,
+    dropped: Vec<Candidate>,
+    warm_up: WarmUp,
+}
+
+impl Chosen<'_, '_, '_> {
+    /// The ensemble, or the single model that was asked for; `alone` where nothing was tried in time.
+    fn fit(mut self, alone: Model) -> Result<Fit> {
+        let Bench { folds, work, .. } = self.bench;
+        let fit = |model| Ok(Fit { model, evaluations: work.done() });
+        let Some(all) = Combination::of(&self.trials, folds, self.evidence, |_| true) else {
+            let model = self.without_validation(alone);
+            let provenance = provenance_of(&model, None, None, work);
+            return fit(model.with_provenance(provenance));
+        };
+        // A single model is distilled from more than one.
+        let most =
+            if self.options.members == 1 { AutoOptions::default().members } else { self.options.members };
+        let kept = all.members_kept(&self.trials, most);
+        let combination = all.only(|place| kept[place] > 0).unwrap_or(all);
+        let selection = self.selection(&combination, &kept);
+        let validation = combination.validation(&self.trials, folds, &self.data.names().output);
+        let members = |place: usize| self.trials[place].members[..kept[place]].to_vec();
+        let body = Body::Ensemble(combination.ensemble(&self.trials, members, self.data.input_range(0))?);
+        let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
+        if self.options.members == 1
+            && let Some(model) = self.single(&combination, &ensemble, selection)?
+        {
+            return fit(model);
+        }
+        let band = self.band(&self.rows_held_out(&combination));
+        fit(ensemble.with_band(band))
+    }
+
+    /// The model with the lowest training error of those that were fitted to everything before the observer asked
+    /// to stop.
+    fn without_validation(&self, alone: Model) -> Model {
+        let error = |model: &&Model| model.provenance().trained_error().rmse;
+        let members = self.trials.iter().flat_map(|trial| &trial.members);
+        let lowest = members.chain([&alone]).min_by(|a, b| error(a).total_cmp(&error(b)));
+        lowest.cloned().unwrap_or(alone)
+    }
+
+    fn selection(&self, combination: &Combination, kept: &[usize]) -> Selection {
+        let mut selection = selection(&self.trials, self.bench.folds, combination, kept);
+        selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
+        selection.one_loop = self.evidence == Evidence::OneLoop;
+        selection.dropped = self.dropped.iter().map(Candidate::name).collect();
+        selection
+    }
+
+    /// The band that these rows ask for, wider where the data cannot tell candidates apart.
+    fn band(&self, rows: &[HeldOutRow]) -> Option<Band> {
+        let band = Band::calibrate(rows)?;
+        Some(match self.evidence {
+            Evidence::SeveralLoops => band,
+            Evidence::OneLoop => band.wider(prior::WIDER_BAND),
+        })
+    }
+
+    /// Every row held out, predicted with weights that were found on the other folds: rows that chose the
+    /// weights would look better than new ones.
+    fn rows_held_out(&self, combination: &Combination) -> Vec<HeldOutRow> {
+        let folds = self.bench.folds;
+        let of_fold = |fold: usize| {
+            let of_others = (folds.len() > 1)
+                .then(|| Combination::of(&self.trials, folds, self.evidence, |other| other != fold))
+                .flatten();
+            of_others.as_ref().unwrap_or(combination).rows(&self.trials, folds, fold)
+        };
+        (0..folds.len()).flat_map(of_fold).collect()
+    }
+
+    /// One small model, with what is known of it.
+    fn single(
+        &mut self,
+        combination: &Combination,
+        ensemble: &Model,
+        mut selection: Selection,
+    ) -> Result<Option<Model>> {
+        let Self { options, bench, evidence, .. } = *self;
+        let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
+        let Some(found) = makers.single(ensemble)? else { return Ok(None) };
+        let mut pooled = PooledErrors::default();
+        for (fold, predicted) in bench.folds.iter().zip(&found.predicted) {
+            pooled.add(&fold.fold.held_out, predicted);
+        }
+        let validation = pooled.errors(&self.data.names().output);
+        selection.candidates.iter_mut().for_each(|candidate| candidate.members = 0);
+        selection.single = Some(found.how);
+        let provenance = provenance_of(&found.model, Some(selection), validation, bench.work);
+        let band = self.band(&single::rows_held_out(&found.predicted, bench.folds));
+        // A distilled model was taught more than the data.
+        found.model.with_provenance(provenance).with_band(band).trained_on(self.data).map(Some)
+    }
+}
+
+/// An ensemble with what is known of it.
+fn ensemble(
+    body: Body,
+    data: &Dataset,
+    options: &AutoOptions,
+    validation: Option<Errors>,
+    selection: Option<Selection>,
+    work: &Work,
+) -> Result<Model> {
+    let found = Found {
+        options: Request::Auto(options.clone()),
+        chosen_start: 0,
+        termination: if work.is_stopped() { Termination::Stopped } else { Termination::Converged },
+        validation,
+        penalties: None,
+        runs: Vec::new(),
+        selection,
+    };
+    Model::new(body, Preprocessing::default(), options.rate, data, found)
+}
+
+/// How a single model came about.
+fn provenance_of(
+    model: &Model,
+    selection: Option<Selection>,
+    validation: Option<Errors>,
+    work: &Work,
+) -> Provenance {
+    let provenance = model.provenance().clone();
+    let termination = if work.is_stopped() { Termination::Stopped } else { provenance.termination };
+    Provenance { termination, validation, selection, ..provenance }
+}

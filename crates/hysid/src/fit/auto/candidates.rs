@@ -1,0 +1,363 @@
+//! What is tried: networks, random stops and classical models of plays and relays, each with the ways of
+//! seeing the input that may serve it. The list depends on what the data have (time, further inputs) and
+//! on what the user has decided, never on the numbers in them.
+
+use std::borrow::Cow;
+
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::network::{Family, Sizes};
+use crate::options::auto::AutoOptions;
+use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::network::ENSEMBLE_PENALTIES;
+use crate::options::network::{FitOptions, Regularisation};
+use crate::options::shaping::Shaping;
+use crate::options::variants::variants;
+use crate::options::{ModelName, Request};
+
+/// Candidates of one kind, which agree among themselves before they answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Trained networks.
+    Networks,
+    /// Networks of random stops.
+    RandomStops,
+    /// Classical models: relays, plays and the like.
+    Classical,
+}
+
+impl Kind {
+    pub const ALL: [Kind; 3] = [Kind::Classical, Kind::Networks, Kind::RandomStops];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Networks => "networks",
+            Kind::RandomStops => "random stops",
+            Kind::Classical => "classical",
+        }
+    }
+}
+
+/// A model that may serve, with its options.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    pub kind: Kind,
+    request: Request,
+}
+
+/// Scale of the companding of the input: for what happens within a tenth or a fiftieth of its range.
+const COMPANDING: [f64; 2] = [0.1, 0.02];
+
+/// Scale of the companding of the rate.
+const RATE_COMPANDING: f64 = 0.1;
+
+/// Penalties that the best networks are tried with too: those of a single fit, and as good as none, for data
+/// without noise.
+const OTHER_PENALTIES: [Regularisation; 2] =
+    [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
+
+/// Epochs of a network. As above.
+const EPOCHS: usize = 25;
+
+/// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
+/// above.
+const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
+const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
+
+/// Starts of a search that is repeated on every fold, and rows with an output that it is fitted to at most.
+const STARTS_OF_A_SEARCH: usize = 4;
+const ROWS_OF_A_SEARCH: usize = 1500;
+
+/// Starts and epochs of a search that only tells whether a law is worth more.
+const STARTS_IN_HASTE: usize = 2;
+const EPOCHS_IN_HASTE: usize = 12;
+
+/// Stops of a candidate that is quickly fitted.
+const QUICK_STOPS: usize = 60;
+
+/// Rows that a network's early iterations use at most.
+const THIN: usize = 3000;
+
+impl Candidate {
+    /// A model that the user has decided for.
+    pub fn alone(request: &Request) -> Self {
+        let kind = match request {
+            Request::Network(_) => Kind::Networks,
+            Request::Classical(options) if options.model == Rival::RandomStops => Kind::RandomStops,
+            Request::Classical(_) | Request::Auto(_) => Kind::Classical,
+        };
+        Self { kind, request: request.clone() }
+    }
+
+    /// The same with so many rows of each record that only drive the memory.
+    pub fn warmed_up(&self, rows: usize) -> Self {
+        let mut warmed = self.clone();
+        match &mut warmed.request {
+            Request::Network(options) => options.shaping.warm_up = rows,
+            Request::Classical(options) => options.shaping.warm_up = rows,
+            Request::Auto(_) => {}
+        }
+        warmed
+    }
+
+    /// What is asked for.
+    pub fn asked(&self) -> &Request {
+        &self.request
+    }
+
+    /// What is asked for, for a start of its own.
+    pub fn request(&self, start: usize) -> Request {
+        let mut request = self.request.clone();
+        let seed = match &mut request {
+            Request::Network(options) => &mut options.seed,
+            Request::Classical(options) => &mut options.seed,
+            Request::Auto(_) => unreachable!("no candidate is made of candidates"),
+        };
+        *seed = seed.wrapping_add((start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        request
+    }
+
+    /// True if another start gives another model; a classical model is searched from several in any case.
+    pub fn is_random(&self) -> bool {
+        match &self.request {
+            Request::Network(_) => true,
+            Request::Classical(options) => options.model == Rival::RandomStops,
+            Request::Auto(_) => false,
+        }
+    }
+
+    /// The same network with other penalties; none for what is no network.
+    pub fn with_other_penalties(&self) -> Vec<Self> {
+        let Request::Network(options) = &self.request else { return Vec::new() };
+        let with = |Regularisation { ridge, decay }| {
+            let options = FitOptions { ridge: Some(ridge), decay: Some(decay), ..options.clone() };
+            Self { kind: self.kind, request: Request::Network(options) }
+        };
+        OTHER_PENALTIES.map(with).into()
+    }
+
+    /// True for a law whose parameters are searched.
+    pub fn is_searched(&self) -> bool {
+        matches!(&self.request, Request::Classical(options) if options.model.is_searched())
+    }
+
+    /// The same searched from few starts in few epochs.
+    pub fn in_haste(&self) -> Self {
+        let mut hasty = self.clone();
+        if let Request::Classical(options) = &mut hasty.request {
+            (options.starts, options.epochs) = (Some(STARTS_IN_HASTE), Some(EPOCHS_IN_HASTE));
+        }
+        hasty
+    }
+
+    /// The rows that it is fitted to: all, or some of many. The memory runs through all.
+    pub fn rows_of<'d>(&self, data: &'d Dataset) -> Cow<'d, Dataset> {
+        if self.is_searched() && data.scored() > ROWS_OF_A_SEARCH {
+            return Cow::Owned(data.thinned(ROWS_OF_A_SEARCH));
+        }
+        Cow::Borrowed(data)
+    }
+
+    /// What it is, in a few words.
+    pub fn name(&self) -> String {
+        self.request.label()
+    }
+}
+
+/// A candidate that takes a moment to fit: few random stops.
+pub(super) fn quick(options: &AutoOptions) -> Candidate {
+    let request = Request::Classical(ClassicalOptions {
+        rate: options.rate,
+        deterioration: Some(options.deterioration.unwrap_or(true)),
+        operators: Some(QUICK_STOPS),
+        hidden: Some(0),
+        seed: options.seed,
+        ..ClassicalOptions::of(Rival::RandomStops)
+    });
+    Candidate { kind: Kind::RandomStops, request }
+}
+
+/// All candidates for data like these: those that are usually good or quick before the others.
+pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    let mut networks = networks(options).into_iter().map(Request::Network);
+    let mut random = random_stops(options).into_iter().map(Request::Classical);
+    let mut linear = linear_laws(options).into_iter().map(Request::Classical);
+    let of = |kind| move |request| Candidate { kind, request };
+    let mut all = Vec::new();
+    // A network and a quick one at a time.
+    loop {
+        let network = networks.next().map(of(Kind::Networks));
+        let law = linear.next().map(of(Kind::Classical));
+        let stops = random.next().map(of(Kind::RandomStops));
+        let next: Vec<Candidate> = network.into_iter().chain(law).chain(stops).collect();
+        if next.is_empty() {
+            break;
+        }
+        all.extend(next);
+    }
+    all.extend(searched_laws(options).into_iter().map(Request::Classical).map(of(Kind::Classical)));
+    all.retain(|candidate| options.allows(candidate, data));
+    all
+}
+
+fn companded(share: f64) -> Shaping {
+    Shaping { companding: Some(share), ..Shaping::default() }
+}
+
+/// Networks, with the ways of seeing the input that may serve them.
+fn networks(options: &AutoOptions) -> Vec<FitOptions> {
+    use Family::{PreisachNn, Xpnn, XpnnPlus};
+    let as_it_is = Shaping::default();
+    let [tenth, fiftieth] = COMPANDING.map(companded);
+    let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let both = Shaping { rate_companding: Some(RATE_COMPANDING), ..tenth };
+    let history = Shaping { history: true, ..as_it_is };
+    let mut networks = Vec::new();
+    let mut add = |model, deterioration, shaping, rate, relaxation| {
+        networks.push(of_network(options, model, deterioration, shaping, rate, relaxation));
+    };
+    let rate = options.rate;
+    if rate.is_some() {
+        for (model, deterioration, shaping, relaxation) in [
+            (XpnnPlus, true, as_it_is, 0),
+            (XpnnPlus, true, as_it_is, 4),
+            (XpnnPlus, false, rate_tenth, 0),
+            (XpnnPlus, false, rate_tenth, 4),
+            (Xpnn, true, as_it_is, 0),
+            (XpnnPlus, true, rate_tenth, 0),
+            (Xpnn, false, rate_tenth, 0),
+            (XpnnPlus, false, both, 0),
+        ] {
+            add(model, deterioration, shaping, rate, relaxation);
+        }
+    }
+    for (model, deterioration, shaping) in [
+        (XpnnPlus, true, as_it_is),
+        (XpnnPlus, false, as_it_is),
+        (Xpnn, true, as_it_is),
+        (PreisachNn, false, as_it_is),
+        (XpnnPlus, false, tenth),
+        (Xpnn, true, tenth),
+    ] {
+        add(model, deterioration, shaping, None, 0);
+    }
+    if rate.is_none() {
+        add(XpnnPlus, false, fiftieth, None, 0);
+        add(XpnnPlus, true, history, None, 0);
+    }
+    networks
+}
+
+/// Networks whose stops are not trained.
+fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let as_it_is = Shaping::default();
+    let tenth = companded(COMPANDING[0]);
+    let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let (linear, layered) = (LINEAR_RANDOM_STOPS, LAYERED_RANDOM_STOPS);
+    let rate = options.rate;
+    let mut all = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
+    all.extend(match rate.is_some() {
+        true => [(rate_tenth, rate, false, linear), (as_it_is, rate, true, layered)],
+        false => [(as_it_is, None, true, linear), (as_it_is, None, true, layered)],
+    });
+    let of = |(shaping, rate, deterioration, (stops, hidden))| ClassicalOptions {
+        rate,
+        shaping,
+        deterioration: Some(deterioration),
+        operators: Some(options.operators.unwrap_or(stops)),
+        hidden: Some(hidden),
+        seed: options.seed,
+        ..ClassicalOptions::of(Rival::RandomStops)
+    };
+    all.into_iter().map(of).collect()
+}
+
+/// A law with what the user has decided of laws.
+fn of_law(options: &AutoOptions, model: Rival) -> ClassicalOptions {
+    ClassicalOptions {
+        operators: options.operators,
+        epochs: options.epochs,
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    }
+}
+
+/// The laws that follow by linear least squares.
+fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let [tenth, fiftieth] = COMPANDING.map(companded);
+    let mut laws = Vec::new();
+    for shaping in [Shaping::default(), tenth, fiftieth] {
+        for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
+            laws.push(ClassicalOptions { shaping, ..of_law(options, model) });
+        }
+    }
+    laws.extend([Rival::PrandtlIshlinskii, Rival::Masing].map(|model| of_law(options, model)));
+    laws
+}
+
+/// The laws that are searched, each in all its variants.
+fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
+    let searched = Rival::ALL.into_iter().filter(|model| model.is_searched());
+    let with_rate = |model: Rival| ClassicalOptions {
+        rate: options.rate.filter(|_| model.uses_rate()),
+        starts: Some(STARTS_OF_A_SEARCH),
+        ..of_law(options, model)
+    };
+    let wanted = searched.filter(|model| !model.needs_rate() || options.rate.is_some());
+    wanted.flat_map(|model| variants(&with_rate(model))).collect()
+}
+
+fn of_network(
+    options: &AutoOptions,
+    model: Family,
+    deterioration: bool,
+    shaping: Shaping,
+    rate: Option<RateMethod>,
+    relaxation: usize,
+) -> FitOptions {
+    let sizes = Sizes::default();
+    FitOptions {
+        model,
+        sizes: Sizes {
+            stops: options.stops.unwrap_or(sizes.stops),
+            hidden: options.hidden.unwrap_or(sizes.hidden),
+            relaxation: if relaxation > 0 { options.relaxation.unwrap_or(relaxation) } else { 0 },
+        },
+        no_deterioration: !deterioration,
+        rate,
+        shaping,
+        starts: 1,
+        epochs: options.epochs.unwrap_or(EPOCHS),
+        seed: options.seed,
+        ridge: Some(options.ridge.unwrap_or(ENSEMBLE_PENALTIES.ridge)),
+        decay: Some(options.decay.unwrap_or(ENSEMBLE_PENALTIES.decay)),
+        thin: THIN,
+        ..FitOptions::default()
+    }
+}
+
+impl AutoOptions {
+    /// False for a candidate that does not fit the data or contradicts what the user has decided.
+    fn allows(&self, candidate: &Candidate, data: &Dataset) -> bool {
+        let request = &candidate.request;
+        let (shaping, deteriorates) = match request {
+            Request::Network(options) => (options.shaping, !options.no_deterioration),
+            Request::Classical(options) => {
+                (options.shaping, options.deterioration == Some(true) || options.degradation)
+            }
+            Request::Auto(_) => return false,
+        };
+        let is_network = matches!(request, Request::Network(_));
+        let relaxes = matches!(request, Request::Network(options) if options.sizes.relaxation > 0);
+        let is_random_stops = request.model() == ModelName::Rival(Rival::RandomStops);
+        let takes_history = request.model().takes_further_inputs();
+        request.model().hindrance(data, request.rate()).is_none()
+            && (!shaping.history || takes_history)
+            && self.deterioration.is_none_or(|wanted| wanted == deteriorates)
+            && (!self.always_rate || request.rate().is_some())
+            && self.relaxation.is_none_or(|wanted| !is_network || relaxes == (wanted > 0))
+            && self.companding.is_none_or(|wanted| wanted == shaping.companding.is_some())
+            && self.history.is_none_or(|wanted| wanted == shaping.history)
+            && (data.names().inputs.len() == 1 || is_network || is_random_stops)
+    }
+}

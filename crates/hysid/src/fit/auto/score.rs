@@ -1,0 +1,136 @@
+//! How well a candidate predicts data held out, and what it weighs for it: theory.md (11.5) and (11.6).
+
+use crate::fit::auto::trial::HeldOut;
+use crate::model::Weights;
+
+/// Rows of a class in a fold below which it says nothing of the class.
+const FEWEST_ROWS: usize = 5;
+
+/// Share of a fold's rows below which a class says nothing.
+const LEAST_SHARE: f64 = 0.05;
+
+/// What the rows of its own class count for a score; the rest goes to the other class. Designed.
+const OWN_CLASS: f64 = 0.75;
+
+/// Errors that scores tell apart, as shares of the standard deviation.
+const ERRORS: (f64, f64) = (1e-12, 1e150);
+
+/// Mean over the folds of the logarithm of the error, theory.md (11.5): rows inside the trained range and
+/// rows beyond it apart. The logarithm, so that one fold that goes far beyond the others does not decide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Score {
+    pub inside: f64,
+    pub outside: f64,
+}
+
+impl Score {
+    /// Of what is predicted on each fold; of the folds that are `counted`, by their place.
+    pub fn of(predicted: &[Vec<f64>], folds: &[HeldOut], counted: impl Fn(usize) -> bool) -> Self {
+        let counted: Vec<(&Vec<f64>, &HeldOut)> = predicted
+            .iter()
+            .zip(folds)
+            .enumerate()
+            .filter(|(fold, _)| counted(*fold))
+            .map(|(_, fold)| fold)
+            .collect();
+        let class = |is_outside: bool| {
+            mean(counted.iter().filter_map(|(predicted, fold)| {
+                let rows =
+                    || squares(predicted, fold).filter(move |(_, outside)| (*outside > 0.5) == is_outside);
+                let share = rows().count() as f64 / fold.measured.len() as f64;
+                let is_enough = rows().count() >= FEWEST_ROWS && share >= LEAST_SHARE;
+                is_enough.then(|| logarithm(rows().map(|(square, _)| square), fold.deviation))
+            }))
+        };
+        let all = || {
+            let of_fold = |(predicted, fold): &(&Vec<f64>, &HeldOut)| {
+                logarithm(squares(predicted, fold).map(|(square, _)| square), fold.deviation)
+            };
+            mean(counted.iter().map(of_fold)).unwrap_or_default()
+        };
+        let (inside, outside) = match (class(false), class(true)) {
+            (Some(inside), Some(outside)) => (
+                OWN_CLASS * inside + (1.0 - OWN_CLASS) * outside,
+                OWN_CLASS * outside + (1.0 - OWN_CLASS) * inside,
+            ),
+            (Some(one), None) | (None, Some(one)) => (one, one),
+            // No fold has rows enough of either class.
+            (None, None) => (all(), all()),
+        };
+        Self { inside, outside }
+    }
+
+    /// With what is known beforehand.
+    pub fn with_prior(self, prior: f64) -> Self {
+        Self { inside: self.inside + prior, outside: self.outside + prior }
+    }
+
+    /// Both classes alike.
+    pub fn sum(self) -> f64 {
+        self.inside + self.outside
+    }
+
+    /// As errors in percent of the standard deviation.
+    pub fn percent(self) -> (f64, f64) {
+        (100.0 * self.inside.exp(), 100.0 * self.outside.exp())
+    }
+}
+
+/// Squared error of each row, and how far outside the trained range it is.
+fn squares<'a>(predicted: &'a [f64], fold: &'a HeldOut) -> impl Iterator<Item = (f64, f64)> + 'a {
+    let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
+    rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
+}
+
+/// Logarithm of the root mean square over a deviation.
+fn logarithm(squares: impl Iterator<Item = f64>, deviation: f64) -> f64 {
+    let (rows, sum) = squares.fold((0, 0.0), |(rows, sum), square| (rows + 1, sum + square));
+    let error = (sum / f64::from(rows.max(1))).sqrt() / deviation;
+    // No error at all may look like a small one.
+    let error = if error.is_nan() { ERRORS.1 } else { error };
+    error.clamp(ERRORS.0, ERRORS.1).ln()
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (count, sum) = values.fold((0, 0.0), |(count, sum), value| (count + 1, sum + value));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// Weights by scores, theory.md (11.6): (score / best)^-power, and 0 behind the best `most` in either class.
+pub(super) fn weights(scores: &[Score], power: f64, most: usize) -> Vec<Weights> {
+    let of_class = |score: fn(&Score) -> f64| -> Vec<f64> {
+        let best = scores.iter().map(score).fold(f64::INFINITY, f64::min);
+        let mut order: Vec<usize> = (0..scores.len()).collect();
+        order.sort_by(|&a, &b| score(&scores[a]).total_cmp(&score(&scores[b])));
+        let mut weights = vec![0.0; scores.len()];
+        for &index in order.iter().take(most) {
+            weights[index] = (power * (best - score(&scores[index]))).exp();
+        }
+        weights
+    };
+    let (inside, outside) = (of_class(|score| score.inside), of_class(|score| score.outside));
+    inside.into_iter().zip(outside).map(|(inside, outside)| Weights { inside, outside }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_fall_with_the_power_of_the_error() {
+        let score = |inside: f64, outside: f64| Score { inside: inside.ln(), outside: outside.ln() };
+        let weights = weights(&[score(2.0, 1.0), score(1.0, 3.0), score(4.0, 2.0)], 4.0, 2);
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
+        assert!(close(weights[0].inside, 1.0 / 16.0) && close(weights[0].outside, 1.0));
+        assert!(close(weights[1].inside, 1.0) && weights[1].outside == 0.0);
+        assert!(weights[2].inside == 0.0 && close(weights[2].outside, 1.0 / 16.0));
+    }
+
+    #[test]
+    fn no_error_that_is_none_looks_small() {
+        assert_eq!(logarithm([f64::NAN].into_iter(), 1.0), ERRORS.1.ln());
+        assert_eq!(logarithm([f64::INFINITY].into_iter(), 1.0), ERRORS.1.ln());
+        assert_eq!(logarithm([0.0].into_iter(), 1.0), ERRORS.0.ln());
+        assert!((logarithm([4.0, 4.0].into_iter(), 2.0)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,50 @@
+//! What was tried and how it did, for the model file.
+
+use crate::fit::auto::combination::Combination;
+use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::{HeldOut, Trial};
+use crate::model::Weights;
+use crate::model::selection::{CandidateResult, Selection};
+
+/// Of a combination of which so many members of each candidate are kept.
+pub(super) fn selection(
+    trials: &[Trial],
+    folds: &[HeldOut],
+    combination: &Combination,
+    kept: &[usize],
+) -> Selection {
+    let shares = combination.shares();
+    let without = |place: usize| {
+        let others = combination.only(|other| other != place)?;
+        Some(others.score(trials, folds).percent())
+    };
+    let result = |(place, trial): (usize, &Trial)| {
+        let share = shares.iter().find(|(other, _)| *other == place).map(|(_, share)| *share);
+        CandidateResult {
+            name: trial.candidate.name(),
+            kind: trial.candidate.kind.name().into(),
+            error_percent: Score::of(&trial.predicted, folds, |_| true).percent(),
+            share: share.unwrap_or(Weights { inside: 0.0, outside: 0.0 }),
+            members: kept[place],
+            without_percent: share.and_then(|_| without(place)),
+        }
+    };
+    let tried = trials.iter().enumerate().filter(|(_, trial)| trial.is_complete());
+    let mut candidates: Vec<CandidateResult> = tried.map(result).collect();
+    let kinds: Vec<String> =
+        shares.iter().map(|(place, _)| trials[*place].candidate.kind.name().into()).collect();
+    let of_kind = |kind: &String| kinds.iter().position(|other| other == kind).unwrap_or(kinds.len());
+    candidates.sort_by(|a, b| {
+        let by_kind = of_kind(&a.kind).cmp(&of_kind(&b.kind)).then(a.kind.cmp(&b.kind));
+        by_kind.then(a.error_percent.0.total_cmp(&b.error_percent.0))
+    });
+    Selection {
+        folds: folds.iter().map(|fold| fold.fold.name.clone()).collect(),
+        error_percent: combination.score(trials, folds).percent(),
+        candidates,
+        single: None,
+        warm_up: None,
+        one_loop: false,
+        dropped: Vec::new(),
+    }
+}

@@ -1,0 +1,211 @@
+//! One small model in the place of many: distilled from the ensemble, or fitted to the data alone, whichever
+//! predicts better what was held out. Both are validated as what they are: on each fold a model is distilled
+//! from the ensemble of that fold.
+
+use rayon::prelude::*;
+
+use crate::data::record::{Dataset, Record, Thinning};
+use crate::error::Result;
+use crate::fit::auto::STARTS_ON_FOLDS;
+use crate::fit::auto::candidates::{Candidate, Kind};
+use crate::fit::auto::combination::Combination;
+use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Trial, fit_members};
+use crate::fit::auto::work::Work;
+use crate::model::preprocessing::{Preprocessing, origin};
+use crate::model::selection::SingleModel;
+use crate::model::{Body, HeldOutRow, Model};
+use crate::options::auto::AutoOptions;
+
+/// Starts from which a model is distilled, on everything and on each fold.
+const STARTS: usize = 12;
+
+/// Shares of the measured input on which the ensemble teaches beside the data: paths that nobody measured,
+/// but that the model may meet.
+const SHARES: [f64; 2] = [0.5, 0.75];
+
+/// A single model, and what models made in the same way predict on the folds.
+pub(super) struct Single {
+    pub model: Model,
+    pub predicted: Vec<Vec<f64>>,
+    pub how: SingleModel,
+}
+
+/// What a single model is made from.
+pub(super) struct Makers<'w, 'o, 'a> {
+    pub trials: &'w mut Vec<Trial>,
+    pub bench: Bench<'w, 'o, 'a>,
+    pub combination: &'w Combination,
+    pub evidence: Evidence,
+    pub options: &'w AutoOptions,
+}
+
+impl Makers<'_, '_, '_> {
+    /// The single model; `None` if no candidate is small, or there was no time.
+    ///
+    /// # Errors
+    /// As a free run over the data.
+    pub fn single(mut self, ensemble: &Model) -> Result<Option<Single>> {
+        let small = |place: &usize| {
+            self.trials[*place].is_complete() && self.trials[*place].candidate.kind != Kind::RandomStops
+        };
+        let plain = |place: usize| (place, plain_predictions(&self.trials[place]));
+        let plain = (0..self.trials.len()).filter(small).map(plain);
+        let scored = plain
+            .map(|(place, predicted)| (Score::of(&predicted, self.bench.folds, |_| true), place, predicted));
+        let rank = |(score, place, _): &(Score, usize, Vec<Vec<f64>>)| {
+            score.with_prior(self.trials[*place].prior(self.evidence)).sum()
+        };
+        let best = scored.min_by(|a, b| rank(a).total_cmp(&rank(b)));
+        let Some((score, place, predicted)) = best else { return Ok(None) };
+        let distilled = self.distilled(place, ensemble)?;
+        let of_distilled =
+            distilled.as_ref().map(|(_, predicted)| Score::of(predicted, self.bench.folds, |_| true));
+        let mut how = SingleModel {
+            name: self.trials[place].candidate.name(),
+            distilled: true,
+            distilled_percent: of_distilled.map(Score::percent),
+            plain_percent: score.percent(),
+        };
+        if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
+            && of_distilled.sum() <= score.sum()
+        {
+            return Ok(Some(Single { model, predicted, how }));
+        }
+        how.distilled = false;
+        let model = self.plain(place);
+        Ok(model.map(|model| Single { model, predicted, how }))
+    }
+
+    /// The fit to everything with the lowest training error.
+    fn plain(&mut self, place: usize) -> Option<Model> {
+        let mut wanted = vec![0; self.trials.len()];
+        wanted[place] = if self.trials[place].candidate.is_random() {
+            STARTS_ON_FOLDS.min(self.options.starts)
+        } else {
+            1
+        };
+        fit_members(self.trials, &wanted, self.bench.data, self.bench.work);
+        let error =
+            |model: &&Model| model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY);
+        let members = self.trials[place].members.iter();
+        members.min_by(|a, b| error(a).total_cmp(&error(b))).cloned()
+    }
+
+    /// A model distilled from the ensemble, and what those distilled on each fold predict.
+    fn distilled(&self, place: usize, ensemble: &Model) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
+        let candidate = &self.trials[place].candidate;
+        let starts = if candidate.is_random() { STARTS } else { 1 };
+        let mut predicted = Vec::new();
+        for (fold, held_out) in self.bench.folds.iter().enumerate() {
+            let training = &held_out.fold.train;
+            let of_fold = |place: usize| {
+                self.trials[place].starts.iter().map(|folds| folds[fold].model.clone()).collect()
+            };
+            let of_fold = self.combination.ensemble(self.trials, of_fold, training.input_range(0))?;
+            let of_fold = Model::new(
+                Body::Ensemble(of_fold),
+                Preprocessing::default(),
+                self.options.rate,
+                training,
+                ensemble.provenance().clone().into(),
+            )?;
+            let Some(model) =
+                distilled(&of_fold, candidate, starts.min(STARTS_ON_FOLDS), training, self.bench.work)?
+            else {
+                return Ok(None);
+            };
+            predicted.push(held_out.fold.predicted_by(&model)?);
+        }
+        let model = distilled(ensemble, candidate, starts, self.bench.data, self.bench.work)?;
+        Ok(model.map(|model| (model, predicted)))
+    }
+}
+
+/// What the start with the lowest training error predicts on each fold.
+fn plain_predictions(trial: &Trial) -> Vec<Vec<f64>> {
+    let lowest = |fold: usize| {
+        let starts = trial.starts.iter().map(|folds| &folds[fold]);
+        starts.min_by(|a, b| a.training_error().total_cmp(&b.training_error()))
+    };
+    let folds = 0..trial.starts.first().map_or(0, Vec::len);
+    folds.filter_map(lowest).map(|start: &OnFold| start.predicted.clone()).collect()
+}
+
+/// Data with what the ensemble predicts of smaller paths beside them.
+fn with_predictions(data: &Dataset, ensemble: &Model) -> Result<Dataset> {
+    let mut records = data.records().to_vec();
+    let origin = origin(data, 0);
+    for share in SHARES {
+        for record in data.records() {
+            let scaled = scaled(record, share, origin)?;
+            let predicted = ensemble.simulate(&scaled)?;
+            // As many rows as were measured in all, so that what was measured counts as much.
+            let thinning = Thinning::new(predicted.len(), predicted.len().div_ceil(SHARES.len()));
+            let row = |(row, y): (usize, f64)| if thinning.keeps(row) { y } else { f64::NAN };
+            records.push(scaled.with_output(predicted.into_iter().enumerate().map(row).collect())?);
+        }
+    }
+    Dataset::new(data.names().clone(), records)
+}
+
+/// A record whose first input goes a share of its way from an origin.
+fn scaled(record: &Record, share: f64, origin: f64) -> Result<Record> {
+    let mut inputs = record.inputs().to_vec();
+    inputs[0].iter_mut().for_each(|x| *x = origin + share * (*x - origin));
+    let mut scaled = Record::new(record.name(), inputs, vec![f64::NAN; record.len()])?;
+    if let Some(time) = record.time() {
+        scaled = scaled.with_time(time.to_vec())?;
+    }
+    if let Some(rate) = record.given_rate() {
+        scaled = scaled.with_given_rate(rate.iter().map(|rate| rate * share).collect())?;
+    }
+    Ok(scaled)
+}
+
+/// Fits the candidate to the data and to what the ensemble predicts beside them, from several starts; gives
+/// the fit that is nearest to the ensemble over all of it. `None` if there was no time.
+fn distilled(
+    ensemble: &Model,
+    candidate: &Candidate,
+    starts: usize,
+    data: &Dataset,
+    work: &Work,
+) -> Result<Option<Model>> {
+    let taught = with_predictions(data, ensemble)?;
+    let predicted: Vec<Vec<f64>> =
+        taught.records().par_iter().map(|record| ensemble.simulate(record)).collect::<Result<_>>()?;
+    let distance = |model: &Model| -> Result<f64> {
+        let mut sum = 0.0;
+        for (record, predicted) in taught.records().iter().zip(&predicted) {
+            let output = model.simulate(record)?;
+            sum += output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        }
+        Ok(sum)
+    };
+    let fitted: Vec<Option<(f64, Model)>> = (0..starts)
+        .into_par_iter()
+        .map(|start| {
+            let Some(model) = work.fit(candidate, &taught, start)? else { return Ok(None) };
+            Ok(Some((distance(&model)?, model)))
+        })
+        .collect::<Result<_>>()?;
+    let nearest = fitted.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(nearest.map(|(_, model)| model))
+}
+
+/// Rows held out with the errors of a single model.
+pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<HeldOutRow> {
+    let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
+        let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
+        rows.map(|((predicted, measured), outside)| HeldOutRow {
+            error: measured - predicted,
+            disagreement: 0.0,
+            outside: *outside,
+            weight: 1.0 / fold.measured.len() as f64,
+        })
+        .collect()
+    };
+    predicted.iter().zip(folds).flat_map(of_fold).collect()
+}

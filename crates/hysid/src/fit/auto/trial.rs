@@ -1,0 +1,237 @@
+//! Candidates tried on folds: what each start of each candidate predicts of data held out.
+
+use rayon::prelude::*;
+
+use crate::data::record::Dataset;
+use crate::fit::auto::candidates::Candidate;
+use crate::fit::auto::prior::Evidence;
+use crate::fit::auto::work::Work;
+use crate::model::{Excursion, Model, Votes};
+use crate::validation::Fold;
+
+/// The rows of a fold that are held out, and what is known of them.
+#[derive(Debug, Clone)]
+pub(super) struct HeldOut {
+    pub fold: Fold,
+    /// Measured output of each row.
+    pub measured: Vec<f64>,
+    /// How far outside the fold's training range the record has been there, 0 to 1.
+    pub outside: Vec<f64>,
+    /// Standard deviation of the measured output, in its unit.
+    pub deviation: f64,
+}
+
+impl HeldOut {
+    pub fn of(fold: Fold) -> Self {
+        let range = fold.train.input_range(0);
+        let (mut measured, mut outside) = (Vec::new(), Vec::new());
+        for record in fold.held_out.records() {
+            let mut excursion = Excursion::beyond(range);
+            for (&x, &y) in record.inputs()[0].iter().zip(record.output()) {
+                let degree = excursion.take(x);
+                if !y.is_nan() {
+                    measured.push(y);
+                    outside.push(degree);
+                }
+            }
+        }
+        let count = measured.len() as f64;
+        let mean = measured.iter().sum::<f64>() / count;
+        let variance = measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>() / count;
+        Self { fold, measured, outside, deviation: variance.sqrt().max(f64::MIN_POSITIVE) }
+    }
+}
+
+/// A model that was fitted to the training part of a fold.
+#[derive(Debug, Clone)]
+pub(super) struct OnFold {
+    pub model: Model,
+    /// What it predicts of each row held out.
+    pub predicted: Vec<f64>,
+}
+
+impl OnFold {
+    /// Error on what it was fitted to, in percent of the standard deviation.
+    pub fn training_error(&self) -> f64 {
+        self.model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY)
+    }
+}
+
+/// A candidate, what its starts predict on the folds, and its fits to everything.
+#[derive(Debug, Clone)]
+pub(super) struct Trial {
+    pub candidate: Candidate,
+    /// The models of each start, fold by fold.
+    pub starts: Vec<Vec<OnFold>>,
+    /// The median of what the starts predict, fold by fold.
+    pub predicted: Vec<Vec<f64>>,
+    /// Fits to everything, from the first start on.
+    pub members: Vec<Model>,
+    /// The models of the start that is under way, fold by fold.
+    under_way: Vec<Option<OnFold>>,
+}
+
+impl Trial {
+    /// A candidate that was not tried yet.
+    pub fn of(candidate: Candidate) -> Self {
+        let (starts, predicted, members, under_way) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { candidate, starts, predicted, members, under_way }
+    }
+
+    /// True if it was tried and fitted to everything at least once.
+    pub fn is_complete(&self) -> bool {
+        !self.starts.is_empty() && !self.members.is_empty()
+    }
+
+    /// What is known of the candidate beforehand.
+    pub fn prior(&self, evidence: Evidence) -> f64 {
+        evidence.prior(self.candidate.asked())
+    }
+
+    /// What the start that is under way predicts, fold by fold; nothing on folds that it has not been fitted
+    /// to. `None` if it failed on one of those that are `wanted`.
+    pub fn predicted_so_far(&self, wanted: &[usize]) -> Option<Vec<Vec<f64>>> {
+        let is_there = |fold: &usize| self.under_way.get(*fold).is_some_and(Option::is_some);
+        let predicted = |on_fold: &Option<OnFold>| on_fold.as_ref().map(|fold| fold.predicted.clone());
+        wanted
+            .iter()
+            .all(is_there)
+            .then(|| self.under_way.iter().map(|on_fold| predicted(on_fold).unwrap_or_default()).collect())
+    }
+
+    /// Ends the start that is under way: it counts if it has been fitted to every fold.
+    fn end_start(&mut self, folds: usize) {
+        let under_way = std::mem::take(&mut self.under_way);
+        let of_folds: Option<Vec<OnFold>> = under_way.into_iter().collect();
+        let Some(of_folds) = of_folds.filter(|of_folds| of_folds.len() == folds) else { return };
+        self.starts.push(of_folds);
+        let median = |fold: usize| {
+            let starts: Vec<&[f64]> =
+                self.starts.iter().map(|folds| folds[fold].predicted.as_slice()).collect();
+            medians(&starts)
+        };
+        self.predicted = (0..folds).map(median).collect();
+    }
+}
+
+/// The median of several predictions, row by row.
+fn medians(predictions: &[&[f64]]) -> Vec<f64> {
+    let mut votes = Votes::default();
+    let row = |row: usize| {
+        votes.clear();
+        predictions.iter().for_each(|prediction| votes.cast(prediction[row], 1.0));
+        votes.quantile(0.5)
+    };
+    (0..predictions[0].len()).map(row).collect()
+}
+
+/// A start of a candidate, to be tried on a fold or, without one, fitted to everything.
+#[derive(Debug, Clone, Copy)]
+struct Job {
+    trial: usize,
+    start: usize,
+    fold: Option<usize>,
+}
+
+/// What came of a job.
+#[allow(clippy::large_enum_variant)]
+enum Fitted {
+    OnFold(OnFold),
+    OnEverything(Model),
+}
+
+/// The data and their folds, on which candidates are tried.
+#[derive(Clone, Copy)]
+pub(super) struct Bench<'w, 'o, 'a> {
+    pub data: &'w Dataset,
+    pub folds: &'w [HeldOut],
+    pub work: &'w Work<'o, 'a>,
+}
+
+impl Bench<'_, '_, '_> {
+    /// Tries a start of some candidates, given by their places, on all folds.
+    pub fn try_start(&self, trials: &mut [Trial], places: &[usize], start: usize) {
+        let all: Vec<usize> = (0..self.folds.len()).collect();
+        self.try_folds(trials, places, start, &all, false);
+        self.end_start(trials, places);
+    }
+
+    /// Tries a start of some candidates on some folds, and fits it to everything if asked and not yet done. Of
+    /// what fails, or was not finished in time, nothing is kept.
+    pub fn try_folds(
+        &self,
+        trials: &mut [Trial],
+        places: &[usize],
+        start: usize,
+        folds: &[usize],
+        on_everything: bool,
+    ) {
+        let of_trial = |&trial: &usize| {
+            let is_missing = on_everything && trials[trial].members.len() == start;
+            let everything = is_missing.then_some(Job { trial, start, fold: None });
+            everything.into_iter().chain(folds.iter().map(move |&fold| Job {
+                trial,
+                start,
+                fold: Some(fold),
+            }))
+        };
+        let jobs: Vec<Job> = places.iter().flat_map(of_trial).collect();
+        let fitted: Vec<Option<Fitted>> = jobs.par_iter().map(|job| self.run(trials, job)).collect();
+        for (job, fitted) in jobs.iter().zip(fitted) {
+            let trial = &mut trials[job.trial];
+            match (fitted, job.fold) {
+                (Some(Fitted::OnFold(on_fold)), Some(fold)) => {
+                    trial.under_way.resize(self.folds.len(), None);
+                    trial.under_way[fold] = Some(on_fold);
+                }
+                (Some(Fitted::OnEverything(model)), _) => trial.members.push(model),
+                _ => {}
+            }
+        }
+    }
+
+    /// Ends the starts of some candidates that are under way.
+    pub fn end_start(&self, trials: &mut [Trial], places: &[usize]) {
+        places.iter().for_each(|&place| trials[place].end_start(self.folds.len()));
+    }
+
+    fn run(&self, trials: &[Trial], job: &Job) -> Option<Fitted> {
+        let candidate = &trials[job.trial].candidate;
+        // A candidate that fails on a fold is none; why, its name alone would not tell the user.
+        let Some(fold) = job.fold else {
+            return self.work.fit(candidate, self.data, job.start).ok().flatten().map(Fitted::OnEverything);
+        };
+        let fold = &self.folds[fold].fold;
+        let model = self.work.fit(candidate, &fold.train, job.start).ok().flatten()?;
+        let predicted = fold.predicted_by(&model).ok()?;
+        let is_sound = predicted.iter().all(|y| y.is_finite());
+        is_sound.then_some(Fitted::OnFold(OnFold { model, predicted }))
+    }
+}
+
+/// Fits candidates to everything until each has as many members as are wanted of it.
+pub(super) fn fit_members(trials: &mut [Trial], wanted: &[usize], data: &Dataset, work: &Work) {
+    let jobs: Vec<(usize, usize)> = trials
+        .iter()
+        .zip(wanted)
+        .enumerate()
+        .flat_map(|(place, (trial, &wanted))| (trial.members.len()..wanted).map(move |start| (place, start)))
+        .collect();
+    let fitted: Vec<Option<Model>> = jobs
+        .par_iter()
+        .map(|&(place, start)| work.fit(&trials[place].candidate, data, start).ok().flatten())
+        .collect();
+    for (&(place, _), model) in jobs.iter().zip(fitted) {
+        trials[place].members.extend(model);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_wild_start_does_not_move_a_candidate() {
+        assert_eq!(medians(&[&[1.0, 2.0], &[1.2, 2.2], &[1e9, -1e9]]), [1.2, 2.0]);
+    }
+}

@@ -1,0 +1,42 @@
+//! Whether the records begin in the virgin state: if not, their first rows had better not be trained on.
+
+use crate::data::record::Dataset;
+use crate::fit::auto::candidates::Candidate;
+use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::{Bench, HeldOut, Trial};
+use crate::fit::auto::work::Work;
+use crate::model::selection::WarmUp;
+use crate::validation::Fold;
+
+/// Share of the shortest record that is left out of the training. Designed.
+const SHARE: f64 = 0.05;
+
+/// What leaving rows out must better the error by to be worth it. Designed.
+const WORTH: f64 = 0.9;
+
+/// Rows at the beginning of each record that are better not trained on: 0, or a share of the shortest
+/// record. Both ways are judged on the same rows, behind those, by a candidate that is quickly fitted.
+pub(super) fn better(quick: Candidate, data: &Dataset, folds: &[Fold], work: &Work) -> WarmUp {
+    let none = WarmUp::decided(0);
+    let shortest = data.records().iter().map(|record| record.len()).min().unwrap_or_default();
+    let rows = (SHARE * shortest as f64) as usize;
+    let is_scored = data.records().iter().any(|record| record.output()[..rows].iter().any(|y| !y.is_nan()));
+    if !is_scored {
+        return none;
+    }
+    let behind =
+        folds.iter().map(|fold| Fold { held_out: fold.held_out.clone().warmed_up(rows), ..fold.clone() });
+    let folds: Vec<HeldOut> = behind.filter(|fold| fold.held_out.scored() > 0).map(HeldOut::of).collect();
+    let mut trials = [Trial::of(quick.clone()), Trial::of(quick.warmed_up(rows))];
+    Bench { data, folds: &folds, work }.try_start(&mut trials, &[0, 1], 0);
+    let error = |trial: &Trial| {
+        let score = (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &folds, |_| true))?;
+        Some(100.0 * (0.5 * score.sum()).exp())
+    };
+    match (error(&trials[0]), error(&trials[1])) {
+        (Some(with), Some(without)) if without < WORTH * with => {
+            WarmUp { rows, without_percent: Some(without), with_percent: Some(with) }
+        }
+        _ => none,
+    }
+}

@@ -1,0 +1,101 @@
+//! The observer of a fit that consists of many, some of them side by side, and how much of it is done.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::auto::candidates::Candidate;
+use crate::fit::identify;
+use crate::fit::network::{Observer, Progress};
+use crate::model::Model;
+
+/// The observer, shared by all fits.
+pub(super) struct Work<'o, 'a> {
+    observer: Mutex<&'o mut Observer<'a>>,
+    stopped: AtomicBool,
+    fits: Mutex<Fits>,
+}
+
+/// Fits that are done and fits that are expected.
+#[derive(Debug, Clone, Copy)]
+struct Fits {
+    done: usize,
+    expected: usize,
+    /// The share of the work that was told last: it never falls.
+    told: f64,
+}
+
+impl<'o, 'a> Work<'o, 'a> {
+    /// Work of about so many fits.
+    pub fn new(observer: &'o mut Observer<'a>, expected: usize) -> Self {
+        Self {
+            observer: Mutex::new(observer),
+            stopped: AtomicBool::new(false),
+            fits: Mutex::new(Fits { done: 0, expected: expected.max(1), told: 0.0 }),
+        }
+    }
+
+    /// True once the observer has asked to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    /// Fits done.
+    pub fn done(&self) -> usize {
+        self.fits().done
+    }
+
+    /// Corrects how many fits are still to come.
+    pub fn expect(&self, to_come: usize) {
+        let mut fits = self.fits();
+        fits.expected = fits.done + to_come.max(1);
+    }
+
+    /// A fit that is needed whatever happens: stopped, it gives the best so far.
+    ///
+    /// # Errors
+    /// As [`identify`].
+    pub fn first_fit(&self, candidate: &Candidate, data: &Dataset) -> Result<Model> {
+        let fitted = identify(data, &candidate.request(0), &mut |progress| self.observe(progress))?;
+        self.fits().done += 1;
+        Ok(fitted.model)
+    }
+
+    /// A fit of a candidate from one of its starts; `None` if there was no time for it.
+    ///
+    /// # Errors
+    /// As [`identify`].
+    pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Model>> {
+        if self.is_stopped() {
+            return Ok(None);
+        }
+        let request = candidate.request(start);
+        let fitted =
+            identify(candidate.rows_of(data).as_ref(), &request, &mut |progress| self.observe(progress))?;
+        self.fits().done += 1;
+        // What was stopped on its way is worse than what it is compared with.
+        Ok((!self.is_stopped()).then_some(fitted.model))
+    }
+
+    /// Tells the observer of a fit on its way.
+    fn observe(&self, progress: &Progress) -> ControlFlow<()> {
+        let share = {
+            let mut fits = self.fits();
+            fits.told = fits.told.max((fits.done as f64 / fits.expected as f64).min(1.0));
+            fits.told
+        };
+        let mut observer = self.observer.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // Asked once more by a fit that has not noticed yet, the observer must not change its mind.
+        if self.is_stopped() || observer(&progress.of_part(share)).is_break() {
+            self.stopped.store(true, Ordering::Relaxed);
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn fits(&self) -> std::sync::MutexGuard<'_, Fits> {
+        self.fits.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}

@@ -1,0 +1,87 @@
+//! What to be aware of before a fit: data that the model is not made for.
+
+use crate::data::record::Dataset;
+use crate::data::warning::Warning;
+use crate::options::classical::Rival;
+use crate::options::{ModelName, Request};
+use crate::significant::Significant;
+
+/// Half ranges that the middle of the field may lie away from 0.
+const FAR: f64 = 2.0;
+
+impl Request {
+    /// What to be aware of when this is fitted to these data, in sentences.
+    pub fn cautions(&self, data: &Dataset) -> Vec<String> {
+        let model = self.model();
+        let mut cautions = Vec::new();
+        if self.rate().is_some() && !model.uses_rate() {
+            cautions.push(format!("{} ignores the rate (xpnn and xpnn+ use it)", model.name()));
+        }
+        cautions.extend(far_from_zero(model, data));
+        cautions.extend(self.larger_than(data).map(|warning| warning.to_string()));
+        cautions
+    }
+}
+
+impl Request {
+    /// A network with more parameters than rows with an output; of other models the fitted one tells.
+    fn larger_than(&self, data: &Dataset) -> Option<Warning> {
+        let Self::Network(options) = self else { return None };
+        // Sizes that no network can have are refused by the fit.
+        Warning::of_size(options.architecture(data).ok()?.parameters(), data.scored())
+    }
+}
+
+/// The Jiles-Atherton law is about a field of 0; all other models measure the input from where the data go about.
+fn far_from_zero(model: ModelName, data: &Dataset) -> Option<String> {
+    if model != ModelName::Rival(Rival::JilesAtherton) {
+        return None;
+    }
+    let (low, high) = data.input_range(0);
+    let (middle, half_range) = (0.5 * (low + high), 0.5 * (high - low));
+    (middle.abs() > FAR * half_range).then(|| {
+        format!(
+            "{}: {} goes from {:.4} to {:.4}, but the law takes 0 as the demagnetised state \
+             (subtract the offset of the field, or fit another model)",
+            model.name(),
+            data.names().inputs[0],
+            Significant(low),
+            Significant(high)
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::rate::RateMethod;
+    use crate::data::record::{ColumnNames, Record};
+
+    fn data(offset: f64) -> Dataset {
+        let x: Vec<f64> = (0..100).map(|row| offset + (0.1 * f64::from(row)).sin()).collect();
+        let record = Record::new("r", vec![x.clone()], x).unwrap();
+        Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    }
+
+    #[test]
+    fn a_field_far_from_zero_is_told_of_for_the_law_that_needs_zero() {
+        let cautions = |model, offset| Request::of(model, None, 1).cautions(&data(offset));
+        let jiles_atherton = ModelName::Rival(Rival::JilesAtherton);
+        assert!(cautions(jiles_atherton, 0.0).is_empty());
+        assert!(cautions(jiles_atherton, 1.5).is_empty());
+        let [caution] = &cautions(jiles_atherton, 200.0)[..] else { panic!("one caution") };
+        assert!(caution.contains("199") && caution.contains("201"), "{caution}");
+        assert!(cautions(ModelName::Rival(Rival::Preisach), 200.0).is_empty());
+    }
+
+    #[test]
+    fn a_rate_that_a_model_cannot_use_is_told_of() {
+        let rival = Rival::Preisach;
+        let options = crate::options::classical::ClassicalOptions {
+            rate: Some(RateMethod::Central),
+            ..crate::options::classical::ClassicalOptions::of(rival)
+        };
+        let cautions = Request::Classical(options).cautions(&data(0.0));
+        assert_eq!(cautions, ["preisach ignores the rate (xpnn and xpnn+ use it)"]);
+    }
+}

@@ -1,0 +1,141 @@
+//! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are searched, the stiffnesses,
+//! the offset and the damping follow.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::search::{
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::Sample;
+use crate::law::series::Series;
+use crate::stop_check::StopCheck;
+
+use crate::fit::law::Identify;
+use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
+
+/// How a Bouc-Wen law is identified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoucWenOptions {
+    /// With the degradation and pinching of Baber and Noori.
+    pub degradation: bool,
+    /// How the rate is found for the damping; without it there is none.
+    pub rate: Option<RateMethod>,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Iterations of each at most.
+    pub epochs: usize,
+    /// Seed of the random starts.
+    pub seed: u64,
+}
+
+impl Default for BoucWenOptions {
+    fn default() -> Self {
+        Self { degradation: false, rate: None, starts: 8, epochs: 40, seed: 0 }
+    }
+}
+
+/// Elementary operations of a row, roughly: it may take some hundred steps.
+const OPERATIONS_A_ROW: usize = 5000;
+
+impl Identify for BoucWen {
+    type Options = BoucWenOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &BoucWenOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        // The rate only adds to the output, so it is no part of the memory.
+        let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The element starts at 0: an input far from it is reached by yielding.
+        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+        let family = Elements::new(range, options);
+        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let found = search(&family, &series, effort, observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        law.offset = found.weights[0];
+        law.elastic_stiffness = found.weights[1];
+        law.hysteretic_stiffness = found.weights[2];
+        law.damping = found.weights.get(3).copied().unwrap_or(0.0);
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// Bouc-Wen elements as the search sees them.
+struct Elements {
+    degradation: bool,
+    variables: Vec<Variable>,
+    non_negative: Vec<bool>,
+}
+
+impl Elements {
+    fn new(range: f64, options: &BoucWenOptions) -> Self {
+        let mut variables = vec![
+            Variable::logarithmic(0.005 * range, 2.0 * range),
+            Variable::linear(B_BOUNDS.0, 2.0),
+            Variable::logarithmic(1.0, 8.0),
+        ];
+        if options.degradation {
+            variables.extend([
+                Variable::logarithmic(1e-6, 0.1),
+                Variable::logarithmic(1e-5, 1.0),
+                Variable::logarithmic(1e-5, 1.0),
+                Variable::linear(0.0, 0.99),
+                Variable::logarithmic(1e-3, 10.0),
+                Variable::linear(-0.5, 1.0),
+                Variable::logarithmic(0.03, 3.0),
+                Variable::logarithmic(1e-5, 0.1),
+                Variable::logarithmic(0.03, 3.0),
+            ]);
+        }
+        let columns = if options.rate.is_some() { 4 } else { 3 };
+        Self { degradation: options.degradation, variables, non_negative: vec![false; columns] }
+    }
+
+    /// The law of unit stiffness.
+    fn law(&self, parameters: &[f64]) -> BoucWen {
+        let degradation = self
+            .degradation
+            .then(|| Degradation::from_values(std::array::from_fn(|index| parameters[3 + index])));
+        BoucWen {
+            offset: 0.0,
+            elastic_stiffness: 0.0,
+            hysteretic_stiffness: 1.0,
+            damping: 0.0,
+            yield_displacement: parameters[0],
+            b: parameters[1],
+            n: parameters[2],
+            degradation,
+        }
+    }
+}
+
+impl Family for Elements {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &self.non_negative
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let mut state = BoucWenState::default();
+        for (&Sample { x, rate, .. }, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(OPERATIONS_A_ROW) {
+                return;
+            }
+            let z = law.yield_displacement * law.advance(&mut state, x);
+            if !y.is_nan() {
+                let row = [1.0, x, z, rate];
+                columns.push(&row[..self.non_negative.len()]);
+            }
+        }
+    }
+}

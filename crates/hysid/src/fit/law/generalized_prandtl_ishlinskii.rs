@@ -1,0 +1,195 @@
+//! Identification of a generalized Prandtl-Ishlinskii model: envelopes and thresholds are searched, the
+//! weights and the level of the output follow.
+//!
+//! The law is not changed when both envelopes and the thresholds are scaled by one factor and the
+//! weights by its inverse, nor when both envelopes are raised and `c` lowered. The search fixes both:
+//! `γ_l` goes from 0 to 1 over the range of the input.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::search::{
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::series::{Series, slope, work};
+use crate::stop_check::StopCheck;
+
+use crate::law::play_weights::MOST_PLAYS;
+
+use crate::fit::law::Identify;
+use crate::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
+
+/// An envelope rises by at least this share of its full height over the range of the input: otherwise
+/// it would leap where the input leaves the range.
+const SMALLEST_SHARE: f64 = 0.1;
+
+/// How a generalized Prandtl-Ishlinskii model is identified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GeneralizedPrandtlIshlinskiiOptions {
+    /// Number of plays.
+    pub operators: usize,
+    /// A weight for each play, not negative, in place of `ρ e^{-τ r}`.
+    pub free_weights: bool,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Iterations of each at most.
+    pub epochs: usize,
+    /// Seed of the random starts.
+    pub seed: u64,
+}
+
+impl Default for GeneralizedPrandtlIshlinskiiOptions {
+    fn default() -> Self {
+        Self { operators: 10, free_weights: true, starts: 32, epochs: 60, seed: 0 }
+    }
+}
+
+impl Identify for GeneralizedPrandtlIshlinskii {
+    type Options = GeneralizedPrandtlIshlinskiiOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &GeneralizedPrandtlIshlinskiiOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        if options.operators == 0 || options.operators > MOST_PLAYS {
+            return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
+        }
+        let series = Series::all(data, None)?;
+        let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
+        let lags = sign * work(&series) < 0.0;
+        let series = thinned(series, Memory::TurningPoints);
+        let family = Plays::new(data.input_range(0), sign, lags, options);
+        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let found = search(&family, &series, effort, observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        law.offset = found.weights[0];
+        law.weights = match law.weights {
+            PlayWeights::Exponential { plays, rho, tau } => {
+                PlayWeights::Exponential { plays, rho: rho * found.weights[1], tau }
+            }
+            PlayWeights::Free(_) => {
+                PlayWeights::Free(found.weights[1..].iter().map(|weight| family.sign * weight).collect())
+            }
+        };
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// Generalized plays as the search sees them.
+struct Plays {
+    low: f64,
+    high: f64,
+    /// 1 if the output rises with the input, else -1.
+    sign: f64,
+    operators: usize,
+    free_weights: bool,
+    variables: Vec<Variable>,
+    non_negative: Vec<bool>,
+}
+
+impl Plays {
+    fn new(
+        (low, high): (f64, f64),
+        sign: f64,
+        lags: bool,
+        options: &GeneralizedPrandtlIshlinskiiOptions,
+    ) -> Self {
+        let range = high - low;
+        let centre = Variable::linear(low - 0.5 * range, high + 0.5 * range);
+        let width = Variable::logarithmic(0.02 * range, 5.0 * range);
+        let mut variables = vec![
+            centre,
+            width,
+            centre,
+            width,
+            // γ_r at the lower end of the range, and its rise from there to the upper end.
+            Variable::linear(-0.1, 1.0),
+            Variable::logarithmic(0.3, 10.0),
+            // The largest threshold.
+            Variable::logarithmic(0.02, 3.0),
+            // Where the plays are at first: 0 is virgin, 1 is as after a large input that has been
+            // lowered, -1 as after a low one that has been raised.
+            Variable::linear(-1.0, 1.0),
+        ];
+        let mut non_negative = vec![false];
+        if options.free_weights {
+            // Plays alone lag; a loop the other way round needs weights of both signs.
+            non_negative.extend(vec![lags; options.operators]);
+        } else {
+            // τ times the largest threshold.
+            variables.push(Variable::linear(-2.0, 12.0));
+            non_negative.push(true);
+        }
+        let (operators, free_weights) = (options.operators, options.free_weights);
+        Self { low, high, sign, operators, free_weights, variables, non_negative }
+    }
+
+    /// The envelope that has the value `from` at the lower end of the range and rises by `rise` to the
+    /// upper end.
+    fn envelope(&self, centre: f64, width: f64, from: f64, rise: f64) -> Envelope {
+        let (a1, a2) = (1.0 / width, -centre / width);
+        let shape = |x: f64| (a1 * x + a2).tanh();
+        let share = (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
+        let a0 = rise / share;
+        Envelope { a0, a1, a2, a3: from - a0 * shape(self.low) }
+    }
+
+    /// The law of unit weight, its level not yet known.
+    fn law(&self, parameters: &[f64]) -> GeneralizedPrandtlIshlinskii {
+        let mut left = self.envelope(parameters[0], parameters[1], 0.0, 1.0);
+        let mut right = self.envelope(parameters[2], parameters[3], parameters[4], parameters[5]);
+        // Virgin plays are at 0, in the middle between the envelopes at input 0.
+        let middle = 0.5 * (left.value(0.0) + right.value(0.0));
+        left.a3 -= middle;
+        right.a3 -= middle;
+        let largest = parameters[6];
+        let initial = parameters[7] * (0.5 * (right.value(0.0) - left.value(0.0)).abs() + largest);
+        let spacing = largest / (self.operators - 1).max(1) as f64;
+        let weights = match parameters.get(8) {
+            Some(decline) => {
+                PlayWeights::Exponential { plays: self.operators, rho: self.sign, tau: decline / largest }
+            }
+            None => PlayWeights::Free(vec![self.sign; self.operators]),
+        };
+        GeneralizedPrandtlIshlinskii { offset: 0.0, left, right, initial, spacing, weights }
+    }
+}
+
+impl Family for Plays {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &self.non_negative
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let weights = law.weights.values(law.spacing, 0);
+        let mut plays = vec![law.initial; self.operators];
+        let mut row = vec![1.0; self.non_negative.len()];
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(8 * plays.len()) {
+                return;
+            }
+            let (left, right) = (law.left.value(sample.x), law.right.value(sample.x));
+            for (index, play) in plays.iter_mut().enumerate() {
+                let r = law.spacing * index as f64;
+                *play = (left - r).max((right + r).min(*play));
+            }
+            if y.is_nan() {
+                continue;
+            }
+            if self.free_weights {
+                row[1..].iter_mut().zip(&plays).for_each(|(feature, play)| *feature = self.sign * play);
+            } else {
+                row[1] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+            }
+            columns.push(&row);
+        }
+    }
+}

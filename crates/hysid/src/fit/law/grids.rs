@@ -1,0 +1,52 @@
+//! Thresholds that a fit tries.
+
+use crate::error::{Error, Result};
+use crate::law::thresholds::check_thresholds;
+
+/// `count` thresholds spread over the range of the input, theory.md (7.5): `r_i = X (i/(n+1))^e` for
+/// the largest magnitude `X` of the input.
+///
+/// # Errors
+/// No operator, or more than 1000.
+fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
+    if !(1..=MOST_OPERATORS).contains(&count) {
+        return Err(Error::Option(format!("{count} operators: choose 1 to {MOST_OPERATORS}")));
+    }
+    Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
+}
+
+/// Exponents that thresholds are spread with: `r_i ∝ (i/n)^exponent`. Designed.
+const SPREADS: [f64; 3] = [1.0, 1.5, 2.5];
+
+/// The sets of thresholds that a fit tries: the given one, or `count` of them spread over the range of the input
+/// in several ways.
+///
+/// # Errors
+/// As [`check_thresholds`] and [`spread`].
+pub(crate) fn candidates(given: Option<&[f64]>, count: usize, largest: f64) -> Result<Vec<Vec<f64>>> {
+    match given {
+        Some(thresholds) => {
+            check_thresholds(thresholds)?;
+            Ok(vec![thresholds.to_vec()])
+        }
+        None => SPREADS.iter().map(|&exponent| spread(count, largest, exponent)).collect(),
+    }
+}
+
+/// Fits to several grids, one after another. A stop after the first leaves out those that are missing.
+///
+/// # Errors
+/// That of a fit; a stop before the first is done.
+pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Result<F>) -> Result<Vec<F>> {
+    let mut fits = Vec::new();
+    for grid in grids {
+        match fit(grid) {
+            Err(Error::Stopped) if !fits.is_empty() => break,
+            fit => fits.push(fit?),
+        }
+    }
+    Ok(fits)
+}
+
+/// Most operators of a bank.
+const MOST_OPERATORS: usize = 1000;

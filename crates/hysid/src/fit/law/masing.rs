@@ -1,0 +1,128 @@
+//! Fitting a model by Masing's rule: linear least squares on each of several grids of thresholds.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::Identify;
+use crate::fit::law::grids;
+use crate::fit::law::grids::fits_on_grids;
+use crate::fit::law::linear::Bounds;
+use crate::fit::law::linear::FoldSums;
+use crate::fit::law::linear::Folds;
+use crate::fit::law::linear::Gatherer;
+use crate::fit::law::linear::Penalty;
+use crate::fit::law::linear::identifiable_series;
+use crate::fit::law::linear::logarithmic;
+use crate::fit::law::linear::lowest;
+use crate::fit::law::search::Identified;
+use crate::fit::law::search::SearchObserver;
+use crate::law::masing::Masing;
+use crate::law::masing::MasingParts;
+use crate::law::series::Series;
+use crate::network::scaling::Scaling;
+use crate::operator::play;
+use crate::operator::stop;
+use crate::options::classical::Sign;
+use crate::stop_check::StopCheck;
+
+/// How a model by Masing's rule is fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MasingOptions {
+    /// Number of thresholds, 1 to 1000.
+    pub operators: usize,
+    /// The thresholds, in the unit of the input, positive and rising; without them they are spread over
+    /// the range of the input.
+    pub thresholds: Option<Vec<f64>>,
+    /// Sign of the slopes: a virgin curve that rises, falls, or does both; chosen by cross-validation if
+    /// `None`.
+    pub sign: Option<Sign>,
+}
+
+impl Default for MasingOptions {
+    fn default() -> Self {
+        Self { operators: 30, thresholds: None, sign: None }
+    }
+}
+
+impl Identify for Masing {
+    type Options = MasingOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &MasingOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    }
+}
+
+/// Fits a model: least squares with a penalty on the bends of the virgin curve, chosen by
+/// cross-validation. Asked to stop, with the grids and penalties compared so far.
+fn fitted(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Masing> {
+    let series = identifiable_series(data)?;
+    let scaling = Scaling::of(data, None)?;
+    let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
+    let fits = fits_on_grids(&grids, |grid| slopes_on_grid(&series, &scaling, grid, options.sign, stop))?;
+    let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
+    let best = lowest(&scores);
+    let slope = scaling.output_deviation / scaling.inputs[0];
+    Masing::new(MasingParts {
+        constant: scaling.output(fits[best].1[0]),
+        thresholds: grids[best].clone(),
+        slopes: fits[best].1[1..].iter().map(|weight| weight * slope).collect(),
+    })
+}
+
+/// Score by cross-validation, and weights (constant, slopes) in scaled units.
+fn slopes_on_grid(
+    series: &[Series],
+    scaling: &Scaling,
+    grid: &[f64],
+    sign: Option<Sign>,
+    stop: StopCheck<'_>,
+) -> Result<(f64, Vec<f64>)> {
+    let sums = slope_sums(series, scaling, grid, stop)?;
+    let features = grid.len() + 2;
+    // Bends of the curve are what costs; all slopes alike cost next to nothing.
+    let mut penalty = Penalty::ridge((0..features).map(|i| if i == 0 { 0.0 } else { 1e-3 }));
+    for i in 2..features {
+        penalty.add_square(&[(i, 1.0), (i - 1, -1.0)], 1.0);
+    }
+    let reversible = 1..1;
+    let factors = logarithmic(1e-9, 1e-1, 17);
+    let choice = sums.choose(&penalty, &factors, sign, &reversible, stop);
+    let mut penalised = sums.into_total().quadratic();
+    penalised.penalise(&penalty, choice.factor);
+    let bounds = Bounds::new(choice.sign, reversible, features);
+    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
+}
+
+/// Sums of constant and slopes: the feature of a slope is a stop less the one before.
+fn slope_sums(series: &[Series], scaling: &Scaling, grid: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
+    let folds = Folds::of_series(series);
+    let mut features = vec![1.0; grid.len() + 2];
+    let mut gatherer = Gatherer::new(features.len(), &folds, stop);
+    let factor = 1.0 / scaling.inputs[0];
+    for (series, fold) in series.iter().zip(&folds.of_rows) {
+        let mut plays = vec![0.0; grid.len()];
+        let targets = scaling.scaled_output(&series.output);
+        for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+            if gatherer.is_over(6 * features.len()) {
+                break;
+            }
+            let mut before = 0.0;
+            for ((play, &r), feature) in plays.iter_mut().zip(grid).zip(&mut features[1..]) {
+                *play = play::follow(*play, sample.x, r);
+                let elongation = stop::elongation(sample.x, *play);
+                *feature = (elongation - before) * factor;
+                before = elongation;
+            }
+            features[grid.len() + 1] = (sample.x - before) * factor;
+            gatherer.add(fold, &features, target);
+        }
+    }
+    gatherer.finish()
+}

@@ -1,0 +1,501 @@
+//! Fitting plays and dead zones together.
+//!
+//! ```text
+//! 1.  min ‖H[x] - S'(y)‖²,   S'(y) = y + Σ_j d_j hat_j(y)         convex        theory.md (7.7)
+//! 2.  min ‖S(H[x]) - y‖² + penalty       Levenberg-Marquardt from there, slopes of S positive
+//! ```
+//!
+//! Step 1 is Kuhnen's: the inverse of `S` is a polygon too, and linear in its parameters. The hats vanish
+//! at the ends of the range of `y`, which keeps the trivial solution away. It compares before the dead
+//! zones; step 2 compares outputs.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::Identify;
+use crate::fit::law::grids;
+use crate::fit::law::linear::{
+    Bounds, FoldSums, Folds, Gatherer, Penalty, Quadratic, identifiable_series, logarithmic, lowest,
+};
+use crate::fit::law::search::Identified;
+use crate::fit::law::search::SearchObserver;
+use crate::law::modified_prandtl_ishlinskii::{
+    DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
+};
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::series::Series;
+use crate::law::thresholds::check_thresholds;
+use crate::network::scaling::Scaling;
+use crate::operator::play;
+use crate::options::classical::Sign;
+use crate::stop_check::{Pace, StopCheck};
+
+/// How a modified Prandtl-Ishlinskii model is fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModifiedPrandtlIshlinskiiOptions {
+    /// Number of plays, 1 to 1000.
+    pub operators: usize,
+    /// Their thresholds in the unit of the input, positive and rising; without them they are spread over
+    /// the range of the input.
+    pub thresholds: Option<Vec<f64>>,
+    /// Sign of the weights of the plays; chosen by cross-validation if `None`.
+    pub sign: Option<Sign>,
+    /// Dead zones on each side of 0, 1 to 100.
+    pub dead_zones: usize,
+}
+
+impl Default for ModifiedPrandtlIshlinskiiOptions {
+    fn default() -> Self {
+        Self { operators: 20, thresholds: None, sign: None, dead_zones: 6 }
+    }
+}
+
+/// Most dead zones on each side.
+const MOST_DEAD_ZONES: usize = 100;
+
+/// Smallest slope of the dead zones, where that of a straight line through the data is about 1.
+const LEAST_SLOPE: f64 = 1e-3;
+
+/// Iterations of the refinement.
+const ITERATIONS: usize = 40;
+
+/// Iterations of a refinement that is only judged.
+const ITERATIONS_IN_VALIDATION: usize = 10;
+
+/// Steps refused in a row after which the refinement ends.
+const REFUSALS: usize = 8;
+
+impl Identify for ModifiedPrandtlIshlinskii {
+    type Options = ModifiedPrandtlIshlinskiiOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &ModifiedPrandtlIshlinskiiOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    }
+}
+
+/// Fits a model. Asked to stop, with the best prior so far and no further
+/// refinement.
+fn fitted(
+    data: &Dataset,
+    options: &ModifiedPrandtlIshlinskiiOptions,
+    stop: StopCheck<'_>,
+) -> Result<ModifiedPrandtlIshlinskii> {
+    let series = identifiable_series(data)?;
+    let scaling = Scaling::of(data, None)?;
+    if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
+        let found = options.dead_zones;
+        return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
+    }
+    options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
+    let given: Option<Vec<f64>> =
+        options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
+    let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
+    let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
+    let problems = grids::fits_on_grids(&grids, problem)?;
+    let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
+    let mut candidates = Vec::new();
+    for sign in signs {
+        // The convex problem tells which grid is best, outputs tell the rest.
+        let score = |problem: &Problem| match problem.convex_score(sign, stop) {
+            Err(Error::Stopped) => Ok(f64::INFINITY),
+            score => score,
+        };
+        let scores: Vec<f64> = problems.iter().map(score).collect::<Result<_>>()?;
+        let grid = lowest(&scores);
+        for ridge in logarithmic(1e-7, 1e-1, RIDGES) {
+            candidates.push((grid, Prior { sign, ridge }));
+        }
+    }
+    let score = |&(grid, prior): &(usize, Prior)| match problems[grid].score(prior, stop) {
+        Err(Error::Stopped) => Ok(f64::INFINITY),
+        score => score,
+    };
+    let scores: Vec<f64> = candidates.par_iter().map(score).collect::<Result<_>>()?;
+    let (grid, prior) = candidates[lowest(&scores)];
+    let problem = &problems[grid];
+    let start = problem.convex_start(prior, stop)?;
+    problem.refine(start, ITERATIONS, stop)?.in_users_units(&grids[grid], &scaling)
+}
+
+/// Values of the ridge that are tried.
+const RIDGES: usize = 7;
+
+/// What is believed of the plays beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Prior {
+    sign: Sign,
+    /// Factor of the ridge penalty on the weights of the plays.
+    ridge: f64,
+}
+
+/// Rows in scaled units, with the plays of each.
+struct Problem {
+    /// Constant, input and plays, row after row, record after record.
+    drives: Vec<Vec<f64>>,
+    targets: Vec<f64>,
+    fold_of: Vec<usize>,
+    folds: Folds,
+    dead_zones: usize,
+}
+
+/// Parameters in scaled units.
+#[derive(Debug, Clone)]
+struct Point {
+    /// Constant, input, plays.
+    hysteresis: Vec<f64>,
+    thresholds: Vec<f64>,
+    /// Value at 0.
+    constant: f64,
+    /// Slope of each piece.
+    slopes: Vec<f64>,
+    prior: Prior,
+}
+
+impl Problem {
+    /// # Errors
+    /// A stop.
+    fn new(
+        series: &[Series],
+        scaling: &Scaling,
+        grid: &[f64],
+        dead_zones: usize,
+        stop: StopCheck<'_>,
+    ) -> Result<Self> {
+        let mut pace = Pace::new(stop);
+        let folds = Folds::of_series(series);
+        let (mut drives, mut targets, mut fold_of) = (Vec::new(), Vec::new(), Vec::new());
+        for (series, of_rows) in series.iter().zip(&folds.of_rows) {
+            let mut plays = vec![0.0; grid.len()];
+            let outputs = scaling.scaled_output(&series.output);
+            for ((sample, &fold), target) in series.samples.iter().zip(of_rows).zip(outputs) {
+                if pace.is_over(10 * grid.len()) {
+                    return Err(Error::Stopped);
+                }
+                let x = sample.x / scaling.inputs[0];
+                plays.iter_mut().zip(grid).for_each(|(play, &r)| *play = play::follow(*play, x, r));
+                if !target.is_nan() {
+                    drives.push([&[1.0, x], plays.as_slice()].concat());
+                    targets.push(target);
+                    fold_of.push(fold);
+                }
+            }
+        }
+        Ok(Self { drives, targets, fold_of, folds, dead_zones })
+    }
+
+    /// Ridge on the plays among `count` parameters.
+    fn penalty(&self, count: usize, curve: std::ops::Range<usize>) -> Penalty {
+        let plays = 2..self.drives[0].len();
+        let of = |i: usize| {
+            if plays.contains(&i) {
+                1.0
+            } else if curve.contains(&i) {
+                0.1
+            } else {
+                0.0
+            }
+        };
+        Penalty::ridge((0..count).map(of))
+    }
+
+    /// The rows of some folds.
+    fn part(&self, chosen: impl Fn(usize) -> bool) -> Self {
+        let rows: Vec<usize> = (0..self.targets.len()).filter(|&row| chosen(self.fold_of[row])).collect();
+        Self {
+            drives: rows.iter().map(|&row| self.drives[row].clone()).collect(),
+            targets: rows.iter().map(|&row| self.targets[row]).collect(),
+            fold_of: rows.iter().map(|&row| self.fold_of[row]).collect(),
+            folds: self.folds.clone(),
+            dead_zones: self.dead_zones,
+        }
+    }
+
+    /// Mean over the folds of the logarithm of the mean square error of outputs held out.
+    ///
+    /// # Errors
+    /// A stop.
+    fn score(&self, prior: Prior, stop: StopCheck<'_>) -> Result<f64> {
+        let judge = |&fold: &usize| {
+            if stop.is_asked() {
+                return Err(Error::Stopped);
+            }
+            let (rest, held_out) = (self.part(|other| other != fold), self.part(|other| other == fold));
+            if rest.targets.is_empty() || held_out.targets.is_empty() {
+                return Ok(0.0);
+            }
+            let mut point = rest.refine(rest.convex_start(prior, stop)?, ITERATIONS_IN_VALIDATION, stop)?;
+            point.prior.ridge = 0.0;
+            Ok(held_out.objective(&point).max(1e-30).ln())
+        };
+        let sum: f64 = self.folds.judged.iter().map(judge).sum::<Result<f64>>()?;
+        Ok(sum / self.folds.judged.len() as f64)
+    }
+
+    /// How well the convex problem forecasts rows held out.
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_score(&self, sign: Sign, stop: StopCheck<'_>) -> Result<f64> {
+        let (sums, penalty, _) = self.convex_problem(stop)?;
+        let plays = 2..self.drives[0].len();
+        let bounds = Bounds::apart(sign, plays, 0..0, sums.total().features());
+        let factors = logarithmic(1e-8, 1e-1, 8);
+        let path = |rest: &Quadratic| rest.path(&penalty, &factors, &bounds, stop);
+        let scores = sums.scores(path, stop).ok_or(Error::Stopped)?;
+        Ok(scores[lowest(&scores)])
+    }
+
+    /// Sums and penalty of the convex problem, and the knots of the inverse polygon.
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_problem(&self, stop: StopCheck<'_>) -> Result<(FoldSums, Penalty, Vec<f64>)> {
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        };
+        let (low, high) = range(&mut self.targets.iter().copied());
+        // The mean of the scaled output is 0, so that 0 lies within.
+        let side =
+            |end: f64| (1..=self.dead_zones).map(move |j| end * j as f64 / (self.dead_zones + 1) as f64);
+        let mut inner: Vec<f64> = side(low).chain(side(high)).filter(|r| *r != 0.0).collect();
+        inner.sort_by(f64::total_cmp);
+        inner.dedup();
+        let knots = [&[low], inner.as_slice(), &[high]].concat();
+        let first = self.drives[0].len();
+        let mut gatherer = Gatherer::new(first + inner.len(), &self.folds, stop);
+        let mut features = vec![0.0; first + inner.len()];
+        for ((drive, &y), &fold) in self.drives.iter().zip(&self.targets).zip(&self.fold_of) {
+            if gatherer.is_over(4 * features.len()) {
+                break;
+            }
+            features[..first].copy_from_slice(drive);
+            for (j, feature) in features[first..].iter_mut().enumerate() {
+                *feature = -hat(y, &knots[j..j + 3]);
+            }
+            gatherer.add(fold, &features, y);
+        }
+        let sums = gatherer.finish()?;
+        let penalty = self.penalty(features.len(), first..features.len());
+        Ok((sums, penalty, knots))
+    }
+
+    /// Step 1.
+    ///
+    /// # Errors
+    /// A stop.
+    fn convex_start(&self, prior: Prior, stop: StopCheck<'_>) -> Result<Point> {
+        let (sums, penalty, knots) = self.convex_problem(stop)?;
+        let first = self.drives[0].len();
+        let mut penalised = sums.total().quadratic();
+        penalised.penalise(&penalty, prior.ridge);
+        let bounds = Bounds::apart(prior.sign, 2..first, 0..0, first + knots.len() - 2);
+        let weights = penalised.last_minimum(&bounds, stop)?;
+
+        // The inverse polygon: S takes its values z to the knots.
+        let mut z = vec![knots[0]];
+        for k in 1..knots.len() {
+            let hat = |k: usize| if k == 0 || k == knots.len() - 1 { 0.0 } else { weights[first + k - 1] };
+            let rise = (knots[k] - knots[k - 1]) + hat(k) - hat(k - 1);
+            z.push(z[k - 1] + rise.max(0.05 * (knots[k] - knots[k - 1])));
+        }
+        let value = |at: f64| {
+            let k = z[1..z.len() - 1].partition_point(|&z| z <= at);
+            knots[k] + (at - z[k]) * (knots[k + 1] - knots[k]) / (z[k + 1] - z[k])
+        };
+        // Evenly spaced thresholds in place of the images of the knots.
+        let thresholds: Vec<f64> = {
+            let (low, high) = (z[0].min(-1e-3), z[z.len() - 1].max(1e-3));
+            let side =
+                |end: f64| (1..=self.dead_zones).map(move |j| end * j as f64 / (self.dead_zones + 1) as f64);
+            let mut all: Vec<f64> = side(low).chain(side(high)).collect();
+            all.sort_by(f64::total_cmp);
+            all
+        };
+        let ends = [&[z[0].min(-1e-3)], thresholds.as_slice(), &[z[z.len() - 1].max(1e-3)]].concat();
+        let mut bends: Vec<f64> = ends.clone();
+        // The piece around 0 lies between the innermost thresholds.
+        bends.dedup();
+        let slopes = bends
+            .windows(2)
+            .map(|pair| ((value(pair[1]) - value(pair[0])) / (pair[1] - pair[0])).max(LEAST_SLOPE))
+            .collect();
+        Ok(Point { hysteresis: weights[..first].to_vec(), constant: value(0.0), slopes, thresholds, prior })
+    }
+
+    /// Step 2, or as much of it as there is time for.
+    fn refine(&self, start: Point, iterations: usize, stop: StopCheck<'_>) -> Result<Point> {
+        let first = self.drives[0].len();
+        let count = first + 1 + start.slopes.len();
+        let penalty = self.penalty(count, count..count);
+        let bounds = Bounds::apart(start.prior.sign, 2..first, first + 1..count, count);
+        let whole = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
+        let mut point = start;
+        let mut objective = self.objective(&point);
+        let (mut damping, mut refused) = (1e-3, 0);
+        for _ in 0..iterations {
+            if stop.is_asked() {
+                break;
+            }
+            let mut gatherer = Gatherer::new(count, &whole, stop);
+            let mut jacobian = vec![0.0; count];
+            for (drive, &y) in self.drives.iter().zip(&self.targets) {
+                if gatherer.is_over(4 * count) {
+                    return Ok(point);
+                }
+                let residual = y - point.linearise(drive, &mut jacobian);
+                gatherer.add(0, &jacobian, residual);
+            }
+            let sums = match gatherer.finish() {
+                Err(Error::Stopped) => return Ok(point),
+                sums => sums?.into_total(),
+            };
+            let gauss_newton = sums.quadratic();
+            while refused < REFUSALS {
+                let mut damped = gauss_newton.clone();
+                damped.penalise(&penalty, point.prior.ridge);
+                for i in 0..count {
+                    let diagonal = damped.matrix.diagonal(i);
+                    damped.matrix.add_to_diagonal(i, damping * (diagonal + 1e-6));
+                }
+                for i in 2..first {
+                    damped.right[i] -= point.prior.ridge * point.hysteresis[i];
+                }
+                // The unknowns are where the step leads, so that bounds hold for them.
+                let values = point.values();
+                let shift = damped.matrix.times(&values);
+                damped.right.iter_mut().zip(shift).for_each(|(right, shift)| *right += shift);
+                let Some(step_to) = damped.minimum_within(&bounds, &values, stop) else {
+                    return Ok(point);
+                };
+                let candidate = point.at(&step_to);
+                let value = self.objective(&candidate);
+                if value < objective {
+                    let gain = objective - value;
+                    (point, objective) = (candidate, value);
+                    damping = (damping * 0.3).max(1e-9);
+                    refused = if gain < 1e-9 * objective { REFUSALS } else { 0 };
+                    break;
+                }
+                damping *= 5.0;
+                refused += 1;
+            }
+            if refused >= REFUSALS {
+                break;
+            }
+        }
+        Ok(point)
+    }
+
+    /// Half the mean square error and half the penalty.
+    fn objective(&self, point: &Point) -> f64 {
+        let zones = point.dead_zones();
+        let rows = self.drives.iter().zip(&self.targets);
+        let squares = rows.map(|(drive, y)| (zones.value(point.before(drive)) - y).powi(2)).sum::<f64>();
+        let penalty: f64 = point.hysteresis[2..].iter().map(|w| w * w).sum();
+        0.5 * (squares / self.targets.len() as f64 + point.prior.ridge * penalty)
+    }
+}
+
+/// A hat over three knots: 1 at the middle one.
+fn hat(y: f64, knots: &[f64]) -> f64 {
+    let (left, middle, right) = (knots[0], knots[1], knots[2]);
+    let share = if y < middle { (y - left) / (middle - left) } else { (right - y) / (right - middle) };
+    share.max(0.0)
+}
+
+impl Point {
+    fn negative(&self) -> usize {
+        self.thresholds.partition_point(|&r| r < 0.0)
+    }
+
+    /// The sum of plays of a row.
+    fn before(&self, drive: &[f64]) -> f64 {
+        self.hysteresis.iter().zip(drive).map(|(w, d)| w * d).sum()
+    }
+
+    fn dead_zones(&self) -> DeadZones {
+        let negative = self.negative();
+        let weights = (0..self.thresholds.len()).map(|j| {
+            if j < negative {
+                self.slopes[j] - self.slopes[j + 1]
+            } else {
+                self.slopes[j + 1] - self.slopes[j]
+            }
+        });
+        DeadZones {
+            parts: DeadZoneParts {
+                constant: self.constant,
+                linear: self.slopes[negative],
+                weights: weights.collect(),
+                thresholds: self.thresholds.clone(),
+            },
+        }
+    }
+
+    /// Output of a row, and its derivatives by plays, constant and slopes.
+    fn linearise(&self, drive: &[f64], jacobian: &mut [f64]) -> f64 {
+        let z = self.before(drive);
+        let first = self.hysteresis.len();
+        let piece = self.thresholds.partition_point(|&r| r < z);
+        for (j, d) in jacobian.iter_mut().zip(drive) {
+            *j = self.slopes[piece] * d;
+        }
+        jacobian[first] = 1.0;
+        let (negative, last) = (self.negative(), self.slopes.len() - 1);
+        let mut y = self.constant;
+        for (k, slope) in self.slopes.iter().enumerate() {
+            // The length of the piece that z has passed, counted from 0.
+            let low = if k == 0 { f64::NEG_INFINITY } else { self.thresholds[k - 1] };
+            let high = if k == last { f64::INFINITY } else { self.thresholds[k] };
+            let passed = if k == negative {
+                z.clamp(low, high)
+            } else if k > negative {
+                dead_zone(z.min(high), low)
+            } else {
+                dead_zone(z.max(low), high)
+            };
+            jacobian[first + 1 + k] = passed;
+            y += slope * passed;
+        }
+        y
+    }
+
+    /// All parameters; slopes as what they are above the least.
+    fn values(&self) -> Vec<f64> {
+        let slopes = self.slopes.iter().map(|slope| slope - LEAST_SLOPE);
+        self.hysteresis.iter().copied().chain([self.constant]).chain(slopes).collect()
+    }
+
+    /// The point of other parameters.
+    fn at(&self, values: &[f64]) -> Self {
+        let first = self.hysteresis.len();
+        Self {
+            hysteresis: values[..first].to_vec(),
+            constant: values[first],
+            slopes: values[first + 1..].iter().map(|above| above.max(0.0) + LEAST_SLOPE).collect(),
+            ..self.clone()
+        }
+    }
+
+    fn in_users_units(&self, grid: &[f64], scaling: &Scaling) -> Result<ModifiedPrandtlIshlinskii> {
+        let (x, y) = (scaling.inputs[0], scaling.output_deviation);
+        let hysteresis = PrandtlIshlinskii::new(
+            self.hysteresis[0] * y,
+            self.hysteresis[1] * y / x,
+            grid.iter().map(|r| r * x).collect(),
+            self.hysteresis[2..].iter().map(|w| w * y / x).collect(),
+        )?;
+        let mut parts = self.dead_zones().parts().clone();
+        parts.constant = scaling.output(parts.constant);
+        parts.thresholds.iter_mut().for_each(|r| *r *= y);
+        Ok(ModifiedPrandtlIshlinskii::new(hysteresis, DeadZones::new(parts)?))
+    }
+}

@@ -1,0 +1,530 @@
+//! Training of a neuro-Madelung model: from random networks, first with the measured output at every
+//! turning point (teacher forcing), then in free run, where the model's own errors at the turning points
+//! go on into the branches. A free run of data held out judges the starts, since a network that fits well
+//! may still let those errors grow; the best is trained on everything for a few epochs more.
+//!
+//! ```text
+//! dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ                 theory.md (8.21)
+//! ```
+//!
+//! `dy_t/dθ` is stored with each turning point, so the derivative of the free run is exact.
+
+use std::ops::ControlFlow;
+
+use rand::SeedableRng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
+use crate::law::series::Series;
+use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
+use crate::linear_algebra::{Symmetric, dot};
+use crate::random::normal;
+use crate::stop_check::{Pace, StopCheck};
+use crate::termination::Termination;
+
+use crate::fit::law::Identify;
+use crate::law::neuro_madelung::{Branch, NeuroMadelung, argument};
+
+/// Weight of the squared parameters beside the mean square error of the scaled output.
+const DECAY: f64 = 1e-5;
+/// Share of the data that judges the starts.
+const HELD_OUT: f64 = 0.25;
+const FIRST_DAMPING: f64 = 1e-2;
+const LARGEST_DAMPING: f64 = 1e8;
+/// Relative fall of the objective that counts as none, and how many in a row end a phase.
+const STALL: f64 = 1e-5;
+const PATIENCE: usize = 3;
+/// After so many epochs of free run half of the starts are given up, and again after as many more.
+const EPOCHS_TO_PROVE_ITSELF: usize = 8;
+/// Most tanh neurons.
+const MOST_NEURONS: usize = 100;
+
+/// How a neuro-Madelung model is trained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NeuroMadelungOptions {
+    /// Tanh neurons.
+    pub hidden: usize,
+    /// How the rate is found; without it the model is rate independent.
+    pub rate: Option<RateMethod>,
+    /// Random networks to start from.
+    pub starts: usize,
+    /// Epochs of each at most, half of them teacher forced.
+    pub epochs: usize,
+    /// Seed of the random networks.
+    pub seed: u64,
+}
+
+impl Default for NeuroMadelungOptions {
+    fn default() -> Self {
+        Self { hidden: 8, rate: None, starts: 16, epochs: 60, seed: 0 }
+    }
+}
+
+impl Identify for NeuroMadelung {
+    type Options = NeuroMadelungOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &NeuroMadelungOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let NeuroMadelungOptions { hidden, starts, epochs, seed, .. } = *options;
+        if hidden == 0 || hidden > MOST_NEURONS {
+            return Err(Error::Option(format!("hidden must be from 1 to {MOST_NEURONS}")));
+        }
+        Effort { starts, epochs, seed }.validated()?;
+        let frame = frame(data, options)?;
+        let whole = Task::new(&frame, data, options, stop)?;
+        let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
+            return Training::new(&whole, &whole, options).run(&whole, observer);
+        };
+        let (kept, held) =
+            (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
+        Training::new(&kept, &held, options).run(&whole, observer)
+    }
+}
+
+/// All starts on their way.
+struct Training<'a> {
+    /// What they are trained on, and what judges them.
+    kept: &'a Task<'a>,
+    held: &'a Task<'a>,
+    walks: Vec<Walk>,
+    epochs: usize,
+    given_up: usize,
+}
+
+impl<'a> Training<'a> {
+    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &NeuroMadelungOptions) -> Self {
+        let walks =
+            (0..options.starts).into_par_iter().map(|start| Walk::new(kept, options.seed, start)).collect();
+        Self { kept, held, walks, epochs: options.epochs, given_up: 0 }
+    }
+
+    fn run(
+        mut self,
+        whole: &Task<'_>,
+        observer: &mut SearchObserver<'_>,
+    ) -> Result<Identified<NeuroMadelung>> {
+        if self.walks.iter().all(|walk| walk.objective == f64::INFINITY) {
+            return Err(Error::Stopped);
+        }
+        let forced = self.epochs / 2;
+        let last = (self.epochs / 6).max(1);
+        let mut termination = Termination::EpochsUsed;
+        for epoch in 1..=self.epochs {
+            self.epoch(epoch, forced);
+            let mut told = self.progress(epoch, self.epochs + last);
+            if epoch <= forced {
+                // With the measured output at every turning point it is no error of a free run.
+                told.train_nrmse_percent = f64::NAN;
+            }
+            if observer(told).is_break() || whole.stop.is_asked() {
+                termination = Termination::Stopped;
+                break;
+            }
+            if epoch > forced && self.walks.iter().all(|walk| walk.ended.is_some()) {
+                break;
+            }
+        }
+        // A training that was stopped early has not judged any free run; there may be no time for it.
+        for walk in self.walks.iter_mut().filter(|walk| walk.best.is_none()) {
+            if !whole.stop.is_asked() {
+                walk.set_free(self.kept);
+                walk.judge(self.held);
+            }
+        }
+        self.sort();
+        let best = &self.walks[0];
+        let parameters = best.best.as_ref().map_or(&best.parameters, |(_, parameters)| parameters);
+        // What was held out is learnt from where it was judged best, in few epochs.
+        let mut walk = Walk::at(whole, parameters.clone());
+        for epoch in 1..=last {
+            if termination == Termination::Stopped {
+                break;
+            }
+            walk.advance(whole);
+            let told = SearchProgress {
+                train_nrmse_percent: 100.0 * walk.mean_square.sqrt(),
+                ..self.progress(self.epochs + epoch, self.epochs + last)
+            };
+            if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
+                termination = Termination::Stopped;
+            }
+            if let Some(ended) = walk.ended {
+                termination = ended;
+                break;
+            }
+        }
+        let law = whole.law(&walk.parameters).validated()?;
+        let evaluations = self.evaluations() + walk.evaluations;
+        let train_nrmse_percent = 100.0 * walk.mean_square.sqrt();
+        Ok(Identified { law, train_nrmse_percent, evaluations, termination })
+    }
+
+    fn epoch(&mut self, epoch: usize, forced: usize) {
+        let (kept, held) = (self.kept, self.held);
+        self.walks.par_iter_mut().for_each(|walk| {
+            if epoch == forced + 1 {
+                walk.set_free(kept);
+            }
+            walk.advance(kept);
+            if epoch > forced {
+                walk.judge(held);
+            }
+        });
+        self.sort();
+        if epoch > forced && (epoch - forced).is_multiple_of(EPOCHS_TO_PROVE_ITSELF) {
+            let keep = self.walks.len().div_ceil(2);
+            self.given_up += self.walks.drain(keep..).map(|walk| walk.evaluations).sum::<usize>();
+        }
+    }
+
+    /// The best first, by what was held out once that has been judged. Stable: of equals the earlier
+    /// start stays before the later.
+    fn sort(&mut self) {
+        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.objective, |(error, _)| *error);
+        let is_judged = |walk: &Walk| walk.best.is_some();
+        self.walks.sort_by(|a, b| is_judged(b).cmp(&is_judged(a)).then(rank(a).total_cmp(&rank(b))));
+    }
+
+    fn evaluations(&self) -> usize {
+        self.given_up + self.walks.iter().map(|walk| walk.evaluations).sum::<usize>()
+    }
+
+    fn progress(&self, round: usize, rounds: usize) -> SearchProgress {
+        SearchProgress {
+            round,
+            rounds,
+            evaluations: self.evaluations(),
+            train_nrmse_percent: 100.0 * self.walks[0].mean_square.sqrt(),
+        }
+    }
+}
+
+/// A model with its scales and without a network.
+fn frame(data: &Dataset, options: &NeuroMadelungOptions) -> Result<NeuroMadelung> {
+    let (low, high) = data.input_range(0);
+    let series = Series::all(data, options.rate)?;
+    let measured: Vec<f64> =
+        series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
+    let (output_mean, output_scale) = spread(&measured);
+    let samples = series.iter().flat_map(|series| &series.samples);
+    let rate = samples.map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
+    Ok(NeuroMadelung {
+        input_scale: low.abs().max(high.abs()),
+        rate_scale: options.rate.map(|_| rate),
+        output_mean,
+        output_scale,
+        output_range: data.output_range(),
+        hidden: Vec::new(),
+        output: Vec::new(),
+        virgin_output: 0.0,
+    })
+}
+
+/// What a start is trained on or judged by: scaled records.
+struct Task<'a> {
+    frame: &'a NeuroMadelung,
+    series: Vec<Series>,
+    hidden: usize,
+    /// Breaks sweeps off.
+    stop: StopCheck<'a>,
+}
+
+/// A turning point: the output there and its derivatives by all parameters.
+#[derive(Debug, Clone)]
+struct Reached {
+    y: f64,
+    by_parameters: Vec<f64>,
+}
+
+/// Residuals, and the derivatives by each parameter if asked for.
+struct Sweep {
+    residual: Vec<f64>,
+    jacobian: Vec<Vec<f64>>,
+    /// It ran over all rows.
+    is_complete: bool,
+}
+
+impl<'a> Task<'a> {
+    fn new(
+        frame: &'a NeuroMadelung,
+        data: &Dataset,
+        options: &NeuroMadelungOptions,
+        stop: StopCheck<'a>,
+    ) -> Result<Self> {
+        // The rate is an input of the network and no part of the memory.
+        let mut series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+        for series in &mut series {
+            for sample in &mut series.samples {
+                (sample.x, sample.rate) = frame.scaled(*sample);
+            }
+            for y in &mut series.output {
+                *y = (*y - frame.output_mean) / frame.output_scale;
+            }
+        }
+        Ok(Self { frame, series, hidden: options.hidden, stop })
+    }
+
+    fn inputs(&self) -> usize {
+        self.frame.inputs()
+    }
+
+    /// `hidden`, `output` and `y_0` within the parameters.
+    fn split<'p>(&self, parameters: &'p [f64]) -> (&'p [f64], &'p [f64], f64) {
+        let weights = self.hidden * (1 + self.inputs());
+        let output = weights + 1 + self.hidden;
+        (&parameters[..weights], &parameters[weights..output], parameters[output])
+    }
+
+    fn law(&self, parameters: &[f64]) -> NeuroMadelung {
+        let (hidden, output, virgin_output) = self.split(parameters);
+        NeuroMadelung {
+            hidden: hidden.to_vec(),
+            output: output.to_vec(),
+            virgin_output,
+            ..self.frame.clone()
+        }
+    }
+
+    fn random(&self, seed: u64, start: usize) -> Vec<f64> {
+        let mixed = seed ^ (start as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(mixed);
+        let mut parameters: Vec<f64> =
+            (0..self.hidden * (1 + self.inputs())).map(|_| normal(&mut generator)).collect();
+        parameters.extend((0..=self.hidden).map(|_| 0.3 * normal(&mut generator)));
+        parameters.push(self.output_near_zero());
+        parameters
+    }
+
+    /// The measured output where the input is nearest to 0, earliest in its record.
+    fn output_near_zero(&self) -> f64 {
+        let rows = self.series.iter().flat_map(|series| series.samples.iter().zip(&series.output));
+        let measured = rows.filter(|(_, y)| !y.is_nan());
+        measured.min_by(|a, b| a.0.x.abs().total_cmp(&b.0.x.abs())).map_or(0.0, |(_, y)| *y)
+    }
+
+    /// Runs over all records, unless it is asked to stop; `forced` takes the measured output at turning points where there is one.
+    fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> Sweep {
+        let law = self.law(parameters);
+        let branch = law.branch();
+        let n = parameters.len();
+        let jacobian = vec![Vec::new(); if slopes { n } else { 0 }];
+        let mut sweep = Sweep { residual: Vec::new(), jacobian, is_complete: false };
+        let mut pace = Pace::new(self.stop);
+        let operations = if slopes { 10 * n } else { 30 * self.hidden };
+        let width = if slopes { n } else { 0 };
+        for series in &self.series {
+            let mut by_parameters = vec![0.0; width];
+            if let Some(last) = by_parameters.last_mut() {
+                *last = 1.0; // of y_0 itself
+            }
+            let virgin = TurningPoint { x: 0.0, value: Reached { y: law.virgin_output, by_parameters } };
+            let mut memory = TurningPointStack::default();
+            for (sample, &measured) in series.samples.iter().zip(&series.output) {
+                if pace.is_over(operations) {
+                    return sweep;
+                }
+                // What is reached there follows from the branch.
+                memory.advance(sample.x, Reached { y: 0.0, by_parameters: Vec::new() });
+                let TurningPoint { x: x_t, value: reached } = memory.points().last().unwrap_or(&virgin);
+                let inputs = [sample.x, *x_t, reached.y, sample.rate];
+                let inputs = &inputs[..self.inputs()];
+                let mut here = if slopes {
+                    derivatives(branch, inputs, &reached.by_parameters)
+                } else {
+                    Reached { y: branch.value(inputs), by_parameters: Vec::new() }
+                };
+                if !measured.is_nan() {
+                    sweep.residual.push(here.y - measured);
+                    for (column, slope) in sweep.jacobian.iter_mut().zip(&here.by_parameters) {
+                        column.push(*slope);
+                    }
+                    if forced {
+                        here.y = measured;
+                        here.by_parameters.fill(0.0);
+                    }
+                }
+                memory.set_value(here);
+            }
+        }
+        sweep.is_complete = true;
+        sweep
+    }
+}
+
+/// The output and its derivatives, theory.md (8.21).
+fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> Reached {
+    let run = branch.run();
+    let neurons = branch.output.len() - 1;
+    let along = inputs[0] - inputs[1];
+    let mut all = vec![0.0; at_turning_point.len()];
+    let (hidden, rest) = all.split_at_mut(neurons * run);
+    let mut slope = branch.output[0];
+    let seen = branch.seen(inputs);
+    let seen = &seen[..inputs.len()];
+    let mut by_y_t = 0.0;
+    rest[0] = along;
+    for (index, neuron) in branch.hidden.chunks_exact(run).enumerate() {
+        let h = argument(neuron, seen).tanh();
+        let c = branch.output[1 + index];
+        slope += c * h;
+        rest[1 + index] = along * h;
+        let back = c * (1.0 - h * h);
+        by_y_t += back * neuron[3];
+        let weights = &mut hidden[index * run..(index + 1) * run];
+        weights[0] = along * back;
+        for (weight, input) in weights[1..].iter_mut().zip(seen) {
+            *weight = along * back * input;
+        }
+    }
+    let free = inputs[2] + along * slope;
+    let y = branch.limited(free);
+    if y != free {
+        all.fill(0.0);
+        return Reached { y, by_parameters: all };
+    }
+    let by_y_t = if seen[2] == inputs[2] { by_y_t } else { 0.0 };
+    let carried = 1.0 + along * by_y_t;
+    for (slope, before) in all.iter_mut().zip(at_turning_point) {
+        *slope += carried * before;
+    }
+    Reached { y, by_parameters: all }
+}
+
+/// A start on its way: Levenberg-Marquardt.
+struct Walk {
+    parameters: Vec<f64>,
+    objective: f64,
+    mean_square: f64,
+    forced: bool,
+    damping: f64,
+    growth: f64,
+    stalled: usize,
+    evaluations: usize,
+    ended: Option<Termination>,
+    /// Smallest error of a free run on what was held out, and where it was.
+    best: Option<(f64, Vec<f64>)>,
+}
+
+impl Walk {
+    fn new(task: &Task<'_>, seed: u64, start: usize) -> Self {
+        Self::from(task, task.random(seed, start), true)
+    }
+
+    /// In free run from the beginning.
+    fn at(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+        Self::from(task, parameters, false)
+    }
+
+    fn from(task: &Task<'_>, parameters: Vec<f64>, forced: bool) -> Self {
+        let mut walk = Self {
+            parameters,
+            objective: 0.0,
+            mean_square: 0.0,
+            forced,
+            damping: FIRST_DAMPING,
+            growth: 2.0,
+            stalled: 0,
+            evaluations: 0,
+            ended: None,
+            best: None,
+        };
+        (walk.objective, walk.mean_square) = walk.value(task, &walk.parameters);
+        walk
+    }
+
+    /// From teacher forcing to free run.
+    fn set_free(&mut self, task: &Task<'_>) {
+        if self.forced {
+            self.forced = false;
+            (self.damping, self.growth, self.stalled, self.ended) = (FIRST_DAMPING, 2.0, 0, None);
+            (self.objective, self.mean_square) = self.value(task, &self.parameters);
+            self.evaluations += 1;
+        }
+    }
+
+    /// Remembers the parameters if they do better than any before on what was held out.
+    fn judge(&mut self, held: &Task<'_>) {
+        let Sweep { residual, is_complete, .. } = held.sweep(&self.parameters, false, false);
+        if !is_complete {
+            return;
+        }
+        let error = dot(&residual, &residual) / residual.len() as f64;
+        self.evaluations += 1;
+        if self.best.as_ref().is_none_or(|(best, _)| error < *best) {
+            self.best = Some((error, self.parameters.clone()));
+        }
+    }
+
+    /// The objective, which weighs the parameters as well, and the mean square error; infinite if it was broken off.
+    fn value(&self, task: &Task<'_>, parameters: &[f64]) -> (f64, f64) {
+        if task.stop.is_asked() {
+            return (f64::INFINITY, f64::INFINITY);
+        }
+        let Sweep { residual, is_complete, .. } = task.sweep(parameters, self.forced, false);
+        if !is_complete {
+            return (f64::INFINITY, f64::INFINITY);
+        }
+        let mean_square = dot(&residual, &residual) / residual.len() as f64;
+        (mean_square + DECAY * dot(parameters, parameters), mean_square)
+    }
+
+    fn advance(&mut self, task: &Task<'_>) {
+        if self.ended.is_some() {
+            return;
+        }
+        let Sweep { residual, jacobian, is_complete } = task.sweep(&self.parameters, self.forced, true);
+        if !is_complete {
+            return;
+        }
+        self.evaluations += 1;
+        let n = self.parameters.len();
+        let rows = residual.len() as f64;
+        let gradient: Vec<f64> =
+            (0..n).map(|i| dot(&jacobian[i], &residual) / rows + DECAY * self.parameters[i]).collect();
+        let matrix = Symmetric::from_fn(n, |i, j| {
+            dot(&jacobian[i], &jacobian[j]) / rows + if i == j { DECAY } else { 0.0 }
+        });
+        while self.damping < LARGEST_DAMPING && !task.stop.is_asked() {
+            let mut damped = matrix.clone();
+            for i in 0..n {
+                damped.add_to_diagonal(i, self.damping * (matrix.diagonal(i) + 1e-6));
+            }
+            let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
+            if let Some(factor) = damped.cholesky(StopCheck::never()) {
+                factor.solve(&mut step);
+                let foretold: f64 = (0..n)
+                    .map(|i| step[i] * (self.damping * (matrix.diagonal(i) + 1e-6) * step[i] - gradient[i]))
+                    .sum();
+                let limit = crate::law::neuro_madelung::LARGEST_WEIGHT;
+                let there: Vec<f64> =
+                    self.parameters.iter().zip(&step).map(|(p, by)| (p + by).clamp(-limit, limit)).collect();
+                let (objective, mean_square) = self.value(task, &there);
+                self.evaluations += 1;
+                let fall = self.objective - objective;
+                if fall > 0.0 {
+                    let quality = (fall / foretold).clamp(0.0, 2.0);
+                    self.damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).max(1.0 / 3.0);
+                    self.damping = self.damping.max(1e-12);
+                    self.growth = 2.0;
+                    self.stalled = if fall > STALL * self.objective { 0 } else { self.stalled + 1 };
+                    (self.parameters, self.objective, self.mean_square) = (there, objective, mean_square);
+                    self.ended = (self.stalled == PATIENCE).then_some(Termination::Converged);
+                    return;
+                }
+            }
+            self.damping *= self.growth;
+            self.growth *= 2.0;
+        }
+        self.ended = Some(Termination::NoFurtherImprovement);
+    }
+}

@@ -1,0 +1,137 @@
+//! Fitting a Prandtl-Ishlinskii model: linear least squares on each of several grids of thresholds.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::Identify;
+use crate::fit::law::grids;
+use crate::fit::law::grids::fits_on_grids;
+use crate::fit::law::linear::Bounds;
+use crate::fit::law::linear::FoldSums;
+use crate::fit::law::linear::Folds;
+use crate::fit::law::linear::Gatherer;
+use crate::fit::law::linear::Penalty;
+use crate::fit::law::linear::identifiable_series;
+use crate::fit::law::linear::logarithmic;
+use crate::fit::law::linear::lowest;
+use crate::fit::law::search::Identified;
+use crate::fit::law::search::SearchObserver;
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::series::Series;
+use crate::network::scaling::Scaling;
+use crate::operator::play;
+use crate::options::classical::Sign;
+use crate::stop_check::StopCheck;
+
+/// How a Prandtl-Ishlinskii model is fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrandtlIshlinskiiOptions {
+    /// Number of plays, 1 to 1000.
+    pub operators: usize,
+    /// Their thresholds in the unit of the input, positive and rising; without them they are spread over
+    /// the range of the input, evenly or denser towards 0 as cross-validation finds better.
+    pub thresholds: Option<Vec<f64>>,
+    /// Sign of the weights of the plays; chosen by cross-validation if `None`.
+    pub sign: Option<Sign>,
+}
+
+impl Default for PrandtlIshlinskiiOptions {
+    fn default() -> Self {
+        Self { operators: 30, thresholds: None, sign: None }
+    }
+}
+
+impl Identify for PrandtlIshlinskii {
+    type Options = PrandtlIshlinskiiOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &PrandtlIshlinskiiOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    }
+}
+
+/// Fits a model: least squares with a ridge penalty chosen by cross-validation. Asked to stop, with the grids and penalties compared so far.
+fn fitted(
+    data: &Dataset,
+    options: &PrandtlIshlinskiiOptions,
+    stop: StopCheck<'_>,
+) -> Result<PrandtlIshlinskii> {
+    let series = identifiable_series(data)?;
+    let scaling = Scaling::of(data, None)?;
+    let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
+    let fits = fits_on_grids(&grids, |grid| weights_on_grid(&series, &scaling, grid, options.sign, stop))?;
+    let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
+    let best = lowest(&scores);
+    let slope = scaling.output_deviation / scaling.inputs[0];
+    let weights = &fits[best].1;
+    PrandtlIshlinskii::new(
+        scaling.output(weights[0]),
+        weights[1] * slope,
+        grids[best].clone(),
+        weights[2..].iter().map(|weight| weight * slope).collect(),
+    )
+}
+
+/// Score by cross-validation and weights (constant, input, plays) in scaled units.
+fn weights_on_grid(
+    series: &[Series],
+    scaling: &Scaling,
+    thresholds: &[f64],
+    sign: Option<Sign>,
+    stop: StopCheck<'_>,
+) -> Result<(f64, Vec<f64>)> {
+    let sums = play_sums(series, scaling, thresholds, stop)?;
+    let features = 2 + thresholds.len();
+    // The constant is free, the input nearly.
+    let of = |i: usize| match i {
+        0 => 0.0,
+        1 => 1e-3,
+        _ => 1.0,
+    };
+    let penalty = Penalty::ridge((0..features).map(of));
+    let penalties = logarithmic(1e-9, 1e-1, 17);
+    let choice = sums.choose(&penalty, &penalties, sign, &PLAYS_BEGIN, stop);
+    let mut penalised = sums.into_total().quadratic();
+    penalised.penalise(&penalty, choice.factor);
+    let bounds = Bounds::new(choice.sign, PLAYS_BEGIN, features);
+    Ok((choice.score, penalised.last_minimum(&bounds, stop)?))
+}
+
+/// Constant and input come first and are free.
+const PLAYS_BEGIN: std::ops::Range<usize> = 2..2;
+
+/// Sums of constant, input and plays, inputs and plays in units of the largest input.
+fn play_sums(
+    series: &[Series],
+    scaling: &Scaling,
+    thresholds: &[f64],
+    stop: StopCheck<'_>,
+) -> Result<FoldSums> {
+    let folds = Folds::of_series(series);
+    let mut gatherer = Gatherer::new(2 + thresholds.len(), &folds, stop);
+    let mut features = vec![0.0; 2 + thresholds.len()];
+    features[0] = 1.0;
+    let factor = 1.0 / scaling.inputs[0];
+    for (series, fold) in series.iter().zip(&folds.of_rows) {
+        let mut plays = vec![0.0; thresholds.len()];
+        let targets = scaling.scaled_output(&series.output);
+        for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+            if gatherer.is_over(4 * features.len()) {
+                break;
+            }
+            features[1] = sample.x * factor;
+            for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[2..]) {
+                *play = play::follow(*play, sample.x, r);
+                *feature = *play * factor;
+            }
+            gatherer.add(fold, &features, target);
+        }
+    }
+    gatherer.finish()
+}

@@ -1,0 +1,316 @@
+//! Fitting a Preisach plane: where its lines go, and how smooth its weights are.
+//!
+//! ```text
+//! min Σ_k (y_k - ŷ_k)²/N + λ (‖D²w‖² + ε‖w‖²),     w ≥ 0 on request                theory.md (7.12)
+//! ```
+//!
+//! `D²` takes second differences along both axes of the plane, in the numbers of the intervals.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::Identify;
+use crate::fit::law::linear::{
+    Bounds, Choice, FoldSums, Folds, Gatherer, Penalty, identifiable_series, logarithmic,
+};
+use crate::fit::law::search::Identified;
+use crate::fit::law::search::SearchObserver;
+use crate::law::preisach::plane::Plane;
+use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
+use crate::law::series::Series;
+use crate::law::turning_point_stack::{Change, TurningPointStack};
+use crate::network::scaling::Scaling;
+use crate::options::classical::Sign;
+use crate::stop_check::StopCheck;
+
+/// How a Preisach model is fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PreisachOptions {
+    /// Intervals `N` of each axis of the plane, 1 to 200; it has `N (N + 1)/2` cells.
+    pub intervals: usize,
+    /// Sign of the weights of the cells, chosen by cross-validation if `None`. With a sign, the weights of
+    /// the reversible part are at least 0.
+    pub sign: Option<Sign>,
+}
+
+impl Default for PreisachOptions {
+    fn default() -> Self {
+        Self { intervals: 30, sign: None }
+    }
+}
+
+/// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.
+const INTERVALS_FOR_CHOICE: usize = 20;
+
+/// Share of the lines that are spread evenly; the others go where the output changes. Designed.
+const EVEN_SHARE: f64 = 0.5;
+
+impl Identify for Preisach {
+    type Options = PreisachOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &PreisachOptions,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    }
+}
+
+/// Fits a model: least squares with a smoothness penalty chosen by cross-validation. Asked to stop, with a penalty chosen by fewer folds, and on the coarser plane that it was
+/// chosen on.
+fn fitted(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Preisach> {
+    let series = identifiable_series(data)?;
+    let scaling = Scaling::of(data, None)?;
+    let intervals = options.intervals;
+    if !(1..=MOST_INTERVALS).contains(&intervals) {
+        return Err(Error::Option(format!("{intervals} intervals: choose 1 to {MOST_INTERVALS}")));
+    }
+    let density = LineDensity::new(&series, data.input_range(0));
+    let penalties = logarithmic(1e-9, 1e2, 12);
+
+    let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
+    let sums = coarse.sums(&series, &scaling, &Folds::of_series(&series), stop)?;
+    let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
+    if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
+        let fine = Problem::new(Plane::new(density.lines(intervals)));
+        // Nothing is held out here, and the sums of a fine plane are gigabytes.
+        let sums = fine.sums(&series, &scaling, &Folds::none(&series), stop);
+        match sums.and_then(|sums| fine.weighted(sums, choice, &scaling, stop)) {
+            Err(Error::Stopped) => {}
+            fitted => return fitted,
+        }
+    }
+    coarse.weighted(sums, choice, &scaling, stop)
+}
+
+/// Where the lines of a plane go: the cumulative share of lines along the input, at increasing places.
+struct LineDensity {
+    places: Vec<f64>,
+    shares: Vec<f64>,
+}
+
+impl LineDensity {
+    /// Bins that the output's changes are counted in.
+    const BINS: usize = 400;
+
+    fn new(series: &[Series], (low, high): (f64, f64)) -> Self {
+        let mut changes = vec![0.0; Self::BINS];
+        let width = (high - low) / Self::BINS as f64;
+        for series in series {
+            for (pair, y) in series.samples.windows(2).zip(series.output.windows(2)) {
+                let change = (y[1] - y[0]).abs();
+                if change.is_nan() {
+                    continue;
+                }
+                // Evenly over the bins passed through.
+                let (from, to) = (pair[0].x.min(pair[1].x), pair[0].x.max(pair[1].x));
+                let bin = |x: f64| (((x - low) / width) as usize).min(Self::BINS - 1);
+                let (first, last) = (bin(from), bin(to));
+                let share = change / (last - first + 1) as f64;
+                changes[first..=last].iter_mut().for_each(|bin| *bin += share);
+            }
+        }
+        let sum = changes.iter().sum::<f64>().max(1e-300);
+        let mut shares = vec![0.0];
+        for change in &changes {
+            let before = shares[shares.len() - 1];
+            shares.push(before + EVEN_SHARE / Self::BINS as f64 + (1.0 - EVEN_SHARE) * change / sum);
+        }
+        let places = (0..=Self::BINS).map(|k| low + width * k as f64).collect();
+        Self { places, shares }
+    }
+
+    /// Lines that cut the range into `intervals` of equal share.
+    fn lines(&self, intervals: usize) -> Vec<f64> {
+        let last = self.shares[Self::BINS];
+        let at = |k: usize| {
+            let share = last * k as f64 / intervals as f64;
+            let bin = self.shares[1..Self::BINS].partition_point(|&s| s <= share);
+            let part = (share - self.shares[bin]) / (self.shares[bin + 1] - self.shares[bin]);
+            self.places[bin] + part.clamp(0.0, 1.0) * (self.places[bin + 1] - self.places[bin])
+        };
+        (0..=intervals).map(at).collect()
+    }
+}
+
+/// Least squares on a plane: features are constant, input, reversible intervals, cells; the output is
+/// scaled.
+struct Problem {
+    plane: Plane,
+    penalty: Penalty,
+}
+
+/// Features before those of the intervals and cells.
+const FIRST: usize = 2;
+
+impl Problem {
+    fn new(plane: Plane) -> Self {
+        let n = plane.intervals();
+        let cell = |i: usize, j: usize| FIRST + n + i * (i + 1) / 2 + j;
+        // A cell on the edge has half the area of the others, so its weight counts twice.
+        let term = |i: usize, j: usize, c: f64| (cell(i, j), if i == j { 2.0 * c } else { c });
+        let mut penalty = Penalty::ridge([0.0, 1e-6]);
+        let size = (n as f64 / INTERVALS_FOR_CHOICE as f64).powi(2);
+        let (ridge, bend) = (1e-4 * size, size.powi(3));
+        for i in 0..n {
+            for j in 0..=i {
+                penalty.add_square(&[term(i, j, 1.0)], ridge);
+                if j >= 2 {
+                    penalty.add_square(&[term(i, j, 1.0), term(i, j - 1, -2.0), term(i, j - 2, 1.0)], bend);
+                }
+                if i >= j + 2 {
+                    penalty.add_square(&[term(i, j, 1.0), term(i - 1, j, -2.0), term(i - 2, j, 1.0)], bend);
+                }
+            }
+        }
+        for j in 0..n {
+            penalty.add_square(&[(FIRST + j, 1.0)], 1e-2 * size.sqrt());
+            if j >= 2 {
+                let terms = [(FIRST + j, 1.0), (FIRST + j - 1, -2.0), (FIRST + j - 2, 1.0)];
+                penalty.add_square(&terms, size.powf(2.5));
+            }
+        }
+        Self { plane, penalty }
+    }
+
+    fn features(&self) -> usize {
+        FIRST + self.plane.intervals() + self.plane.cells()
+    }
+
+    /// Weights of the intervals.
+    fn reversible(&self) -> std::ops::Range<usize> {
+        FIRST..FIRST + self.plane.intervals()
+    }
+
+    /// # Errors
+    /// A stop.
+    fn sums(
+        &self,
+        series: &[Series],
+        scaling: &Scaling,
+        folds: &Folds,
+        stop: StopCheck<'_>,
+    ) -> Result<FoldSums> {
+        let mut gatherer = Gatherer::new(self.features(), folds, stop);
+        for (series, fold) in series.iter().zip(&folds.of_rows) {
+            let targets = scaling.scaled_output(&series.output);
+            let mut rows = Rows::new(&self.plane);
+            for ((sample, &fold), target) in series.samples.iter().zip(fold).zip(targets) {
+                if gatherer.is_over(4 * rows.features.len()) {
+                    break;
+                }
+                rows.advance(sample.x, sample.x / scaling.inputs[0], !target.is_nan());
+                gatherer.add(fold, &rows.features, target);
+            }
+        }
+        gatherer.finish()
+    }
+
+    /// The model with the weights of a penalty that was chosen.
+    ///
+    /// # Errors
+    /// A stop.
+    fn weighted(
+        &self,
+        sums: FoldSums,
+        choice: Choice,
+        scaling: &Scaling,
+        stop: StopCheck<'_>,
+    ) -> Result<Preisach> {
+        let mut penalised = sums.into_total().into_quadratic();
+        penalised.penalise(&self.penalty, choice.factor);
+        let bounds = Bounds::new(choice.sign, self.reversible(), self.features());
+        let weights = penalised.last_minimum(&bounds, stop)?;
+        Preisach::new(self.in_users_units(&weights, scaling))
+    }
+
+    fn in_users_units(&self, weights: &[f64], scaling: &Scaling) -> PreisachWeights {
+        let n = self.plane.intervals();
+        let scaled = |weights: &[f64]| weights.iter().map(|w| w * scaling.output_deviation).collect();
+        PreisachWeights {
+            constant: scaling.output(weights[0]),
+            slope: weights[1] * scaling.output_deviation / scaling.inputs[0],
+            lines: self.plane.lines().to_vec(),
+            reversible: scaled(&weights[FIRST..FIRST + n]),
+            cells: scaled(&weights[FIRST + n..]),
+        }
+    }
+}
+
+/// Features of one row after another: mean outputs of the relays of each interval and cell.
+struct Rows<'a> {
+    plane: &'a Plane,
+    stack: TurningPointStack<()>,
+    /// Mean outputs of the cells at the last turning point.
+    settled: Vec<f64>,
+    features: Vec<f64>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(plane: &'a Plane) -> Self {
+        let n = plane.intervals();
+        let settled = plane.indices().map(|(i, j)| plane.virgin_mean(i, j)).collect();
+        let mut features = vec![0.0; FIRST + n + plane.cells()];
+        features[0] = 1.0;
+        Self { plane, stack: TurningPointStack::default(), settled, features }
+    }
+
+    /// Moves to the next input; features are computed if they are `wanted`.
+    fn advance(&mut self, x: f64, scaled: f64, wanted: bool) {
+        let (plane, settled) = (self.plane, &mut self.settled);
+        // What was added when a point was put down is taken away again when it is wiped out.
+        self.stack.advance_with(x, (), |change| match change {
+            Change::PutDown(points) => add_last(plane, points, 1.0, settled),
+            Change::WipedOut(points, count) => {
+                for kept in 0..count {
+                    add_last(plane, &points[..points.len() - kept], -1.0, settled);
+                }
+            }
+        });
+        if !wanted {
+            return;
+        }
+        let n = plane.intervals();
+        self.features[1] = scaled;
+        let (reversible, cells) = self.features[FIRST..].split_at_mut(n);
+        plane.below(x, reversible);
+        reversible.iter_mut().for_each(|share| *share = 2.0 * *share - 1.0);
+        cells.copy_from_slice(&self.settled);
+        add_branch(plane, self.stack.points().last().map(|start| start.x), x, 1.0, cells);
+    }
+}
+
+/// Adds `factor` times what the branch to the last of the points switched.
+fn add_last(
+    plane: &Plane,
+    points: &[crate::law::turning_point_stack::TurningPoint<()>],
+    factor: f64,
+    cells: &mut [f64],
+) {
+    if let [before @ .., last] = points {
+        add_branch(plane, before.last().map(|start| start.x), last.x, factor, cells);
+    }
+}
+
+/// Adds `factor` times what a branch from `start` to `x` switches, or the virgin curve to `x`.
+fn add_branch(plane: &Plane, start: Option<f64>, x: f64, factor: f64, cells: &mut [f64]) {
+    match start {
+        None => {
+            let change = 2.0 * factor * x.signum();
+            for (cell, (i, j)) in cells.iter_mut().zip(plane.indices()) {
+                *cell += change * plane.virgin_share(i, j, x);
+            }
+        }
+        Some(start) => {
+            let n = plane.intervals();
+            let (mut below_low, mut below_high) = (vec![0.0; n], vec![0.0; n]);
+            plane.below(start.min(x), &mut below_low);
+            plane.below(start.max(x), &mut below_high);
+            plane.add_swing(&below_high, &below_low, 2.0 * factor * (x - start).signum(), cells);
+        }
+    }
+}

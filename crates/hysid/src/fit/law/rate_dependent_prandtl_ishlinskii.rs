@@ -1,0 +1,194 @@
+//! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are
+//! searched, the weights follow.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::search::{
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::play_weights::MOST_PLAYS;
+use crate::law::series::{Series, work};
+use crate::stop_check::StopCheck;
+
+use crate::fit::law::Identify;
+use crate::law::rate_dependent_prandtl_ishlinskii::{
+    PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
+};
+
+/// Which form the thresholds have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ThresholdForm {
+    /// theory.md (8.16).
+    #[default]
+    Linear,
+    /// theory.md (8.17).
+    Logarithmic,
+}
+
+/// How a rate-dependent Prandtl-Ishlinskii model is identified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RateDependentPrandtlIshlinskiiOptions {
+    /// Number of plays.
+    pub operators: usize,
+    /// How the thresholds grow with the rate.
+    pub form: ThresholdForm,
+    /// A weight for each play, not negative, in place of `ρ e^{-τ α i}`.
+    pub free_weights: bool,
+    /// How the rate is found.
+    pub rate: RateMethod,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Iterations of each at most.
+    pub epochs: usize,
+    /// Seed of the random starts.
+    pub seed: u64,
+}
+
+impl Default for RateDependentPrandtlIshlinskiiOptions {
+    fn default() -> Self {
+        Self {
+            operators: 10,
+            form: ThresholdForm::Linear,
+            free_weights: true,
+            rate: RateMethod::Central,
+            starts: 16,
+            epochs: 40,
+            seed: 0,
+        }
+    }
+}
+
+impl Identify for RateDependentPrandtlIshlinskii {
+    type Options = RateDependentPrandtlIshlinskiiOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &RateDependentPrandtlIshlinskiiOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        if options.operators == 0 || options.operators > MOST_PLAYS {
+            return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
+        }
+        let series = Series::all(data, Some(options.rate))?;
+        let family = Plays::new(&series, options);
+        let series = thinned(series, Memory::EveryRow);
+        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let found = search(&family, &series, effort, observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        (law.offset, law.spring) = (found.weights[0], found.weights[1]);
+        law.weights = match law.weights {
+            PlayWeights::Exponential { plays, tau, .. } => {
+                PlayWeights::Exponential { plays, rho: found.weights[2], tau }
+            }
+            PlayWeights::Free(_) => PlayWeights::Free(found.weights[2..].to_vec()),
+        };
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// Rate-dependent plays as the search sees them.
+struct Plays {
+    /// Largest magnitudes of input and rate.
+    input: f64,
+    rate: f64,
+    operators: usize,
+    form: ThresholdForm,
+    free_weights: bool,
+    variables: Vec<Variable>,
+    non_negative: Vec<bool>,
+}
+
+impl Plays {
+    fn new(series: &[Series], options: &RateDependentPrandtlIshlinskiiOptions) -> Self {
+        let samples = || series.iter().flat_map(|series| &series.samples);
+        let input = samples().map(|sample| sample.x.abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let rate = samples().map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
+        // The largest threshold at rest, as a share of the largest input.
+        let mut variables = vec![Variable::logarithmic(0.01, 1.5)];
+        match options.form {
+            // Its growth at the largest rate.
+            ThresholdForm::Linear => variables.push(Variable::logarithmic(1e-4, 2.0)),
+            // β, λ|x'|^ε at the largest rate, ε.
+            ThresholdForm::Logarithmic => variables.extend([
+                Variable::logarithmic(1.02, 20.0),
+                Variable::logarithmic(1e-3, 1e4),
+                Variable::linear(0.2, 2.0),
+            ]),
+        }
+        let mut non_negative = vec![false, false];
+        if options.free_weights {
+            // Plays alone lag; a loop the other way round needs weights of both signs.
+            non_negative.extend(vec![work(series) < 0.0; options.operators]);
+        } else {
+            // τ times the largest threshold.
+            variables.push(Variable::linear(-3.0, 12.0));
+            non_negative.push(false);
+        }
+        let (operators, form, free_weights) = (options.operators, options.form, options.free_weights);
+        Self { input, rate, operators, form, free_weights, variables, non_negative }
+    }
+
+    /// The law of unit weights.
+    fn law(&self, parameters: &[f64]) -> RateDependentPrandtlIshlinskii {
+        let largest = parameters[0] * self.input;
+        let (thresholds, spacing) = match self.form {
+            ThresholdForm::Linear => {
+                let beta = parameters[1] * self.input / self.rate;
+                (Thresholds::Linear { beta }, largest / self.operators as f64)
+            }
+            ThresholdForm::Logarithmic => {
+                let (beta, epsilon) = (parameters[1], parameters[3]);
+                let lambda = parameters[2] / self.rate.powf(epsilon);
+                (
+                    Thresholds::Logarithmic { beta, lambda, epsilon },
+                    largest / (self.operators as f64 * beta.ln()),
+                )
+            }
+        };
+        let weights = if self.free_weights {
+            PlayWeights::Free(vec![1.0; self.operators])
+        } else {
+            let decline = parameters[parameters.len() - 1];
+            let tau = decline / (spacing * self.operators as f64);
+            PlayWeights::Exponential { plays: self.operators, rho: 1.0, tau }
+        };
+        RateDependentPrandtlIshlinskii { offset: 0.0, spring: 0.0, spacing, thresholds, weights }
+    }
+}
+
+impl Family for Plays {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &self.non_negative
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let weights = law.weights.values(law.spacing, 1);
+        let mut plays = vec![0.0; self.operators];
+        let mut row = vec![1.0; self.non_negative.len()];
+        for (&sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(8 * plays.len()) {
+                return;
+            }
+            law.advance(&mut plays, sample);
+            if y.is_nan() {
+                continue;
+            }
+            row[1] = sample.x;
+            if self.free_weights {
+                row[2..].copy_from_slice(&plays);
+            } else {
+                row[2] = weights.iter().zip(&plays).map(|(weight, play)| weight * play).sum();
+            }
+            columns.push(&row);
+        }
+    }
+}

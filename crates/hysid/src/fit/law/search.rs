@@ -1,0 +1,336 @@
+//! Identification of laws with few parameters: Levenberg-Marquardt from several starts, with the
+//! parameters that enter linearly projected out.
+//!
+//! ```text
+//! y_k ≈ Σ_i c_i φ_i,k(θ)          φ: features of a free run, c by least squares    theory.md (8.1)
+//! θ_j = l + (h - l) u_j   or   l (h/l)^{u_j},   0 ≤ u_j ≤ 1                        theory.md (8.2)
+//! (JᵀJ + μ D) du = -Jᵀ r,   r(u) the residual that the best c leaves               theory.md (8.3)
+//! ```
+//!
+//! Laws of hysteresis have kinks, regions without slope and several minima, so many random points are
+//! looked at first, the best that lie apart are walked from, and those that fall behind are given up.
+//! The Jacobian is that of the whole residual by finite differences, so it knows that `c` follows.
+
+mod descent;
+mod projection;
+mod rows;
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+
+use crate::error::{Error, Result};
+use crate::law::series::Series;
+use crate::options::network::MOST_EPOCHS;
+use crate::options::network::MOST_STARTS;
+use crate::stop_check::StopCheck;
+use crate::termination::Termination;
+use descent::Descent;
+pub(crate) use projection::Columns;
+use projection::{Projection, UNFINISHED};
+
+pub(crate) use rows::{Memory, spread, thinned};
+
+/// Random points looked at for each start.
+const DRAWS_PER_START: usize = 24;
+
+/// Starts are at least this far apart, root mean square of the differences in `u`, where there are
+/// enough points.
+const APART: f64 = 0.12;
+
+/// After so many rounds half of the starts are given up, and again after as many more.
+const ROUNDS_TO_PROVE_ITSELF: usize = 6;
+
+/// Starts that are never given up.
+const FINALISTS: usize = 2;
+
+/// Bounds of a searched parameter and the scale it is searched on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Variable {
+    pub low: f64,
+    pub high: f64,
+    /// Searched by its logarithm; needs `low > 0`.
+    pub logarithmic: bool,
+}
+
+impl Variable {
+    pub fn linear(low: f64, high: f64) -> Self {
+        Self { low, high, logarithmic: false }
+    }
+
+    pub fn logarithmic(low: f64, high: f64) -> Self {
+        debug_assert!(low > 0.0 && high > low);
+        Self { low, high, logarithmic: true }
+    }
+
+    /// theory.md (8.2).
+    fn value(self, u: f64) -> f64 {
+        let value = if self.logarithmic {
+            self.low * (self.high / self.low).powf(u)
+        } else {
+            self.low + (self.high - self.low) * u
+        };
+        value.clamp(self.low, self.high)
+    }
+
+    /// The inverse of [`Variable::value`].
+    fn place(self, value: f64) -> f64 {
+        let u = if self.logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        u.clamp(0.0, 1.0)
+    }
+}
+
+/// A family of laws as the search sees it.
+pub(crate) trait Family: Sync {
+    /// The parameters that are searched.
+    fn variables(&self) -> &[Variable];
+
+    /// Whether the weight of each feature must not be negative; its length is the number of features.
+    fn non_negative(&self) -> &[bool];
+
+    /// Runs over a record and gives the features of every row that has an output; ends early once
+    /// [`Columns::is_over`].
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>);
+
+    /// Starting points that the data suggest, better than random ones.
+    fn suggestions(&self) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+}
+
+/// Where a search is, told after every round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchProgress {
+    /// Iterations done by every start that is still walking.
+    pub round: usize,
+    /// Rounds at most.
+    pub rounds: usize,
+    /// Free runs of the law so far, all starts together.
+    pub evaluations: usize,
+    /// Error of the best start in a free run, in percent of the output's standard deviation; NaN while it has none.
+    pub train_nrmse_percent: f64,
+}
+
+/// Who is told of the progress, and may break off.
+pub type SearchObserver<'a> = dyn FnMut(SearchProgress) -> ControlFlow<()> + 'a;
+
+/// An identified law and how it came about.
+#[derive(Debug, Clone)]
+pub struct Identified<L> {
+    /// The law.
+    pub law: L,
+    /// Error over the rows that were searched on, in percent of the output's standard deviation.
+    pub train_nrmse_percent: f64,
+    /// Free runs of the law, all starts together.
+    pub evaluations: usize,
+    /// Why the search ended.
+    pub termination: Termination,
+}
+
+impl<L> Identified<L> {
+    /// A law found by linear least squares, without rounds.
+    pub(crate) fn by_least_squares(law: L) -> Self {
+        Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination: Termination::Converged }
+    }
+}
+
+/// How much is searched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Effort {
+    pub starts: usize,
+    pub epochs: usize,
+    pub seed: u64,
+}
+
+impl Effort {
+    pub fn validated(self) -> Result<Self> {
+        if self.starts == 0 || self.starts > MOST_STARTS {
+            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
+        }
+        if self.epochs > MOST_EPOCHS {
+            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
+        }
+        Ok(self)
+    }
+}
+
+/// What a search found.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    /// Searched parameters.
+    pub parameters: Vec<f64>,
+    /// Weights of the features.
+    pub weights: Vec<f64>,
+    pub train_nrmse_percent: f64,
+    pub evaluations: usize,
+    pub termination: Termination,
+}
+
+impl Found {
+    pub fn identified<L>(&self, law: L) -> Identified<L> {
+        Identified {
+            law,
+            train_nrmse_percent: self.train_nrmse_percent,
+            evaluations: self.evaluations,
+            termination: self.termination,
+        }
+    }
+}
+
+/// The squared residual over the variance of the output, as a function of `u`.
+pub(super) struct Objective<'a, F> {
+    family: &'a F,
+    series: &'a [Series],
+    target: Vec<f64>,
+    /// Sum of the squared deviations of the output from its mean.
+    variation: f64,
+    /// Breaks evaluations off.
+    stop: StopCheck<'a>,
+}
+
+impl<F: Family> Objective<'_, F> {
+    fn parameters(&self, u: &[f64]) -> Vec<f64> {
+        self.family.variables().iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
+    }
+
+    fn value(&self, u: &[f64]) -> Projection {
+        if self.stop.is_asked() {
+            return Projection::unfinished();
+        }
+        let parameters = self.parameters(u);
+        let mut columns = Columns::new(self.family.non_negative().len(), self.target.len(), self.stop);
+        for series in self.series {
+            self.family.features(&parameters, series, &mut columns);
+        }
+        columns.project(&self.target, self.family.non_negative())
+    }
+
+    fn nrmse_percent(&self, projection: &Projection) -> f64 {
+        100.0 * (projection.square_residual / self.variation).sqrt()
+    }
+}
+
+/// Searches the parameters of a family. The result depends on data, effort and seed alone, not on the
+/// number of threads: a start is walked by itself, and the starts are compared in their order.
+///
+/// # Errors
+/// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
+/// before.
+pub(crate) fn search<F: Family>(
+    family: &F,
+    series: &[Series],
+    effort: Effort,
+    observer: &mut SearchObserver<'_>,
+    stop: StopCheck<'_>,
+) -> Result<Found> {
+    let effort = effort.validated()?;
+    let target: Vec<f64> =
+        series.iter().flat_map(|series| series.output.iter().copied().filter(|y| !y.is_nan())).collect();
+    let (_, deviation) = spread(&target);
+    let variation = target.len() as f64 * deviation * deviation;
+    let objective = Objective { family, series, target, variation, stop };
+
+    let mut descents = beginnings(&objective, effort);
+    if descents.first().is_none_or(|best| best.value.square_residual == UNFINISHED) {
+        return Err(Error::Stopped);
+    }
+    let mut evaluations = effort.starts * DRAWS_PER_START;
+    let mut termination = Termination::EpochsUsed;
+    for round in 1..=effort.epochs {
+        descents.par_iter_mut().for_each(|descent| descent.advance(&objective));
+        // Stable: of equals the earlier start stays before the later.
+        descents.sort_by(|a, b| a.value.square_residual.total_cmp(&b.value.square_residual));
+        if round % ROUNDS_TO_PROVE_ITSELF == 0 {
+            let keep = descents.len().div_ceil(2).max(FINALISTS).min(descents.len());
+            evaluations += descents.drain(keep..).map(|descent| descent.evaluations).sum::<usize>();
+        }
+        let told = observer(SearchProgress {
+            round,
+            rounds: effort.epochs,
+            evaluations: evaluations + descents.iter().map(|descent| descent.evaluations).sum::<usize>(),
+            train_nrmse_percent: objective.nrmse_percent(&descents[0].value),
+        });
+        if told.is_break() || stop.is_asked() {
+            termination = Termination::Stopped;
+            break;
+        }
+        if descents.iter().all(|descent| descent.ended.is_some()) {
+            termination = descents[0].ended.unwrap_or(Termination::Converged);
+            break;
+        }
+    }
+    evaluations += descents.iter().map(|descent| descent.evaluations).sum::<usize>();
+    let best = &descents[0];
+    Ok(Found {
+        parameters: objective.parameters(&best.u),
+        weights: best.value.weights.clone(),
+        train_nrmse_percent: objective.nrmse_percent(&best.value),
+        evaluations,
+        termination,
+    })
+}
+
+/// The best of many points that lie apart: those that the data suggest and random ones.
+fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<Descent> {
+    let variables = objective.family.variables();
+    let suggested = objective.family.suggestions();
+    let draw = |index: usize| -> Vec<f64> {
+        if let Some(values) = suggested.get(index) {
+            return variables.iter().zip(values).map(|(variable, &value)| variable.place(value)).collect();
+        }
+        // A generator for each draw, so that it does not matter which thread draws first.
+        let mixed = effort.seed ^ (index as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mut generator = Xoshiro256PlusPlus::seed_from_u64(mixed);
+        variables.iter().map(|_| generator.random()).collect()
+    };
+    let count = suggested.len().max(effort.starts * DRAWS_PER_START);
+    // Only what the points reach is kept, and the best of them: a residual of each would be gigabytes for thousands of
+    // starts.
+    let best: Mutex<Option<Descent>> = Mutex::new(None);
+    let reached = |index| {
+        let u = draw(index);
+        let value = objective.value(&u);
+        let square_residual = value.square_residual;
+        let mut best = best.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if best.as_ref().is_none_or(|best| square_residual < best.value.square_residual) {
+            *best = Some(Descent::new(u.clone(), value));
+        }
+        (square_residual, u)
+    };
+    let mut points: Vec<(f64, Vec<f64>)> = (0..count).into_par_iter().map(reached).collect();
+    if objective.stop.is_asked() {
+        return best.into_inner().ok().flatten().into_iter().collect();
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let distance = |a: &[f64], b: &[f64]| {
+        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+        (square / a.len().max(1) as f64).sqrt()
+    };
+    let mut chosen: Vec<Vec<f64>> = Vec::new();
+    let mut near = Vec::new();
+    for (_, point) in points {
+        if chosen.len() == effort.starts {
+            break;
+        }
+        let is_apart = chosen.iter().all(|other| distance(&point, other) >= APART);
+        (if is_apart { &mut chosen } else { &mut near }).push(point);
+    }
+    let missing = effort.starts - chosen.len();
+    chosen.extend(near.into_iter().take(missing));
+    let begin = |u: Vec<f64>| {
+        let value = objective.value(&u);
+        Descent::new(u, value)
+    };
+    let begun: Vec<Descent> = chosen.into_par_iter().map(begin).collect();
+    match begun[0].value.square_residual {
+        UNFINISHED => best.into_inner().ok().flatten().into_iter().collect(),
+        _ => begun,
+    }
+}

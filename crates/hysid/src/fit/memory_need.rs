@@ -1,0 +1,261 @@
+//! How much memory an identification takes at its peak, estimated before it is begun.
+//!
+//! Only what can grow large is counted: matrices as wide as a model has parameters or features, states of many
+//! starts, and copies of the data. Estimates are within a factor of three of what was measured; the tests hold
+//! them to that.
+
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::auto;
+use crate::fit::network::curvature::has_few_rows;
+use crate::fit::network::random_stops::HIDDEN;
+use crate::network::Architecture;
+use crate::options::Request;
+use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::network::{FitOptions, Trainer};
+use crate::options::shaping::HISTORY_INPUTS;
+
+/// Bytes of a number.
+const NUMBER: f64 = 8.0;
+
+/// Rows that a search compares with the measured output, at most.
+const ROWS_OF_A_SEARCH: usize = 5000;
+
+/// Runs on folds: three starts on each of five.
+const RUNS_ON_FOLDS: usize = 15;
+
+/// Memory at the peak of an identification, beside that of the data themselves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MemoryNeed {
+    /// Bytes.
+    pub bytes: f64,
+    /// What takes them, in words.
+    pub taken_by: String,
+    /// What lowers them, in words.
+    pub advice: &'static str,
+}
+
+impl MemoryNeed {
+    /// Refuses a need beyond what is available, in bytes.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn check(&self, available: f64) -> Result<()> {
+        if self.bytes <= available {
+            return Ok(());
+        }
+        let Self { bytes: needed, taken_by, advice } = self.clone();
+        Err(Error::Memory { needed, available, taken_by, advice })
+    }
+
+    /// Of a number of floating-point numbers.
+    fn of(numbers: f64, taken_by: impl Into<String>, advice: &'static str) -> Self {
+        Self { bytes: NUMBER * numbers, taken_by: taken_by.into(), advice }
+    }
+}
+
+/// What identifying a model takes at its peak, with so many threads.
+///
+/// # Errors
+/// Options that make no network of these data.
+pub fn memory_need(data: &Dataset, request: &Request, threads: usize) -> Result<MemoryNeed> {
+    match request {
+        Request::Network(options) => of_network(data, options, threads),
+        Request::Classical(options) => Ok(of_classical(data, options, threads)),
+        Request::Auto(options) => {
+            let mut largest = MemoryNeed::of(0.0, "nothing", "");
+            for candidate in auto::requests(data, options) {
+                // Candidates that cannot be fitted to these data are passed over, as in the fit.
+                let Ok(need) = memory_need(data, &candidate, 1) else { continue };
+                if need.bytes > largest.bytes {
+                    largest = need;
+                }
+            }
+            // Each thread fits a candidate of its own, on folds that are copies of the data.
+            let copies = 10.0 * numbers(data);
+            Ok(MemoryNeed { bytes: threads as f64 * largest.bytes + NUMBER * copies, ..largest })
+        }
+    }
+}
+
+/// Numbers that the data consist of.
+fn numbers(data: &Dataset) -> f64 {
+    let columns =
+        data.names().inputs.len() + 1 + usize::from(data.has_time()) + usize::from(data.has_given_rate());
+    data.rows() as f64 * columns as f64
+}
+
+fn of_network(data: &Dataset, options: &FitOptions, threads: usize) -> Result<MemoryNeed> {
+    let architecture = options.architecture(data)?;
+    let (searched, features) = (architecture.searched_parameters(), architecture.output_weights());
+    let rows = data.scored().min(options.thin);
+    let (p, m, n) = (searched as f64, features as f64, rows as f64);
+    let runs = options.starts.min(4 * threads);
+    let busy = threads.min(options.starts.max(if options.starts > 1 { RUNS_ON_FOLDS } else { 1 })) as f64;
+
+    let evaluation = 4.0 * m * m;
+    let slope = match options.training {
+        // A backward pass needs no matrix.
+        _ if options.training != Trainer::LevenbergMarquardt => 100.0 * p,
+        _ if has_few_rows(searched, features, rows) => 2.0 * p * (n + m) + 3.0 * (n + m) * (n + m),
+        _ => (m + p) * (m + p) + p * p + p * m,
+    };
+    let buffers = 500.0 * (m + p);
+    let all_runs = options.starts.saturating_add(if options.starts > 1 { RUNS_ON_FOLDS } else { 0 });
+    let state = m * m
+        + 4.0 * p
+        + match options.training {
+            Trainer::LevenbergMarquardt => 0.0,
+            Trainer::Genetic => 2.0 * options.population as f64 * p,
+            Trainer::Subgradient => p * p,
+            Trainer::Hybrid => (p * p).max(2.0 * options.population as f64 * p),
+        };
+    let states = all_runs as f64 * state + runs as f64 * state;
+    let copies = copies_of_data(data, &architecture, options.starts > 1);
+    let total = busy * (evaluation + slope + buffers) + states + copies;
+    Ok(largest_of(
+        total,
+        [
+            (busy * slope, format!("derivatives by {searched} searched parameters"), FEWER_NEURONS),
+            (busy * evaluation, format!("sums over {features} output weights"), FEWER_NEURONS),
+            (states, format!("{all_runs} runs of {searched} searched parameters"), FEWER_STARTS),
+            (copies, format!("{} rows of {} inputs", data.rows(), architecture.channels()), FEWER_ROWS),
+        ],
+    ))
+}
+
+const FEWER_NEURONS: &str = "choose fewer hidden, stops or relaxation neurons, or fewer inputs";
+const FEWER_STARTS: &str = "choose fewer starts, a smaller population, or fewer neurons";
+const FEWER_ROWS: &str = "fit to fewer rows";
+const FEWER_OPERATORS: &str = "choose fewer operators";
+
+/// Copies of the data that training works on: scaled, and again for each fold.
+fn copies_of_data(data: &Dataset, architecture: &Architecture, is_validated: bool) -> f64 {
+    let drives = data.rows() as f64 * (architecture.channels() + 4) as f64;
+    let folds = if is_validated { 5.0 } else { 0.0 };
+    (1.0 + 2.0 * folds) * (drives + numbers(data))
+}
+
+/// A need with what takes most of it.
+fn largest_of<const N: usize>(total: f64, parts: [(f64, String, &'static str); N]) -> MemoryNeed {
+    let largest = parts.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    let (_, taken_by, advice) = largest.expect("there are parts");
+    MemoryNeed::of(total, taken_by, advice)
+}
+
+fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> MemoryNeed {
+    let (rows, scored, threads) = (data.rows() as f64, data.scored() as f64, threads as f64);
+    let copies = 2.0 * numbers(data) + 6.0 * rows;
+    let folds = if data.records().len() < 10 { 5.0 } else { 10.0 };
+    // Sums of each fold and of all, and on each thread those less a fold with what is solved for.
+    let linear = |features: f64, operators: usize| {
+        let sums = (folds + 1.0 + 5.0 * threads) * features * features;
+        let sums = (sums, format!("sums over {operators} operators"), FEWER_OPERATORS);
+        largest_of(sums.0 + copies, [sums, (copies, format!("{rows} rows"), FEWER_ROWS)])
+    };
+    let operators = |default: usize| options.operators.unwrap_or(default);
+    match options.model {
+        Rival::PrandtlIshlinskii | Rival::Masing => {
+            let plays = options.thresholds.as_ref().map_or(operators(30), Vec::len);
+            linear(plays as f64 + 3.0, plays)
+        }
+        Rival::ModifiedPrandtlIshlinskii => {
+            let plays = options.thresholds.as_ref().map_or(operators(20), Vec::len);
+            let zones = 2 * options.dead_zones.unwrap_or(6);
+            let sums = linear((plays + zones + 3) as f64, plays);
+            // Plays of every row are stored for each grid, and copied for each fold that is under way.
+            let plays_of_rows = (3.0 + 2.0 * threads) * scored * (plays + 6) as f64;
+            let taken_by = format!("{plays} plays at each of {scored} rows");
+            let advice = "choose fewer operators, or fit to fewer rows";
+            largest_of(
+                sums.bytes / NUMBER + plays_of_rows,
+                [(sums.bytes / NUMBER, sums.taken_by, sums.advice), (plays_of_rows, taken_by, advice)],
+            )
+        }
+        Rival::Preisach => {
+            let intervals = operators(30) as f64;
+            let cells = 0.5 * intervals * (intervals + 1.0) + intervals + 3.0;
+            let coarse = linear(233.0, 20);
+            let fine = 3.0 * cells * cells;
+            let taken_by = format!("sums over the {cells} cells of {intervals} intervals");
+            largest_of(
+                coarse.bytes / NUMBER + fine,
+                [(coarse.bytes / NUMBER, coarse.taken_by, FEWER_ROWS), (fine, taken_by, FEWER_OPERATORS)],
+            )
+        }
+        Rival::RandomStops => {
+            let inputs = data.names().inputs.len() + if options.shaping.history { HISTORY_INPUTS } else { 0 };
+            let (stops, hidden) = (operators(300), options.hidden.unwrap_or(HIDDEN));
+            let features = (stops + hidden + 3) as f64;
+            let weights = (hidden * stops) as f64;
+            let mut need = linear(features, stops);
+            need.bytes += NUMBER * (600.0 * (features + weights / 10.0) + rows * (inputs + 4) as f64);
+            need
+        }
+        _ => {
+            let starts = options.starts.unwrap_or(32) as f64;
+            let compared = scored.min(ROWS_OF_A_SEARCH as f64);
+            let variables = operators(12).max(options.hidden.unwrap_or(8) * 5) as f64;
+            let residuals = (starts + 3.0 * variables * threads) * compared + 24.0 * starts * 20.0;
+            let taken_by = format!("residuals of {starts} starts");
+            largest_of(
+                residuals + copies,
+                [(residuals, taken_by, "choose fewer starts"), (copies, format!("{rows} rows"), FEWER_ROWS)],
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::record::{ColumnNames, Record};
+    use crate::options::ModelName;
+    use crate::options::chosen::ChosenOptions;
+
+    fn data(rows: usize, inputs: usize) -> Dataset {
+        let input = |c: usize| (0..rows).map(|k| ((k + c) as f64 * 0.1).sin()).collect();
+        let time = (0..rows).map(|k| k as f64).collect();
+        let inputs: Vec<Vec<f64>> = (0..inputs).map(input).collect();
+        let output = inputs[0].clone();
+        let names = ColumnNames::plain(inputs.len());
+        let record = Record::new("r", inputs, output).unwrap().with_time(time).unwrap();
+        Dataset::new(names, vec![record]).unwrap()
+    }
+
+    fn need(data: &Dataset, options: serde_json::Value) -> MemoryNeed {
+        let serde_json::Value::Object(options) = options else { panic!("a map") };
+        let request = ChosenOptions::of(options).unwrap().request(None, false);
+        memory_need(data, &request, 2).unwrap()
+    }
+
+    #[test]
+    fn the_largest_network_is_refused_with_numbers_and_advice() {
+        let rows = data(200_000, 1);
+        let need = need(&rows, serde_json::json!({ "model": "xpnn+", "stops": 300, "hidden": 300 }));
+        assert!(need.bytes > 60e9, "{need:?}");
+        let error = need.check(16e9).unwrap_err().to_string();
+        for words in ["GB", "16.0 GB are available", "searched parameters", "fewer hidden"] {
+            assert!(error.contains(words), "{error}");
+        }
+        assert!(need.check(1e13).is_ok());
+    }
+
+    #[test]
+    fn few_rows_of_many_inputs_need_little() {
+        let wide = data(50, 99);
+        let need = need(&wide, serde_json::json!({ "model": "xpnn+" }));
+        assert!(need.bytes < 300e6, "{need:?}");
+    }
+
+    #[test]
+    fn every_model_has_an_estimate() {
+        let rows = data(1000, 1);
+        for model in ModelName::all().chain([ModelName::AUTO]) {
+            let need = need(&rows, serde_json::json!({ "model": model.name() }));
+            assert!(need.bytes > 1e4 && need.bytes < 1e9, "{}: {need:?}", model.name());
+        }
+        let fine = need(&rows, serde_json::json!({ "model": "preisach", "operators": 200 }));
+        assert!(fine.bytes > 5e9 && fine.taken_by.contains("cells"), "{fine:?}");
+    }
+}

@@ -1,0 +1,316 @@
+//! The one objective of all trainers, theory.md (3.1): value, gradient, Gauss-Newton matrix. Output
+//! weights follow from the other parameters by least squares (variable projection).
+
+use std::borrow::Cow;
+
+use crate::data::record::{Dataset, Thinning};
+use crate::error::Result;
+use crate::fit::network::curvature::{self, Curvature, has_few_rows};
+use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
+use crate::network::scaling::Scaling;
+use crate::network::{
+    Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout, RowsOverRecords,
+};
+use crate::options::network::{FitOptions, Regularisation};
+use crate::stop_check::StopCheck;
+
+/// The objective on given data.
+#[derive(Debug, Clone)]
+pub struct Objective<'a> {
+    architecture: Architecture,
+    layout: Layout,
+    regularisation: Regularisation,
+    drives: Cow<'a, [Drive]>,
+    targets: Vec<Vec<f64>>,
+    rows: usize,
+    stop: StopCheck<'a>,
+    /// Evaluations take long enough to be broken off.
+    is_long: bool,
+}
+
+/// The objective at a point.
+#[derive(Debug, Clone)]
+pub struct Value {
+    /// F of theory.md (3.1).
+    pub objective: f64,
+    /// Mean square residual in scaled units: the square of NRMSE (of std) if the training set is whole.
+    pub mean_square: f64,
+    solution: OutputSolution,
+}
+
+impl Value {
+    /// Output weights at the point.
+    pub fn output_weights(&self) -> &[f64] {
+        &self.solution.weights
+    }
+}
+
+/// Slope and curvature at a point.
+pub(crate) struct Slope {
+    /// Gradient of F, theory.md (3.3).
+    pub gradient: Vec<f64>,
+    /// Gauss-Newton matrix with decay, theory.md (3.4).
+    pub curvature: Curvature,
+}
+
+/// Operations of one evaluation with its slope from which on it is worth to be broken off: about ten
+/// milliseconds.
+const LONG: usize = 20_000_000;
+
+impl<'a> Objective<'a> {
+    /// Scales the data for the architecture.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn new(
+        data: &Dataset,
+        scaling: &Scaling,
+        architecture: Architecture,
+        options: &FitOptions,
+    ) -> Result<Self> {
+        let used = || data.records().iter().filter(|record| record.scored() > 0);
+        let drives: Result<Vec<Drive>> =
+            used().map(|record| scaling.drive(record, &architecture, options.rate)).collect();
+        let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+        Ok(Self {
+            architecture,
+            layout: Layout::new(architecture),
+            regularisation: options.penalties(),
+            drives: Cow::Owned(drives?),
+            targets,
+            rows: data.scored(),
+            stop: StopCheck::never(),
+            is_long: false,
+        })
+    }
+
+    /// The same, whose evaluations are broken off once asked to stop, if they take long: a value is infinite then, and a
+    /// gradient means nothing.
+    pub(crate) fn until(self, stop: StopCheck<'a>) -> Self {
+        let columns = self.layout.len() + self.architecture.output_weights();
+        // Rows without a target are run through, but not gathered.
+        let run: usize = self.drives.iter().map(Drive::len).sum();
+        let is_long =
+            columns.saturating_mul(columns.saturating_mul(self.rows).saturating_add(10 * run)) > LONG;
+        if is_long { Self { stop, is_long, ..self } } else { self }
+    }
+
+    /// True if evaluations may be broken off.
+    pub(crate) fn is_long(&self) -> bool {
+        self.is_long
+    }
+
+    /// What breaks evaluations off.
+    pub(crate) fn stop(&self) -> StopCheck<'a> {
+        self.stop
+    }
+
+    /// Rows that are compared.
+    pub fn scored(&self) -> usize {
+        self.rows
+    }
+
+    /// The same objective on at most `most` rows. The memory still runs through every row.
+    pub fn thinned(&self, most: usize) -> Objective<'_> {
+        let mut targets = self.targets.clone();
+        let rows = Thinning::new(self.rows, most).blank(targets.iter_mut().flatten());
+        Objective {
+            drives: Cow::Borrowed(&self.drives),
+            targets,
+            rows,
+            layout: self.layout.clone(),
+            architecture: self.architecture,
+            regularisation: self.regularisation,
+            stop: self.stop,
+            is_long: self.is_long,
+        }
+    }
+
+    /// The architecture.
+    pub fn architecture(&self) -> &Architecture {
+        &self.architecture
+    }
+
+    /// Names and bounds of the parameters.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Shortest and longest span of time that the records tell of: a mean time step and the longest
+    /// record; `None` without time.
+    pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
+        let durations = self.drives.iter().map(|drive| drive.steps.iter().sum::<f64>());
+        let longest = durations.clone().fold(0.0, f64::max);
+        let steps: usize = self.drives.iter().map(|drive| drive.steps.len().saturating_sub(1)).sum();
+        let step = durations.sum::<f64>() / steps.max(1) as f64;
+        (longest > 0.0).then_some((step, longest))
+    }
+
+    /// Half of the range of the first input, in scaled units.
+    pub(crate) fn half_range_of_input(&self) -> f64 {
+        let inputs = self.drives.iter().flat_map(|drive| &drive.channels[0]);
+        let (low, high) =
+            inputs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        0.5 * (high - low)
+    }
+
+    /// The value at a point.
+    pub fn value(&self, parameters: &[f64]) -> Value {
+        if self.stop.is_asked() {
+            let solution = OutputSolution::broken_off(self.architecture.output_weights());
+            return Value { objective: f64::INFINITY, mean_square: f64::INFINITY, solution };
+        }
+        let gram = self.gram(parameters, None);
+        let solution = self.output_problem(&gram).solve();
+        let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
+        Value {
+            objective: solution.objective + 0.5 * self.regularisation.decay * decay,
+            mean_square: solution.mean_square,
+            solution,
+        }
+    }
+
+    /// Gradient of F by the parameters, at a point with its value.
+    pub fn gradient(&self, parameters: &[f64], value: &Value) -> Vec<f64> {
+        let sums = GradientOverRecords {
+            architecture: &self.architecture,
+            parameters,
+            output: &value.solution.weights,
+            drives: &self.drives,
+            targets: &self.targets,
+            stop: self.stop,
+        };
+        let mut gradient = sums.sum();
+        gradient.iter_mut().for_each(|g| *g /= self.rows as f64);
+        for (index, weight) in self.weights(parameters) {
+            gradient[index] += self.regularisation.decay * weight;
+        }
+        gradient
+    }
+
+    /// Slope and curvature at a point with its value; `None` once asked to stop.
+    pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
+        if has_few_rows(parameters.len(), self.architecture.output_weights(), self.rows) {
+            return self.slope_of_few_rows(parameters, value);
+        }
+        let gram = self.gram(parameters, Some(&value.solution.weights));
+        let (mut gradient, mut matrix) =
+            self.output_problem(&gram).linearise(&value.solution, parameters.len());
+        for (index, weight) in self.weights(parameters) {
+            gradient[index] += self.regularisation.decay * weight;
+            matrix.add_to_diagonal(index, self.regularisation.decay);
+        }
+        let slope = Slope { gradient, curvature: Curvature::Matrix(matrix) };
+        (!self.stop.is_asked()).then_some(slope)
+    }
+
+    fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
+        let output = Some(value.solution.weights.as_slice());
+        let columns = Columns { architecture: &self.architecture, parameters, output };
+        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        let columns = RowsOverRecords { columns, first: 0, drives, targets, stop }.columns();
+        let mut decay = vec![0.0; parameters.len()];
+        self.weights(parameters).for_each(|(index, _)| decay[index] = self.regularisation.decay);
+        if stop.is_asked() {
+            return None;
+        }
+        let rows = curvature::Rows::new(columns, &value.solution, decay, parameters, stop)?;
+        Some(Slope { gradient: rows.gradient(), curvature: Curvature::Rows(rows) })
+    }
+
+    fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
+        let columns = Columns { architecture: &self.architecture, parameters, output };
+        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        GramOverRecords { columns, drives, targets, stop }.gram()
+    }
+
+    fn output_problem<'g>(&'g self, gram: &'g crate::linear_algebra::Gram) -> OutputProblem<'g> {
+        OutputProblem {
+            gram,
+            features: self.architecture.output_weights(),
+            rows: self.rows as f64,
+            ridge: self.regularisation.ridge,
+            constant: self.architecture.constant,
+            stop: self.stop,
+        }
+    }
+
+    fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
+        parameters.iter().enumerate().filter(|(index, _)| self.layout.is_weight(*index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::record::{ColumnNames, Record};
+    use crate::network::{Family, Sizes};
+
+    /// The rows of the curvature give the step that the matrix gives, to rounding.
+    #[test]
+    fn few_rows_give_the_same_step_as_the_matrix() {
+        let rows = 40;
+        let x: Vec<f64> = (0..rows).map(|k| (0.3 * k as f64).sin() * (1.0 + 0.02 * k as f64)).collect();
+        let y = (0..rows).map(|k| (0.3 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+        let record = Record::new("r", vec![x], y).unwrap();
+        let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+        let sizes = Sizes { stops: 20, hidden: 20, relaxation: 0 };
+        let options = FitOptions { model: Family::XpnnPlus, sizes, ..FitOptions::default() };
+        let scaling = Scaling::of(&data, None).unwrap();
+        let architecture = options.architecture(&data).unwrap();
+        let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+        let p = objective.layout().len();
+        assert!(!has_few_rows(p, architecture.output_weights(), rows), "compare with the matrix");
+        let point = crate::fit::network::start::random(&objective, 1, 0);
+        let value = objective.value(&point);
+        let by_matrix = objective.slope(&point, &value).unwrap();
+        let by_rows = objective.slope_of_few_rows(&point, &value).unwrap();
+        let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let assert_near = |a: &[f64], b: &[f64], tolerance: f64| {
+            let size = largest(a);
+            assert!(size > 0.0);
+            for (a, b) in a.iter().zip(b) {
+                assert!((a - b).abs() < tolerance * size, "{a} and {b} of {size}");
+            }
+        };
+        assert_near(&by_matrix.gradient, &by_rows.gradient, 1e-9);
+        let diagonal = |slope: &Slope| (0..p).map(|i| slope.curvature.diagonal(i)).collect::<Vec<f64>>();
+        assert_near(&diagonal(&by_matrix), &diagonal(&by_rows), 1e-9);
+        let scale = largest(&diagonal(&by_matrix));
+        for damping in [1e-1, 1e-3] {
+            let damping = vec![damping * scale; p];
+            let step =
+                |slope: &Slope| slope.curvature.step(&slope.gradient, &damping, StopCheck::never()).unwrap();
+            assert_near(&step(&by_matrix), &step(&by_rows), 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_the_same_with_and_without_the_jacobian() {
+        for family in Family::ALL {
+            for rows in [64, 200, 331] {
+                let x: Vec<f64> =
+                    (0..rows).map(|k| (0.17 * k as f64).sin() * (1.0 + 0.01 * k as f64)).collect();
+                let mut y: Vec<f64> = (0..rows).map(|k| (0.17 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+                y[5] = f64::NAN;
+                let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+                let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
+                let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+                let sizes = Sizes { stops: 11, hidden: 3, relaxation: 2 };
+                let rate = Some(crate::data::rate::RateMethod::Central);
+                let options = FitOptions { model: family, sizes, rate, ..FitOptions::default() };
+                let scaling = Scaling::of(&data, rate).unwrap();
+                let architecture = options.architecture(&data).unwrap();
+                let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
+                let point = crate::fit::network::start::random(&objective, 1, 0);
+                let value = objective.value(&point);
+                let of_slope = objective.slope(&point, &value).unwrap().gradient;
+                let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));
+                assert!(size > 1e-4);
+                for (a, b) in of_slope.iter().zip(objective.gradient(&point, &value)) {
+                    assert!((a - b).abs() < 1e-11 * size, "{family:?}, {rows} rows: {a} and {b}");
+                }
+            }
+        }
+    }
+}

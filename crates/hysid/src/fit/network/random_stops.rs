@@ -1,0 +1,194 @@
+//! Random deteriorating stops with a ridge readout: no search at all.
+//!
+//! ```text
+//! y = c_0 + d_0 a·u + Σ_j d_j DS_{1,β_j}[w_j·u] (+ Σ_i c_i h_i),    w, β (and the tanh layer) random
+//! d = argmin ‖Φd - y‖²/N + λ‖d‖²                                            theory.md (7.1), (7.14)
+//! ```
+//!
+//! The result is a [`Network`] like any other. One Gram matrix for each fold serves all penalties `λ`.
+//! Source: an extreme learning machine of deteriorating stops, after Farrokh, Ghasemi, Noori, Wang and
+//! Sarhosis (2022), with a ridge in place of their support vector machine.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::linear::{Bounds, FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
+use crate::fit::network::start::{self, Capacities};
+use crate::network::scaling::Scaling;
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
+use crate::options::classical::Sign;
+use crate::stop_check::StopCheck;
+
+/// How random stops are fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RandomStopsOptions {
+    /// Stops, 1 to 1000.
+    pub stops: usize,
+    /// Random tanh neurons beside the direct path from the stops to the output, 0 to 1000; none or 100,
+    /// chosen by cross-validation, if `None`.
+    pub hidden: Option<usize>,
+    /// How the rate of the first input is found; `None` for stops that do not see it.
+    pub rate: Option<RateMethod>,
+    /// Whether the stops deteriorate; chosen by cross-validation if `None`.
+    pub deterioration: Option<bool>,
+    /// Seed of the random stops.
+    pub seed: u64,
+}
+
+impl Default for RandomStopsOptions {
+    fn default() -> Self {
+        Self { stops: 300, hidden: None, rate: None, deterioration: None, seed: 1 }
+    }
+}
+
+/// A fitted network of random stops.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RandomStops {
+    /// The network, in scaled units.
+    pub network: Network,
+    /// Factors between the user's units and the network's.
+    pub scaling: Scaling,
+    /// The penalty `λ` that cross-validation chose.
+    pub ridge: f64,
+    /// Root mean square error on rows held out, in percent of the output's standard deviation; the
+    /// geometric mean over the folds.
+    pub validation_nrmse_percent: f64,
+}
+
+/// Tanh neurons, where cross-validation finds them better than none. Designed.
+pub(crate) const HIDDEN: usize = 100;
+
+/// From stops that are soon dead to such as hardly wear. Designed.
+const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
+
+/// Fits random stops.
+///
+/// # Errors
+/// Data that nothing can be identified from, options outside their meaning, a rate that cannot be
+/// computed.
+pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
+    fit_random_stops_until(data, options, StopCheck::never())
+}
+
+/// As [`fit_random_stops`]; asked to stop, the best architecture so far, its penalty chosen by fewer folds.
+pub(crate) fn fit_random_stops_until(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    stop: StopCheck<'_>,
+) -> Result<RandomStops> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    let scaling = Scaling::of(data, options.rate)?;
+    let mut best: Option<RandomStops> = None;
+    let deteriorations = options.deterioration.map_or(vec![false, true], |one| vec![one]);
+    let hidden = options.hidden.map_or(vec![0, HIDDEN], |one| vec![one]);
+    let candidates = deteriorations
+        .iter()
+        .flat_map(|&deterioration| hidden.iter().map(move |&hidden| (deterioration, hidden)));
+    for (deterioration, hidden) in candidates {
+        if best.is_some() && stop.is_asked() {
+            break;
+        }
+        let architecture = Architecture {
+            inputs: data.names().inputs.len(),
+            rate: options.rate.is_some(),
+            stops: options.stops,
+            deterioration,
+            linear: true,
+            relaxation: 0,
+            hidden,
+            direct: true,
+            constant: true,
+        };
+        architecture.check()?;
+        let candidate = match fit_readout(data, options, &scaling, architecture, stop) {
+            Err(Error::Stopped) if best.is_some() => break,
+            candidate => candidate?,
+        };
+        let is_better =
+            |best: &RandomStops| candidate.validation_nrmse_percent < best.validation_nrmse_percent;
+        if best.as_ref().is_none_or(is_better) {
+            best = Some(candidate);
+        }
+    }
+    Ok(best.expect("at least one candidate"))
+}
+
+/// Draws the stops, and finds the output weights.
+fn fit_readout(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    scaling: &Scaling,
+    architecture: Architecture,
+    stop: StopCheck<'_>,
+) -> Result<RandomStops> {
+    let used = || data.records().iter().filter(|record| record.scored() > 0);
+    let drives: Vec<Drive> =
+        used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
+    let inputs: Vec<(Vec<f64>, &[f64])> =
+        used().map(|record| (record.inputs()[0].clone(), record.output())).collect();
+    let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+    let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
+    let sums = fold_sums(
+        &Columns { architecture: &architecture, parameters: &parameters, output: None },
+        &drives,
+        &targets,
+        &Folds::of(&inputs),
+        stop,
+    )?;
+
+    let features = architecture.output_weights();
+    let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
+    let ridges = logarithmic(1e-9, 1e-1, 17);
+    let solve = |sums: &Quadratic, ridge: f64| {
+        let mut penalised = sums.clone();
+        penalised.penalise(&penalty, ridge);
+        penalised.minimum(stop)
+    };
+    let scores = sums.scores(|rest| ridges.iter().map(|&ridge| solve(rest, ridge)).collect(), stop);
+    // Asked to stop before any penalty was judged, one in the middle is taken.
+    let scores = scores.unwrap_or_else(|| {
+        let middle = ridges.len() / 2;
+        (0..ridges.len()).map(|place| if place == middle { 0.0 } else { f64::INFINITY }).collect()
+    });
+    let chosen = lowest(&scores);
+    let mut penalised = sums.into_total().quadratic();
+    penalised.penalise(&penalty, ridges[chosen]);
+    let output = penalised.last_minimum(&Bounds::new(Sign::Any, 0..0, features), stop)?;
+    Ok(RandomStops {
+        network: Network::new(architecture, parameters, output)?,
+        scaling: scaling.clone(),
+        ridge: ridges[chosen],
+        validation_nrmse_percent: 100.0 * (0.5 * scores[chosen]).exp(),
+    })
+}
+
+/// Sums of the output layer's features, fold by fold. The memory runs through every row of every record;
+/// rows of other folds have no target.
+fn fold_sums(
+    columns: &Columns,
+    drives: &[Drive],
+    targets: &[Vec<f64>],
+    folds: &Folds,
+    stop: StopCheck<'_>,
+) -> Result<FoldSums> {
+    let of_fold = |fold: usize| {
+        let mut rows = 0;
+        let masked: Vec<Vec<f64>> = targets
+            .iter()
+            .zip(&folds.of_rows)
+            .map(|(targets, of_rows)| {
+                let mask = |(&target, &other): (&f64, &usize)| if other == fold { target } else { f64::NAN };
+                targets.iter().zip(of_rows).map(mask).collect()
+            })
+            .inspect(|masked: &Vec<f64>| rows += masked.iter().filter(|y| !y.is_nan()).count())
+            .collect();
+        let gram = GramOverRecords { columns: *columns, drives, targets: &masked, stop }.gram();
+        Sums::new(gram, columns.count() - 1, rows)
+    };
+    let sums = FoldSums::new((0..folds.count).map(of_fold).collect(), folds.judged.clone());
+    if stop.is_asked() { Err(Error::Stopped) } else { Ok(sums) }
+}

@@ -1,0 +1,44 @@
+//! Whether the state of a fit that was read from a file is one that a fit can go on from: every number finite and
+//! where it may be, every length that of the network. A checksum tells damage, not malice or mistake.
+
+use crate::error::{Error, Result};
+use crate::network::{Architecture, Layout};
+use crate::options::network::FitOptions;
+
+/// Most epochs or evaluations that a state may count.
+pub(super) const MOST_COUNTED: usize = 1 << 50;
+
+/// What a state must fit to.
+pub(super) struct Frame<'a> {
+    pub options: &'a FitOptions,
+    pub architecture: &'a Architecture,
+    pub layout: Layout,
+}
+
+impl<'a> Frame<'a> {
+    pub fn new(options: &'a FitOptions, architecture: &'a Architecture) -> Self {
+        Self { options, architecture, layout: Layout::new(*architecture) }
+    }
+
+    /// Parameters within their bounds.
+    pub fn are_parameters(&self, values: &[f64]) -> bool {
+        self.layout.check(values).is_ok()
+    }
+
+    /// One finite number for each parameter.
+    pub fn is_vector(&self, values: &[f64]) -> bool {
+        values.len() == self.layout.len() && are_finite(values)
+    }
+}
+
+pub(super) fn are_finite(values: &[f64]) -> bool {
+    values.iter().all(|value| value.is_finite())
+}
+
+/// Refuses what is not sound, naming it.
+pub(super) fn require(is_sound: bool, what: &str) -> Result<()> {
+    if is_sound {
+        return Ok(());
+    }
+    Err(Error::Checkpoint(format!("the checkpoint contradicts itself ({what}): begin the fit anew")))
+}

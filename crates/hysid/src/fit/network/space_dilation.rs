@@ -1,0 +1,413 @@
+//! Shor's sub-gradient methods with space dilatation: they minimise functions that need not be smooth.
+//!
+//! ```text
+//! R_γ(ξ) = I + (γ - 1) ξ ξᵀ,  |ξ| = 1
+//! d = B Bᵀg / |Bᵀg|;   x <- x - h d  until  dᵀg(x) <= 0;   B <- B R_{1/α}(ξ)     theory.md (3.7)
+//! ξ ∝ Bᵀ(g⁺ - g)  in the r-algorithm,  ξ ∝ Bᵀg  in the sub-gradient method       theory.md (3.8)
+//! ```
+//!
+//! Each dilatation shortens the steps in a direction across which the sub-gradient jumps, so that a
+//! narrow valley becomes round. The matrix `B` holds the square of the number of variables; a step
+//! costs about six times that, beside the function.
+//!
+//! [`minimise`] serves anyone; training goes step by step with [`SpaceDilation`], whose whole state can
+//! be stored.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::fit::network::soundness::{Frame, MOST_COUNTED, are_finite};
+use crate::fit::network::stall::Stall;
+use crate::linear_algebra::dot;
+use crate::termination::Termination;
+
+/// A function and one of its sub-gradients: writes the sub-gradient, returns the value.
+pub trait Subdifferentiable {
+    /// Value at `x`; `subgradient` takes one of the sub-gradients there.
+    fn evaluate(&mut self, x: &[f64], subgradient: &mut [f64]) -> f64;
+}
+
+impl<F: FnMut(&[f64], &mut [f64]) -> f64> Subdifferentiable for F {
+    fn evaluate(&mut self, x: &[f64], subgradient: &mut [f64]) -> f64 {
+        self(x, subgradient)
+    }
+}
+
+/// Along what the space is dilated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Dilation {
+    /// Along the difference of two successive sub-gradients: the r-algorithm (Shor and Zhurbenko 1971).
+    Difference,
+    /// Along the sub-gradient itself (Shor 1970). Its step needs a lower bound of the function.
+    Subgradient,
+}
+
+/// Settings of the method.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DilationOptions {
+    /// Along what the space is dilated.
+    pub dilation: Dilation,
+    /// α, by which the space is dilated; above 1, usually 2 to 4.
+    pub coefficient: f64,
+    /// h0, the first step: about the distance to the minimum.
+    pub first_step: f64,
+    /// q1, by which the step is multiplied when one inner step was enough: 1 for a function that is
+    /// not smooth (less lets the steps shrink faster than the space dilates), 0.8 to 0.95 for a smooth
+    /// one.
+    pub shrinkage: f64,
+    /// q2, by which the step is multiplied at every third inner step.
+    pub growth: f64,
+    /// A value that the function does not fall below, for [`Dilation::Subgradient`].
+    pub lower_bound: f64,
+}
+
+impl Default for DilationOptions {
+    fn default() -> Self {
+        Self {
+            dilation: Dilation::Difference,
+            coefficient: 2.5,
+            first_step: 1.0,
+            shrinkage: 1.0,
+            growth: 1.1,
+            lower_bound: 0.0,
+        }
+    }
+}
+
+impl DilationOptions {
+    /// # Errors
+    /// A setting outside its meaning.
+    pub fn check(&self) -> Result<()> {
+        let within = |name: &str, value: f64, low: f64, high: f64| match value >= low && value <= high {
+            true => Ok(()),
+            false => Err(Error::Option(format!("{name} {value} is not between {low} and {high}"))),
+        };
+        within("coefficient of dilatation", self.coefficient, 1.001, 1e3)?;
+        within("first step", self.first_step, 1e-100, 1e100)?;
+        within("shrinkage of the step", self.shrinkage, 0.01, 1.0)?;
+        within("growth of the step", self.growth, 1.0, 10.0)?;
+        within("lower bound", self.lower_bound, -1e300, 1e300)
+    }
+}
+
+/// Inner steps after which the step grows.
+const STEPS_BEFORE_GROWTH: usize = 3;
+/// Inner steps that end an iteration in any case: the function seems to fall for ever.
+const MOST_INNER_STEPS: usize = 500;
+/// Times in a row that a step is halved because there the function is no number.
+const MOST_HALVINGS: usize = 100;
+/// A transformed vector this much shorter than rounding allows for is noise: the space begins anew.
+const NOISE: f64 = 1e-13;
+
+/// The state of a minimisation; it can be stored and taken up again, to the last bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpaceDilation {
+    options: DilationOptions,
+    /// Length of each variable's unit; `B` begins as the diagonal matrix of these.
+    scales: Vec<f64>,
+    x: Vec<f64>,
+    value: f64,
+    gradient: Vec<f64>,
+    /// `B`, by rows.
+    transformation: Vec<f64>,
+    step: f64,
+    /// Length of the last inner step in units of the scales.
+    last_move: f64,
+    best: Minimum,
+}
+
+/// The lowest point found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Minimum {
+    /// Where it is.
+    pub x: Vec<f64>,
+    /// The function there.
+    pub value: f64,
+    /// Outer iterations so far.
+    pub iterations: usize,
+    /// Evaluations of the function so far, each with a sub-gradient.
+    pub evaluations: usize,
+}
+
+impl SpaceDilation {
+    /// Begins at `x`. `scales` are typical lengths, one for each variable: steps are measured in
+    /// them.
+    ///
+    /// # Errors
+    /// Options outside their meaning, no variable, scales that are not positive, a function that is
+    /// no number at `x`.
+    pub fn new(
+        x: Vec<f64>,
+        scales: Vec<f64>,
+        options: DilationOptions,
+        f: &mut impl Subdifferentiable,
+    ) -> Result<Self> {
+        options.check()?;
+        if x.is_empty() || x.len() != scales.len() || !x.iter().all(|x| x.is_finite()) {
+            return Err(Error::Option("a minimisation needs finite variables and a scale for each".into()));
+        }
+        if !scales.iter().all(|scale| *scale > 0.0 && scale.is_finite()) {
+            return Err(Error::Option("the scales of the variables must be positive".into()));
+        }
+        let mut gradient = vec![0.0; x.len()];
+        let value = f.evaluate(&x, &mut gradient);
+        if !is_usable(value, &gradient) {
+            return Err(Error::Option(
+                "the function has no finite value and sub-gradient at the start".into(),
+            ));
+        }
+        let best = Minimum { x: x.clone(), value, iterations: 0, evaluations: 1 };
+        let transformation = diagonal(&scales);
+        Ok(Self {
+            options,
+            scales,
+            x,
+            value,
+            gradient,
+            transformation,
+            step: options.first_step,
+            last_move: options.first_step,
+            best,
+        })
+    }
+
+    /// True if a minimisation with these settings can go on from here.
+    pub(super) fn is_sound(&self, frame: &Frame, options: &DilationOptions) -> bool {
+        let n = self.x.len();
+        let vectors = [&self.x, &self.scales, &self.gradient, &self.best.x];
+        let numbers = [self.value, self.step, self.last_move, self.best.value];
+        self.options == *options
+            && vectors.into_iter().all(|vector| frame.is_vector(vector))
+            && self.scales.iter().all(|scale| *scale > 0.0)
+            && self.transformation.len() == n * n
+            && are_finite(&self.transformation)
+            && are_finite(&numbers)
+            && self.step > 0.0
+            && self.best.iterations.max(self.best.evaluations) <= MOST_COUNTED
+    }
+
+    /// The lowest point so far.
+    pub fn best(&self) -> &Minimum {
+        &self.best
+    }
+
+    /// One outer iteration: steps along one direction, then a dilatation. Tells why if there is no
+    /// way on.
+    pub fn advance(&mut self, f: &mut impl Subdifferentiable) -> Option<Termination> {
+        self.best.iterations += 1;
+        let n = self.x.len();
+        let mut transformed = self.transform_back(&self.gradient);
+        let mut length = norm(&transformed);
+        if length <= NOISE * norm(&self.gradient) * self.largest_entry() {
+            if norm(&self.gradient) == 0.0 {
+                return Some(Termination::GradientVanished);
+            }
+            self.begin_anew();
+            transformed = self.transform_back(&self.gradient);
+            length = norm(&transformed);
+        }
+        let along: Vec<f64> = transformed.iter().map(|u| u / length).collect();
+        let direction = self.transform(&along);
+        if self.options.dilation == Dilation::Subgradient {
+            let above = (self.value - self.options.lower_bound).max(0.0);
+            let alpha = self.options.coefficient;
+            self.step = (alpha + 1.0) / alpha * above / length;
+        }
+        let before = std::mem::replace(&mut self.gradient, vec![0.0; n]);
+        if !self.walk(&direction, f) {
+            self.gradient = before;
+            return Some(Termination::NoFurtherImprovement);
+        }
+        let mut xi = match self.options.dilation {
+            Dilation::Subgradient => along,
+            Dilation::Difference => {
+                let difference: Vec<f64> =
+                    self.gradient.iter().zip(&before).map(|(after, before)| after - before).collect();
+                let xi = self.transform_back(&difference);
+                if norm(&xi) <= NOISE * norm(&difference) * self.largest_entry() {
+                    self.begin_anew();
+                    return None;
+                }
+                xi
+            }
+        };
+        let length = norm(&xi);
+        xi.iter_mut().for_each(|xi| *xi /= length);
+        self.dilate(&xi);
+        None
+    }
+
+    /// Steps along a direction until the function rises along it; false if the point cannot change.
+    fn walk(&mut self, direction: &[f64], f: &mut impl Subdifferentiable) -> bool {
+        let mut inner = 0;
+        let mut halvings = 0;
+        let unit = norm_in(direction, &self.scales);
+        loop {
+            let next: Vec<f64> = self.x.iter().zip(direction).map(|(x, d)| x - self.step * d).collect();
+            if next == self.x {
+                return false;
+            }
+            // The function is asked nothing of what is no point.
+            let is_point = next.iter().all(|x| x.is_finite());
+            let value = if is_point { f.evaluate(&next, &mut self.gradient) } else { f64::NAN };
+            self.best.evaluations += usize::from(is_point);
+            if !is_usable(value, &self.gradient) {
+                halvings += 1;
+                if halvings == MOST_HALVINGS {
+                    return false;
+                }
+                self.step *= 0.5;
+                continue;
+            }
+            inner += 1;
+            self.x = next;
+            self.value = value;
+            if value < self.best.value {
+                self.best.value = value;
+                self.best.x.copy_from_slice(&self.x);
+            }
+            self.last_move = self.step * unit;
+            if self.options.dilation == Dilation::Subgradient {
+                return true;
+            }
+            // Counted before it is compared: the step grows at the third step, not at the first.
+            if inner % STEPS_BEFORE_GROWTH == 0 {
+                self.step *= self.options.growth;
+            }
+            if dot(direction, &self.gradient) <= 0.0 || inner == MOST_INNER_STEPS {
+                if inner == 1 {
+                    self.step *= self.options.shrinkage;
+                }
+                return true;
+            }
+        }
+    }
+
+    /// Forgets the dilatations. The step begins anew from the last one as it was in the undilated space:
+    /// in the dilated one it may have grown beyond all bounds.
+    fn begin_anew(&mut self) {
+        self.transformation = diagonal(&self.scales);
+        self.step = self.last_move / STEPS_BEFORE_GROWTH as f64;
+    }
+
+    /// `B <- B R_{1/α}(ξ)`.
+    fn dilate(&mut self, xi: &[f64]) {
+        let factor = 1.0 / self.options.coefficient - 1.0;
+        let stretched = self.transform(xi);
+        for (row, b) in self.transformation.chunks_exact_mut(xi.len()).zip(stretched) {
+            let factor = factor * b;
+            for (entry, xi) in row.iter_mut().zip(xi) {
+                *entry += factor * xi;
+            }
+        }
+        // det B falls with every dilatation. A common factor moves from B to the step without any
+        // change to the points that follow.
+        let largest = self.largest_entry();
+        if largest < 1e-50 {
+            self.transformation.iter_mut().for_each(|entry| *entry /= largest);
+            self.step *= largest;
+        }
+    }
+
+    fn largest_entry(&self) -> f64 {
+        self.transformation.iter().fold(0.0, |largest, entry| entry.abs().max(largest))
+    }
+
+    /// `B u`.
+    fn transform(&self, u: &[f64]) -> Vec<f64> {
+        self.transformation.chunks_exact(u.len()).map(|row| dot(row, u)).collect()
+    }
+
+    /// `Bᵀ g`.
+    fn transform_back(&self, g: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; g.len()];
+        for (row, &g) in self.transformation.chunks_exact(g.len()).zip(g) {
+            for (product, entry) in product.iter_mut().zip(row) {
+                *product += entry * g;
+            }
+        }
+        product
+    }
+}
+
+/// When [`minimise`] ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Most outer iterations.
+    pub iterations: usize,
+    /// A value that is low enough.
+    pub target: f64,
+    /// Iterations in a row without a relative fall of 1e-4 that end it; 0 for no such rule.
+    pub stall: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { iterations: 2000, target: f64::NEG_INFINITY, stall: 0 }
+    }
+}
+
+/// Minimises a function that need not be smooth, from `x`.
+///
+/// ```
+/// use hysid::fit::network::space_dilation::{DilationOptions, Limits, minimise};
+///
+/// // |x - 3| + 100 |y + 1|: a kink along both axes.
+/// let mut f = |x: &[f64], g: &mut [f64]| {
+///     g[0] = (x[0] - 3.0).signum();
+///     g[1] = 100.0 * (x[1] + 1.0).signum();
+///     (x[0] - 3.0).abs() + 100.0 * (x[1] + 1.0).abs()
+/// };
+/// let limits = Limits { iterations: 200, target: 1e-9, ..Limits::default() };
+/// let (minimum, _) = minimise(&mut f, vec![0.0, 0.0], DilationOptions::default(), limits)?;
+/// assert!((minimum.x[0] - 3.0).abs() < 1e-8 && (minimum.x[1] + 1.0).abs() < 1e-10);
+/// # Ok::<(), hysid::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`SpaceDilation::new`].
+pub fn minimise(
+    f: &mut impl Subdifferentiable,
+    x: Vec<f64>,
+    options: DilationOptions,
+    limits: Limits,
+) -> Result<(Minimum, Termination)> {
+    let scales = vec![1.0; x.len()];
+    let mut search = SpaceDilation::new(x, scales, options, f)?;
+    let mut stall = Stall::new(search.best.value, limits.stall);
+    for _ in 0..limits.iterations {
+        if search.best.value <= limits.target {
+            return Ok((search.best, Termination::Converged));
+        }
+        if let Some(termination) = search.advance(f) {
+            return Ok((search.best, termination));
+        }
+        if stall.is_reached(search.best.value) {
+            return Ok((search.best, Termination::Stalled));
+        }
+    }
+    let reached = search.best.value <= limits.target;
+    Ok((search.best, if reached { Termination::Converged } else { Termination::EpochsUsed }))
+}
+
+fn diagonal(scales: &[f64]) -> Vec<f64> {
+    let n = scales.len();
+    let mut matrix = vec![0.0; n * n];
+    for (i, scale) in scales.iter().enumerate() {
+        matrix[i * n + i] = *scale;
+    }
+    matrix
+}
+
+fn norm(v: &[f64]) -> f64 {
+    dot(v, v).sqrt()
+}
+
+fn norm_in(v: &[f64], scales: &[f64]) -> f64 {
+    v.iter().zip(scales).map(|(v, scale)| (v / scale).powi(2)).sum::<f64>().sqrt()
+}
+
+fn is_usable(value: f64, gradient: &[f64]) -> bool {
+    value.is_finite() && gradient.iter().all(|g| g.is_finite())
+}

@@ -1,0 +1,81 @@
+//! Random networks to start from.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::fit::network::objective::Objective;
+use crate::network::{Architecture, Layout};
+use crate::random::normal;
+
+/// Thresholds start between this share of the largest input and the whole of it.
+const SMALLEST_THRESHOLD: f64 = 0.01;
+
+/// Spread of the weights of the rate, next to 1 for the input.
+const RATE_WEIGHT: f64 = 0.3;
+
+/// Capacities that stops are drawn with: ln β is normal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Capacities {
+    /// Median of β.
+    pub typical: f64,
+    /// Standard deviation of ln β.
+    pub spread: f64,
+}
+
+/// Capacities that a search starts from.
+const CAPACITIES: Capacities = Capacities { typical: 1000.0, spread: 1.0 };
+
+/// Parameters of start number `start`. Each start has its own generator, so that it does not matter
+/// which thread draws first.
+pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {
+    let seed = seed ^ (start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    draw(objective.architecture(), CAPACITIES, objective.time_scales(), seed)
+}
+
+/// Parameters of a network: thresholds spread evenly in their logarithm over the input range, relaxation
+/// times likewise over the shortest and the longest span of time, all else drawn at random.
+pub(crate) fn draw(
+    architecture: &Architecture,
+    capacities: Capacities,
+    time_scales: Option<(f64, f64)>,
+    seed: u64,
+) -> Vec<f64> {
+    let layout = Layout::new(*architecture);
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut values = vec![0.0; layout.len()];
+    let channels = architecture.channels();
+    let first_further_input = 1 + usize::from(architecture.rate);
+    for (j, weights) in values[layout.stop_weights.clone()].chunks_exact_mut(channels).enumerate() {
+        let place = (j as f64 + generator.random::<f64>()) / architecture.stops as f64;
+        let threshold = SMALLEST_THRESHOLD.powf(1.0 - place);
+        weights[0] = 1.0 / threshold;
+        if architecture.rate {
+            weights[1] = RATE_WEIGHT * normal(&mut generator) / threshold;
+        }
+        for weight in &mut weights[first_further_input..] {
+            *weight = normal(&mut generator) / threshold;
+        }
+    }
+    for ln_beta in &mut values[layout.ln_beta.clone()] {
+        *ln_beta = capacities.typical.ln() + capacities.spread * normal(&mut generator);
+    }
+    for (c, weight) in values[layout.linear.clone()].iter_mut().enumerate() {
+        *weight = if c == 0 { 1.0 } else { RATE_WEIGHT * normal(&mut generator) };
+    }
+    if let Some((step, longest)) = time_scales {
+        for (m, ln_tau) in values[layout.ln_tau.clone()].iter_mut().enumerate() {
+            let place = (m % architecture.relaxation) as f64 + generator.random::<f64>();
+            let share = place / architecture.relaxation as f64;
+            *ln_tau = step.ln() + share * (longest / step).ln();
+        }
+    }
+    let run = 1 + architecture.memory_neurons();
+    let spread = 1.0 / (run as f64).sqrt();
+    for neuron in values[layout.hidden.clone()].chunks_exact_mut(run) {
+        for weight in neuron {
+            *weight = spread * normal(&mut generator);
+        }
+    }
+    layout.clamp(&mut values);
+    values
+}

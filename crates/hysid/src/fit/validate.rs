@@ -1,0 +1,42 @@
+//! Cross-validation of a model that is identified on every fold.
+
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::identify;
+use crate::fit::network::{Observer, Progress};
+use crate::options::Request;
+use crate::validation::{CrossValidation, CrossValidator};
+
+/// Identifies a model on each fold and judges it on what was held out. The observer is as in
+/// [`identify`]; its share of the work done is that of all folds. After it has said stop, the fold under way is
+/// judged with its best model so far, and no further one is begun.
+///
+/// # Errors
+/// Data too few for two folds, and as [`identify`].
+pub fn cross_validate(
+    data: &Dataset,
+    request: &Request,
+    most_folds: usize,
+    observer: &mut Observer<'_>,
+) -> Result<CrossValidation> {
+    let mut validator = CrossValidator::new(data, most_folds)?;
+    let count = validator.folds();
+    for place in 0..count {
+        let fold = validator.fold(place);
+        let mut stopped = false;
+        let mut of_fold = |progress: &Progress| {
+            let share = (place as f64 + progress.done) / count as f64;
+            let flow = observer(&progress.of_part(share));
+            stopped = flow.is_break();
+            flow
+        };
+        match identify(&fold.train, request, &mut of_fold) {
+            Err(Error::Stopped) if place > 0 => break,
+            fitted => validator.judge(&fold, &fitted?.model)?,
+        };
+        if stopped {
+            break;
+        }
+    }
+    Ok(validator.result().expect("every fold has rows to judge on"))
+}

@@ -1,0 +1,157 @@
+//! Degradation and pinching of a Bouc-Wen element after Baber and Noori.
+//!
+//! ```text
+//! de  = (z/z_u) dx/z_u                                                      theory.md (8.8)
+//! A = max(0, 1 - δA e),   ν = 1 + δν e,   η = 1 + δη e                      theory.md (8.9)
+//! h   = 1 - ζ1 exp(-(z/z_u sgn(dx) - q ν^{-1/n})²/ζ2²)                      theory.md (8.10)
+//! ζ1  = ζs (1 - e^{-pe}),   ζ2 = (ψ0 + δψ e)(λ + ζ1)                        theory.md (8.11)
+//! ```
+
+use serde::{Deserialize, Serialize};
+
+use crate::law::{Dimension, Parameter};
+
+use super::Inner;
+
+/// Largest energy counted: what has taken up so much is long without strength.
+const LARGEST_ENERGY: f64 = 1e9;
+
+/// An element so much quicker than when untouched follows its yield force, which sinks slowly, closely.
+const QUICK: f64 = 4.0;
+
+/// How near to the yield force that is, as a share of it.
+const AT_REST: f64 = 1e-3;
+
+/// The energy within its limits; it is not negative, whatever `b`.
+pub(super) fn limited(e: f64) -> f64 {
+    e.clamp(0.0, LARGEST_ENERGY)
+}
+
+/// How the element changes with the energy `e` that it has taken up, which is counted in yield forces
+/// times yield displacements. All are pure numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Degradation {
+    /// `δA`: loss of tangent stiffness.
+    pub delta_a: f64,
+    /// `δν`: loss of strength.
+    pub delta_nu: f64,
+    /// `δη`: loss of stiffness.
+    pub delta_eta: f64,
+    /// `ζs`: pinching in the end, 0 (none) to 0.99 (nearly no stiffness at its centre).
+    pub zeta_s: f64,
+    /// `p`: how fast pinching begins.
+    pub p: f64,
+    /// `q`: centre of the pinched range, as a share of the ultimate `z`.
+    pub q: f64,
+    /// `ψ0`: width of the pinched range.
+    pub psi_0: f64,
+    /// `δψ`: its growth.
+    pub delta_psi: f64,
+    /// `λ`: width while pinching is slight.
+    pub lambda: f64,
+}
+
+/// Bounds of each parameter, in the order of the fields.
+pub(super) const BOUNDS: [(f64, f64); 9] = [
+    (0.0, 1.0),
+    (0.0, 10.0),
+    (0.0, 10.0),
+    (0.0, 0.99),
+    (0.0, 100.0),
+    (-1.0, 1.0),
+    (0.01, 10.0),
+    (0.0, 1.0),
+    (0.01, 10.0),
+];
+
+/// `A`, `ν`, `η`, `ζ1`, `ζ2` and the centre of the pinched range at one energy.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Properties {
+    a: f64,
+    nu: f64,
+    eta: f64,
+    zeta_1: f64,
+    zeta_2: f64,
+    centre: f64,
+}
+
+impl Properties {
+    /// `dz/dx` on the way up, theory.md (8.6); `softening` is `|z/z_u|^n` with its share.
+    pub fn slope(&self, z: f64, softening: f64) -> f64 {
+        let distance = (z - self.centre) / self.zeta_2;
+        let h = 1.0 - self.zeta_1 * (-distance * distance).exp();
+        h / self.eta * (self.a - self.nu * softening)
+    }
+}
+
+impl Degradation {
+    pub(crate) fn from_values(values: [f64; 9]) -> Self {
+        let [delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda] = values;
+        Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda }
+    }
+
+    /// The properties of an element that has taken up the energy `e`.
+    pub(super) fn at(&self, n: f64, e: f64) -> Properties {
+        let e = limited(e);
+        let nu = 1.0 + self.delta_nu * e;
+        let zeta_1 = self.zeta_s * (1.0 - (-self.p * e).exp());
+        Properties {
+            a: (1.0 - self.delta_a * e).max(0.0),
+            nu,
+            eta: 1.0 + self.delta_eta * e,
+            zeta_1,
+            zeta_2: (self.psi_0 + self.delta_psi * e) * (self.lambda + zeta_1),
+            centre: self.q * nu.powf(-1.0 / n),
+        }
+    }
+
+    /// `z` at which the element yields on the way up.
+    fn ultimate(&self, n: f64, e: f64) -> f64 {
+        ((1.0 - self.delta_a * e).max(0.0) / (1.0 + self.delta_nu * e)).powf(1.0 / n)
+    }
+
+    /// True if the element is so quick that it has come to its yield force and will only follow it.
+    pub(super) fn is_at_rest(&self, n: f64, z: f64, e: f64) -> bool {
+        z >= 0.0 && self.quickness(n, z, e) > QUICK && {
+            let ultimate = self.ultimate(n, e);
+            (z - ultimate).abs() <= AT_REST * ultimate + 1e-9
+        }
+    }
+
+    /// The element after it has yielded upwards by `by`; the energy to second order.
+    pub(super) fn yielding(&self, n: f64, Inner { z, e }: Inner, by: f64) -> Inner {
+        let middle = self.ultimate(n, limited(e + 0.5 * by * z));
+        let e = limited(e + by * middle);
+        Inner { z: self.ultimate(n, e), e }
+    }
+
+    /// How much faster the degraded element comes to rest at its yield force than the untouched one.
+    pub(super) fn quickness(&self, n: f64, z: f64, e: f64) -> f64 {
+        let largest = z.abs().max(self.ultimate(n, e));
+        (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e) * largest.powf(n - 1.0)
+    }
+
+    /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range asks for.
+    pub(super) fn narrowness(&self) -> f64 {
+        (0.5 / (self.psi_0 * (self.lambda + self.zeta_s))).clamp(1.0, 2.0)
+    }
+
+    pub(super) fn parameters(&self) -> Vec<Parameter> {
+        let values = [
+            ("δA", "loss of tangent stiffness", self.delta_a),
+            ("δν", "loss of strength", self.delta_nu),
+            ("δη", "loss of stiffness", self.delta_eta),
+            ("ζs", "pinching in the end", self.zeta_s),
+            ("p", "how fast pinching begins", self.p),
+            ("q", "centre of the pinched range", self.q),
+            ("ψ0", "width of the pinched range", self.psi_0),
+            ("δψ", "growth of that width", self.delta_psi),
+            ("λ", "width while pinching is slight", self.lambda),
+        ];
+        let parameter = |((symbol, meaning, value), bounds)| {
+            Parameter::new(symbol, meaning, value, bounds, Dimension::NONE)
+        };
+        values.into_iter().zip(BOUNDS).map(parameter).collect()
+    }
+}

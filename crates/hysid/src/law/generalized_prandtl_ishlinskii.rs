@@ -1,0 +1,157 @@
+//! Generalized Prandtl-Ishlinskii model: plays between two bent envelopes in place of two straight
+//! lines, which saturates and need not be symmetric.
+//!
+//! ```text
+//! S_k  = max(γ_l(x_k) - r, min(γ_r(x_k) + r, S_{k-1}))                      theory.md (8.12)
+//! γ(x) = a0 tanh(a1 x + a2) + a3                                            theory.md (8.13)
+//! y    = c + Σ_j p(r_j) S_j,   r_j = α j,   j = 0 ... N                     theory.md (8.14)
+//! ```
+//!
+//! Each play follows `γ_l - r` upwards and `γ_r + r` downwards and rests in between. Thresholds and
+//! envelopes are pure numbers; the weights carry the unit of the output. Rate independent, with
+//! return-point memory. Source: Al Janaideh, Rakheja and Su (2010, 2011); form of the eleven parameters
+//! as in the program of Basaeri et al. (2019).
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{LARGEST_VALUE, Result};
+pub use crate::law::play_weights::PlayWeights;
+use crate::law::{Dimension, Law, Parameter, Sample};
+
+/// Largest magnitude of what an envelope is made of: sums of weighted plays stay finite.
+const LARGEST: f64 = 1e100;
+
+/// An envelope `a0 tanh(a1 x + a2) + a3`: theory.md (8.13).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Envelope {
+    /// Height, not negative.
+    pub a0: f64,
+    /// Steepness, not negative, in one over the unit of the input.
+    pub a1: f64,
+    /// Shift.
+    pub a2: f64,
+    /// Level.
+    pub a3: f64,
+}
+
+impl Envelope {
+    /// The envelope from `[a0, a1, a2, a3]`.
+    pub fn new([a0, a1, a2, a3]: [f64; 4]) -> Self {
+        Self { a0, a1, a2, a3 }
+    }
+
+    /// The envelope at an input.
+    pub fn value(&self, x: f64) -> f64 {
+        self.a0 * (self.a1 * x + self.a2).tanh() + self.a3
+    }
+
+    fn parameters(&self, side: char) -> [Parameter; 4] {
+        let (any, positive) = ((-LARGEST, LARGEST), (0.0, LARGEST));
+        let steepness = Dimension { input: -1, output: 0, time: 0 };
+        let symbol = |name: &str| format!("{name}{side}");
+        [
+            Parameter::new(symbol("a0_"), "height of an envelope", self.a0, positive, Dimension::NONE),
+            Parameter::new(symbol("a1_"), "steepness of an envelope", self.a1, positive, steepness),
+            Parameter::new(symbol("a2_"), "shift of an envelope", self.a2, any, Dimension::NONE),
+            Parameter::new(symbol("a3_"), "level of an envelope", self.a3, any, Dimension::NONE),
+        ]
+    }
+}
+
+/// A generalized Prandtl-Ishlinskii model in the user's units.
+///
+/// ```
+/// use hysid::law::generalized_prandtl_ishlinskii::*;
+/// use hysid::law::{Law, Sample};
+/// let gamma = Envelope::new([6.0, 0.4, 0.0, 0.0]);
+/// let law = GeneralizedPrandtlIshlinskii {
+///     offset: 0.0,
+///     left: gamma,
+///     right: gamma,
+///     initial: 0.0,
+///     spacing: 0.45,
+///     weights: PlayWeights::Exponential { plays: 7, rho: 0.65, tau: 7.75e-4 },
+/// };
+/// let mut state = law.virgin();
+/// let y = law.step(&mut state, Sample { x: 5.0, rate: 0.0, step: 0.0 });
+/// assert!((y - 20.157).abs() < 1e-3);
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GeneralizedPrandtlIshlinskii {
+    /// `c`, in the unit of the output.
+    pub offset: f64,
+    /// `γ_l`, followed upwards.
+    pub left: Envelope,
+    /// `γ_r`, followed downwards.
+    pub right: Envelope,
+    /// Where every play is before the first sample: 0 is virgin; a value above `γ_r + r` begins as after
+    /// a large input that has been lowered.
+    pub initial: f64,
+    /// `α`: spacing of the thresholds, not negative.
+    pub spacing: f64,
+    /// `p_j`, in the unit of the output.
+    pub weights: PlayWeights,
+}
+
+impl GeneralizedPrandtlIshlinskii {
+    /// The law itself if its parameters are within their bounds.
+    ///
+    /// # Errors
+    /// A parameter that is not.
+    pub fn validated(self) -> Result<Self> {
+        const NAME: &str = "generalized Prandtl-Ishlinskii";
+        for parameter in self.parameters() {
+            parameter.check(NAME)?;
+        }
+        self.weights.check(NAME, self.spacing, 0)?;
+        Ok(self)
+    }
+}
+
+impl Law for GeneralizedPrandtlIshlinskii {
+    /// `S` of every play.
+    type State = Vec<f64>;
+
+    fn virgin(&self) -> Vec<f64> {
+        vec![self.initial; self.weights.plays()]
+    }
+
+    fn step(&self, state: &mut Vec<f64>, sample: Sample) -> f64 {
+        let sample = sample.limited();
+        let (left, right) = (self.left.value(sample.x), self.right.value(sample.x));
+        let mut y = self.offset;
+        let mut r = 0.0;
+        self.weights.for_each(self.spacing, 0, |index, weight| {
+            let play = &mut state[index];
+            *play = (left - r).max((right + r).min(*play));
+            y += weight * *play;
+            r = self.spacing * (index + 1) as f64;
+        });
+        y
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (-LARGEST_VALUE, LARGEST_VALUE);
+        let mut all = vec![Parameter::new("c", "level of the output", self.offset, any, Dimension::OUTPUT)];
+        all.extend(self.left.parameters('l'));
+        all.extend(self.right.parameters('r'));
+        all.push(Parameter::new(
+            "S_-1",
+            "plays before the first sample",
+            self.initial,
+            (-LARGEST, LARGEST),
+            Dimension::NONE,
+        ));
+        all.push(Parameter::new(
+            "α",
+            "spacing of the thresholds",
+            self.spacing,
+            (0.0, LARGEST),
+            Dimension::NONE,
+        ));
+        all.extend(self.weights.parameters("p", 0, Dimension::OUTPUT, Dimension::NONE));
+        all
+    }
+}

@@ -1,0 +1,200 @@
+//! Jiles-Atherton: domain walls that are pinned on their way to the anhysteretic magnetisation.
+//!
+//! ```text
+//! y   = c0 + μ H + M,   H_e = H + α M,   M_an = M_s (coth(H_e/a) - a/H_e)   theory.md (8.22)
+//! dM/dH = δ_M (M_an - M)/{(1 + c)[δk - α(M_an - M)]} + c/(1 + c) dM_an/dH_e   1986   theory.md (8.23)
+//! dM/dH = N/(1 - α N),   N = δ_M (M_an - M)/(δk) + c dM_an/dH_e             1992   theory.md (8.24)
+//! ```
+//!
+//! `δ` is the direction of the field; `δ_M` is 0 while `M_an - M` opposes it, else 1, so that the
+//! susceptibility is never negative. Source: Jiles and Atherton 1986; Jiles, Thoelke and Devine 1992; form of
+//! the first as in the program JAmodel of Szewczyk. Minor loops do not close.
+//!
+//! Ours are the guards of (8.25): where the feedback `α` would make the susceptibility infinite it is
+//! limited. The field is moved in small parts of `a` and `k`, so that the sampling does not matter.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::{Dimension, Law, Parameter, Sample};
+
+/// Longest part of the field moved in one step of Runge and Kutta, as a share of the smaller of `a` and
+/// `k`.
+const LONGEST_PART: f64 = 0.05;
+
+/// Parts of a single step of the input at most.
+const MOST_PARTS: f64 = 4000.0;
+
+/// Beyond so many times `a + k + α M_s` the material is saturated and nothing more is computed.
+const SATURATED: f64 = 300.0;
+
+/// `δk - α(M_an - M)` is not below this share of `k`: theory.md (8.25).
+const LEAST_PINNING: f64 = 0.02;
+
+/// `α N` is not above this: theory.md (8.25).
+const LARGEST_FEEDBACK: f64 = 0.98;
+
+/// Bounds of `c`.
+pub(crate) const C_BOUNDS: (f64, f64) = (0.0, 0.99);
+
+/// Which differential equation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum JilesAthertonForm {
+    /// theory.md (8.23), of 1986.
+    #[default]
+    Original,
+    /// theory.md (8.24), of 1992: reversible and irreversible magnetisation apart.
+    Differential,
+}
+
+/// A Jiles-Atherton law in the user's units: the input is the field `H`, the output `B` or `M`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JilesAtherton {
+    /// `c0`, in the unit of the output.
+    pub offset: f64,
+    /// `μ`: share of the field itself in the output.
+    pub permeability: f64,
+    /// `M_s`: saturation magnetisation, in the unit of the output.
+    pub saturation: f64,
+    /// `a > 0`: width of the anhysteretic curve, in the unit of the input.
+    pub a: f64,
+    /// `k > 0`: pinning, near to the coercive field, in the unit of the input.
+    pub k: f64,
+    /// `α M_s`, from 0 to `3a`: the field that the saturated magnetisation adds, in the unit of the
+    /// input. From `3a` on the anhysteretic curve would have a loop of its own.
+    pub coupling: f64,
+    /// `c`, 0 to 0.99: share of the reversible magnetisation.
+    pub c: f64,
+    /// Which differential equation.
+    pub form: JilesAthertonForm,
+}
+
+/// Field and magnetisation, the latter as a share of `M_s`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct JilesAthertonState {
+    h: f64,
+    m: f64,
+}
+
+impl JilesAtherton {
+    /// The law itself if its parameters are within their bounds.
+    ///
+    /// # Errors
+    /// A parameter that is not.
+    pub fn validated(self) -> Result<Self> {
+        for parameter in self.parameters() {
+            parameter.check("Jiles-Atherton")?;
+        }
+        if !(self.a > 0.0 && self.k > 0.0) {
+            return Err(Error::Option("Jiles-Atherton: a and k must be positive".into()));
+        }
+        Ok(self)
+    }
+
+    /// `α`, in the unit of the input for that of the output; infinite or NaN without saturation.
+    pub fn alpha(&self) -> f64 {
+        self.coupling / self.saturation
+    }
+
+    /// Elementary operations, roughly, that [`Self::advance`] takes.
+    pub(crate) fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
+        let end = SATURATED * (self.a + self.k + self.coupling);
+        let travel = (h - state.h).abs().min(2.0 * end);
+        let parts = (travel / (LONGEST_PART * self.a.min(self.k))).min(MOST_PARTS);
+        20 + 200 * parts as usize
+    }
+
+    /// Takes the next field and gives `M/M_s`.
+    pub(crate) fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
+        let direction = (h - state.h).signum();
+        let end = SATURATED * (self.a + self.k + self.coupling);
+        let (from, to) = ((direction * state.h).clamp(-end, end), (direction * h).clamp(-end, end));
+        state.h = h;
+        if to > from {
+            // The law is odd: downwards is upwards in a mirror.
+            let part = LONGEST_PART * self.a.min(self.k);
+            let parts = ((to - from) / part).ceil().clamp(1.0, MOST_PARTS);
+            let part = (to - from) / parts;
+            let mut m = direction * state.m;
+            for index in 0..parts as usize {
+                m = self.runge_kutta(from + part * index as f64, m, part);
+            }
+            state.m = direction * m;
+        }
+        state.m
+    }
+
+    fn runge_kutta(&self, h: f64, m: f64, by: f64) -> f64 {
+        let k1 = self.slope(h, m);
+        let k2 = self.slope(h + 0.5 * by, m + 0.5 * by * k1);
+        let k3 = self.slope(h + 0.5 * by, m + 0.5 * by * k2);
+        let k4 = self.slope(h + by, m + by * k3);
+        (m + by * (k1 + 2.0 * (k2 + k3) + k4) / 6.0).clamp(-1.0, 1.0)
+    }
+
+    /// `d(M/M_s)/dH` on the way up; never negative.
+    fn slope(&self, h: f64, m: f64) -> f64 {
+        let (langevin, steepness) = langevin((h + self.coupling * m) / self.a);
+        let anhysteretic = steepness / self.a;
+        let missing = (langevin - m).max(0.0);
+        match self.form {
+            JilesAthertonForm::Original => {
+                let pinning = (self.k - self.coupling * missing).max(LEAST_PINNING * self.k);
+                (missing / pinning + self.c * anhysteretic) / (1.0 + self.c)
+            }
+            JilesAthertonForm::Differential => {
+                let n = missing / self.k + self.c * anhysteretic;
+                n / (1.0 - (self.coupling * n).min(LARGEST_FEEDBACK))
+            }
+        }
+    }
+}
+
+/// `coth x - 1/x` and its derivative.
+fn langevin(x: f64) -> (f64, f64) {
+    let square = x * x;
+    if square < 0.0025 {
+        let value = x / 3.0 * (1.0 - square / 15.0 * (1.0 - 2.0 / 21.0 * square));
+        return (value, 1.0 / 3.0 - square / 15.0 + 2.0 / 189.0 * square * square);
+    }
+    let decline = (-2.0 * x.abs()).exp();
+    let rest = 1.0 - decline;
+    let value = (1.0 + decline) / rest - 1.0 / x.abs();
+    (value.copysign(x), 1.0 / square - 4.0 * decline / (rest * rest))
+}
+
+impl Law for JilesAtherton {
+    type State = JilesAthertonState;
+
+    fn virgin(&self) -> JilesAthertonState {
+        JilesAthertonState::default()
+    }
+
+    fn step(&self, state: &mut JilesAthertonState, sample: Sample) -> f64 {
+        let sample = sample.limited();
+        let m = self.advance(state, sample.x);
+        self.offset + self.permeability * sample.x + self.saturation * m
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (-LARGEST_VALUE, LARGEST_VALUE);
+        let positive = (0.0, LARGEST_VALUE);
+        vec![
+            Parameter::new("c0", "level of the output", self.offset, any, Dimension::OUTPUT),
+            Parameter::new("μ", "share of the field itself", self.permeability, any, Dimension::SLOPE),
+            Parameter::new("M_s", "saturation magnetisation", self.saturation, any, Dimension::OUTPUT),
+            Parameter::new("a", "width of the anhysteretic curve", self.a, positive, Dimension::INPUT),
+            Parameter::new("k", "pinning", self.k, positive, Dimension::INPUT),
+            Parameter::new(
+                "αM_s",
+                "field of the saturated magnetisation",
+                self.coupling,
+                (0.0, 3.0 * self.a),
+                Dimension::INPUT,
+            ),
+            Parameter::new("c", "reversible share", self.c, C_BOUNDS, Dimension::NONE),
+        ]
+    }
+}

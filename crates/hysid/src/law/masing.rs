@@ -1,0 +1,147 @@
+//! Masing's rule: every branch is the virgin curve, twice as large.
+//!
+//! ```text
+//! virgin:   y = c + g(x)                                              theory.md (7.3)
+//! branch:   y = y* + 2 g((x - x*)/2)      from the turning point (x*, y*)
+//! g(x) = Σ_j m_j [clip(x; -r_j, r_j) - clip(x; -r_{j-1}, r_{j-1})]
+//! ```
+//!
+//! The virgin curve `g` is odd and a polygon: `m_j` is its slope between the thresholds `r_{j-1}` and
+//! `r_j`, and the last slope goes on for ever. A branch that meets the one before goes on along that
+//! (Madelung), see [`turning_point_stack`](crate::law::turning_point_stack). The rule so extended
+//! is the Prandtl model: along the stack the terms of `g` add up to stops,
+//! `y = c + Σ_j (m_j - m_{j+1}) ε_{r_j}[x] + m_{n+1} x`, theory.md (7.13), so the model is linear in its slopes.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::law::thresholds::{check_thresholds, check_weights, limited};
+use crate::law::turning_point_stack::{Branch, TurningPointStack};
+use crate::law::{Dimension, Law, Parameter, Sample};
+
+/// A model by Masing's rule.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "MasingParts", into = "MasingParts")]
+pub struct Masing {
+    parts: MasingParts,
+    /// `g` at each threshold.
+    heights: Vec<f64>,
+}
+
+/// What a model by Masing's rule consists of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MasingParts {
+    /// Constant `c`, in the unit of the output.
+    pub constant: f64,
+    /// Thresholds `r_1 < r_2 < ...` where the virgin curve bends, in the unit of the input, positive.
+    pub thresholds: Vec<f64>,
+    /// Slopes `m_j` of the virgin curve, output for input: one below each threshold, one beyond the
+    /// last.
+    pub slopes: Vec<f64>,
+}
+
+impl TryFrom<MasingParts> for Masing {
+    type Error = Error;
+
+    fn try_from(parts: MasingParts) -> Result<Self> {
+        Self::new(parts)
+    }
+}
+
+impl From<Masing> for MasingParts {
+    fn from(model: Masing) -> Self {
+        model.parts
+    }
+}
+
+impl Masing {
+    /// A model from its parts.
+    ///
+    /// # Errors
+    /// Thresholds that are not positive, finite and rising; not one slope more than thresholds; a slope
+    /// or constant that is not finite or beyond 1e100.
+    pub fn new(parts: MasingParts) -> Result<Self> {
+        check_thresholds(&parts.thresholds)?;
+        check_weights(&parts.slopes)?;
+        check_weights(&[parts.constant])?;
+        if parts.slopes.len() != parts.thresholds.len() + 1 {
+            return Err(Error::Option(format!(
+                "{} slopes where {} thresholds need {}",
+                parts.slopes.len(),
+                parts.thresholds.len(),
+                parts.thresholds.len() + 1
+            )));
+        }
+        let (mut height, mut from) = (0.0, 0.0);
+        let mut rise = |(&r, &slope): (&f64, &f64)| {
+            height += slope * (r - from);
+            from = r;
+            height
+        };
+        let heights = parts.thresholds.iter().zip(&parts.slopes).map(&mut rise).collect();
+        Ok(Self { parts, heights })
+    }
+
+    /// Its parts.
+    pub fn parts(&self) -> &MasingParts {
+        &self.parts
+    }
+
+    /// The virgin curve `g` at an input.
+    pub fn virgin_curve(&self, x: f64) -> f64 {
+        let (size, thresholds) = (x.abs(), &self.parts.thresholds);
+        let piece = thresholds.partition_point(|&r| r <= size);
+        let (from, height) =
+            if piece == 0 { (0.0, 0.0) } else { (thresholds[piece - 1], self.heights[piece - 1]) };
+        (height + self.parts.slopes[piece] * (size - from)).copysign(x) * if x == 0.0 { 0.0 } else { 1.0 }
+    }
+}
+
+impl Law for Masing {
+    /// Turning points with the output there, the constant left out.
+    type State = TurningPointStack<f64>;
+
+    fn virgin(&self) -> Self::State {
+        TurningPointStack::default()
+    }
+
+    fn step(&self, stack: &mut Self::State, sample: Sample) -> f64 {
+        let x = limited(sample.x);
+        stack.advance(x, 0.0);
+        let y = match stack.branch() {
+            Branch::Virgin => self.virgin_curve(x),
+            Branch::From { start, .. } => start.value + 2.0 * self.virgin_curve(0.5 * (x - start.x)),
+        };
+        stack.set_value(y);
+        self.parts.constant + y
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let parameter =
+            |symbol: String, meaning, value, bounds, unit| Parameter { symbol, meaning, value, bounds, unit };
+        let mut all =
+            vec![parameter("c".into(), "output constant", self.parts.constant, any, Dimension::OUTPUT)];
+        for (j, &r) in self.parts.thresholds.iter().enumerate() {
+            let positive = (0.0, f64::INFINITY);
+            all.push(parameter(
+                format!("r_{}", j + 1),
+                "bend of the virgin curve",
+                r,
+                positive,
+                Dimension::INPUT,
+            ));
+        }
+        for (j, &m) in self.parts.slopes.iter().enumerate() {
+            all.push(parameter(
+                format!("m_{}", j + 1),
+                "slope of the virgin curve",
+                m,
+                any,
+                Dimension::SLOPE,
+            ));
+        }
+        all
+    }
+}

@@ -1,0 +1,168 @@
+//! Modified Prandtl-Ishlinskii model: plays, then one-sided dead zones that bend their sum.
+//!
+//! ```text
+//! y = S[H[x]],   H[x] = c + w_0 x + Σ_i w_i P_{r_i}[x]                        theory.md (7.6)
+//! S(z) = c_S + w_S0 z + Σ_j w_Sj S_{r_Sj}(z)
+//! S_r(z) = max(z - r, 0) for r > 0,   min(z - r, 0) for r < 0
+//! ```
+//!
+//! `S` is a rising polygon. Its loops need not be symmetric, which those of a Prandtl-Ishlinskii model
+//! are; they still wipe out. Source: Kuhnen, "Modeling, identification and compensation of complex
+//! hysteretic nonlinearities", European Journal of Control (2003).
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::thresholds::check_weights;
+use crate::law::{Dimension, Law, Parameter, Sample};
+
+/// A modified Prandtl-Ishlinskii model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModifiedPrandtlIshlinskii {
+    hysteresis: PrandtlIshlinskii,
+    superposition: DeadZones,
+}
+
+/// A sum of one-sided dead zones: a rising polygon through `(0, c_S)`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "DeadZoneParts", into = "DeadZoneParts")]
+pub struct DeadZones {
+    pub(crate) parts: DeadZoneParts,
+}
+
+/// What a sum of dead zones consists of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeadZoneParts {
+    /// `c_S`, in the unit of the output.
+    pub constant: f64,
+    /// `w_S0`, the slope at 0.
+    pub linear: f64,
+    /// Thresholds `r_Sj`, rising, none of them 0; in the unit of the sum of plays.
+    pub thresholds: Vec<f64>,
+    /// Weights `w_Sj`: by how much the slope changes at the threshold, going away from 0.
+    pub weights: Vec<f64>,
+}
+
+impl TryFrom<DeadZoneParts> for DeadZones {
+    type Error = Error;
+
+    fn try_from(parts: DeadZoneParts) -> Result<Self> {
+        Self::new(parts)
+    }
+}
+
+impl From<DeadZones> for DeadZoneParts {
+    fn from(zones: DeadZones) -> Self {
+        zones.parts
+    }
+}
+
+impl DeadZones {
+    /// Dead zones from their parts.
+    ///
+    /// # Errors
+    /// Thresholds that are not finite and rising, or 0; a weight that is not usable; a slope somewhere
+    /// that is not positive.
+    pub fn new(parts: DeadZoneParts) -> Result<Self> {
+        check_weights(&parts.thresholds)?;
+        check_weights(&parts.weights)?;
+        check_weights(&[parts.constant, parts.linear])?;
+        if parts.thresholds.contains(&0.0) || parts.thresholds.windows(2).any(|pair| pair[1] <= pair[0]) {
+            return Err(Error::Option("thresholds of dead zones must rise, and none be 0".into()));
+        }
+        if parts.thresholds.len() != parts.weights.len() {
+            return Err(Error::Option(format!(
+                "{} thresholds and {} weights of dead zones: there must be one for each",
+                parts.thresholds.len(),
+                parts.weights.len()
+            )));
+        }
+        let zones = Self { parts };
+        match zones.slopes().into_iter().find(|&slope| slope <= 0.0) {
+            Some(slope) => {
+                Err(Error::Option(format!("dead zones with a slope of {slope}: it must be positive")))
+            }
+            None => Ok(zones),
+        }
+    }
+
+    /// What they consist of.
+    pub fn parts(&self) -> &DeadZoneParts {
+        &self.parts
+    }
+
+    /// Value at `z`.
+    pub fn value(&self, z: f64) -> f64 {
+        let parts = &self.parts;
+        let zones = parts.thresholds.iter().zip(&parts.weights);
+        parts.constant + parts.linear * z + zones.map(|(&r, w)| w * dead_zone(z, r)).sum::<f64>()
+    }
+
+    /// Slopes of all pieces, from the lowest to the highest.
+    pub fn slopes(&self) -> Vec<f64> {
+        let parts = &self.parts;
+        let negative = parts.thresholds.partition_point(|&r| r < 0.0);
+        let mut slopes = vec![parts.linear; parts.thresholds.len() + 1];
+        for j in (0..negative).rev() {
+            slopes[j] = slopes[j + 1] + parts.weights[j];
+        }
+        for j in negative..parts.thresholds.len() {
+            slopes[j + 1] = slopes[j] + parts.weights[j];
+        }
+        slopes
+    }
+}
+
+/// `S_r(z)`
+#[inline(always)]
+pub(crate) fn dead_zone(z: f64, r: f64) -> f64 {
+    if r > 0.0 { (z - r).max(0.0) } else { (z - r).min(0.0) }
+}
+
+impl ModifiedPrandtlIshlinskii {
+    /// A model from its two parts.
+    pub fn new(hysteresis: PrandtlIshlinskii, superposition: DeadZones) -> Self {
+        Self { hysteresis, superposition }
+    }
+
+    /// `H`, the sum of plays.
+    pub fn hysteresis(&self) -> &PrandtlIshlinskii {
+        &self.hysteresis
+    }
+
+    /// `S`, the dead zones.
+    pub fn superposition(&self) -> &DeadZones {
+        &self.superposition
+    }
+}
+
+impl Law for ModifiedPrandtlIshlinskii {
+    /// The plays.
+    type State = Vec<f64>;
+
+    fn virgin(&self) -> Vec<f64> {
+        self.hysteresis.virgin()
+    }
+
+    fn step(&self, plays: &mut Vec<f64>, sample: Sample) -> f64 {
+        self.superposition.value(self.hysteresis.step(plays, sample))
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let parameter =
+            |symbol: String, meaning, value, unit| Parameter { symbol, meaning, value, bounds: any, unit };
+        let parts = &self.superposition.parts;
+        let mut all = self.hysteresis.parameters();
+        all.push(parameter("c_S".into(), "output constant", parts.constant, Dimension::OUTPUT));
+        all.push(parameter("w_S0".into(), "slope of the dead zones at 0", parts.linear, Dimension::NONE));
+        for (j, (&r, &w)) in parts.thresholds.iter().zip(&parts.weights).enumerate() {
+            all.push(parameter(format!("r_S{}", j + 1), "threshold of a dead zone", r, Dimension::OUTPUT));
+            all.push(parameter(format!("w_S{}", j + 1), "weight of a dead zone", w, Dimension::NONE));
+        }
+        all
+    }
+}

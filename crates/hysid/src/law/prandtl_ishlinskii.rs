@@ -1,0 +1,144 @@
+//! Prandtl-Ishlinskii model in its play form.
+//!
+//! ```text
+//! y = c + w_0 x + Σ_i w_i P_{r_i}[x]                                   theory.md (7.4)
+//! ```
+//!
+//! `P_r` is the play of theory.md (1.2). Because a stop is the input less its play, sums of stops have
+//! the same form. The model wipes out, is congruent, obeys Masing's rule from the virgin state, and its
+//! loops are symmetric about their middle; it can be inverted where all partial sums of the `w_i` are
+//! positive.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::law::thresholds::{check_thresholds, check_weights, limited};
+use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::operator::play;
+
+/// A Prandtl-Ishlinskii model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, try_from = "Parts", into = "Parts")]
+pub struct PrandtlIshlinskii {
+    constant: f64,
+    linear: f64,
+    thresholds: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+/// What a model is stored as.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parts {
+    constant: f64,
+    linear: f64,
+    thresholds: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl TryFrom<Parts> for PrandtlIshlinskii {
+    type Error = Error;
+
+    fn try_from(parts: Parts) -> Result<Self> {
+        Self::new(parts.constant, parts.linear, parts.thresholds, parts.weights)
+    }
+}
+
+impl From<PrandtlIshlinskii> for Parts {
+    fn from(model: PrandtlIshlinskii) -> Self {
+        let PrandtlIshlinskii { constant, linear, thresholds, weights } = model;
+        Self { constant, linear, thresholds, weights }
+    }
+}
+
+impl PrandtlIshlinskii {
+    /// A model from its constant `c` (unit of the output), `w_0`, and the thresholds (unit of the input)
+    /// and weights (output for input) of its plays.
+    ///
+    /// # Errors
+    /// Thresholds that are not positive, finite and rising; a weight that is not finite or beyond 1e50;
+    /// different numbers of both.
+    pub fn new(constant: f64, linear: f64, thresholds: Vec<f64>, weights: Vec<f64>) -> Result<Self> {
+        check_thresholds(&thresholds)?;
+        check_weights(&[&[constant, linear], weights.as_slice()].concat())?;
+        if thresholds.len() != weights.len() {
+            return Err(Error::Option(format!(
+                "{} thresholds and {} weights: there must be one weight for each threshold",
+                thresholds.len(),
+                weights.len()
+            )));
+        }
+        Ok(Self { constant, linear, thresholds, weights })
+    }
+
+    /// The constant `c`, in the unit of the output.
+    pub fn constant(&self) -> f64 {
+        self.constant
+    }
+
+    /// The weight `w_0` of the input, output for input.
+    pub fn linear(&self) -> f64 {
+        self.linear
+    }
+
+    /// Thresholds `r_i` of the plays, in the unit of the input, rising.
+    pub fn thresholds(&self) -> &[f64] {
+        &self.thresholds
+    }
+
+    /// Weights `w_i` of the plays, output for input.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+}
+
+impl Law for PrandtlIshlinskii {
+    /// The plays.
+    type State = Vec<f64>;
+
+    fn virgin(&self) -> Vec<f64> {
+        vec![0.0; self.thresholds.len()]
+    }
+
+    fn step(&self, plays: &mut Vec<f64>, sample: Sample) -> f64 {
+        let x = limited(sample.x);
+        self.constant + self.linear * x + sum_of_plays(plays, x, &self.thresholds, &self.weights)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let parameter =
+            |symbol: String, meaning, value, bounds, unit| Parameter { symbol, meaning, value, bounds, unit };
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut all = vec![
+            parameter("c".into(), "output constant", self.constant, any, Dimension::OUTPUT),
+            parameter("w_0".into(), "weight of the input", self.linear, any, Dimension::SLOPE),
+        ];
+        for (i, (&r, &w)) in self.thresholds.iter().zip(&self.weights).enumerate() {
+            let positive = (0.0, f64::INFINITY);
+            all.push(parameter(format!("r_{}", i + 1), "threshold of a play", r, positive, Dimension::INPUT));
+            all.push(parameter(format!("w_{}", i + 1), "weight of a play", w, any, Dimension::SLOPE));
+        }
+        all
+    }
+}
+
+/// Advances plays and gives their weighted sum, in eight partial sums so that it becomes SIMD code.
+pub(crate) fn sum_of_plays(plays: &mut [f64], x: f64, thresholds: &[f64], weights: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (groups, rest) = plays.as_chunks_mut::<LANES>();
+    let (r, r_rest) = thresholds.as_chunks::<LANES>();
+    let (w, w_rest) = weights.as_chunks::<LANES>();
+    for ((plays, r), w) in groups.iter_mut().zip(r).zip(w) {
+        for l in 0..LANES {
+            plays[l] = play::follow(plays[l], x, r[l]);
+            sums[l] += w[l] * plays[l];
+        }
+    }
+    let mut sum: f64 = sums.iter().sum();
+    for ((play, &r), &w) in rest.iter_mut().zip(r_rest).zip(w_rest) {
+        *play = play::follow(*play, x, r);
+        sum += w * *play;
+    }
+    sum
+}

@@ -1,0 +1,176 @@
+//! The classical Preisach model on a plane of cells.
+//!
+//! ```text
+//! y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]                        theory.md (7.8)
+//! ```
+//!
+//! `R_ij` is the mean output of the relays of cell `(i, j)` of the plane, spread evenly over it;
+//! `m_j` that of relays without width (`α = β`) in interval `j`, which remember nothing: with `k x` it is
+//! the reversible part. The state is the staircase that parts relays up from relays down, a stack of
+//! dominant extrema; a step costs one value of the Everett function, whatever the number of cells.
+//!
+//! The model wipes out and is congruent, and every model that does is one of these (Mayergoyz).
+
+mod everett;
+pub(crate) mod plane;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::law::thresholds::{check_weights, limited};
+use crate::law::turning_point_stack::{Branch, TurningPointStack};
+use crate::law::{Dimension, Law, Parameter, Sample};
+use everett::Everett;
+use plane::Plane;
+
+/// Most intervals of each axis.
+pub(crate) const MOST_INTERVALS: usize = 200;
+
+/// A Preisach model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "PreisachWeights", into = "PreisachWeights")]
+pub struct Preisach {
+    weights: PreisachWeights,
+    /// Output in the virgin state, reversible part left out.
+    virgin: f64,
+    everett: Everett,
+    /// Reversible output at each line, without `k x`.
+    reversible: Vec<f64>,
+}
+
+/// What a Preisach model consists of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PreisachWeights {
+    /// Constant `c`, in the unit of the output.
+    pub constant: f64,
+    /// Slope `k` of the reversible part, output for input.
+    pub slope: f64,
+    /// Places of the `N + 1` lines that cut both axes of the plane, in the unit of the input, rising.
+    /// Beyond them nothing switches.
+    pub lines: Vec<f64>,
+    /// Weights `v_j` of the `N` intervals in the reversible part, in the unit of the output.
+    pub reversible: Vec<f64>,
+    /// Weights `w_ij` of the `N (N + 1)/2` cells in the unit of the output, row by row: `w_00, w_10, w_11, w_20, ...`,
+    /// `i` the interval of `α` (switching up), `j ≤ i` that of `β` (switching down).
+    pub cells: Vec<f64>,
+}
+
+impl TryFrom<PreisachWeights> for Preisach {
+    type Error = Error;
+
+    fn try_from(weights: PreisachWeights) -> Result<Self> {
+        Self::new(weights)
+    }
+}
+
+impl From<Preisach> for PreisachWeights {
+    fn from(model: Preisach) -> Self {
+        model.weights
+    }
+}
+
+impl Preisach {
+    /// A model from its weights.
+    ///
+    /// # Errors
+    /// Fewer than two lines or more than 201, lines that are not finite and rising, numbers of weights
+    /// that do not fit, a weight that is not finite or beyond 1e100.
+    pub fn new(weights: PreisachWeights) -> Result<Self> {
+        let lines = &weights.lines;
+        if lines.len() < 2 || lines.len() > MOST_INTERVALS + 1 {
+            return Err(Error::Option(format!(
+                "{} lines: a plane has 2 to {}",
+                lines.len(),
+                MOST_INTERVALS + 1
+            )));
+        }
+        check_weights(lines)?;
+        if let Some(pair) = lines.windows(2).find(|pair| pair[1] <= pair[0]) {
+            return Err(Error::Option(format!("line {} after {}: lines must rise", pair[1], pair[0])));
+        }
+        let plane = Plane::new(lines.clone());
+        let expected = (plane.intervals(), plane.cells());
+        if (weights.reversible.len(), weights.cells.len()) != expected {
+            return Err(Error::Option(format!(
+                "{} reversible weights and {} cells where {} lines make {} and {}",
+                weights.reversible.len(),
+                weights.cells.len(),
+                lines.len(),
+                expected.0,
+                expected.1
+            )));
+        }
+        check_weights(&[weights.constant, weights.slope])?;
+        check_weights(&weights.reversible)?;
+        check_weights(&weights.cells)?;
+        let virgin = plane.indices().zip(&weights.cells).map(|((i, j), w)| w * plane.virgin_mean(i, j)).sum();
+        let mut reversible = vec![-weights.reversible.iter().sum::<f64>()];
+        for (j, v) in weights.reversible.iter().enumerate() {
+            reversible.push(reversible[j] + 2.0 * v);
+        }
+        Ok(Self { everett: Everett::new(&plane, &weights.cells), virgin, reversible, weights })
+    }
+
+    /// Its weights.
+    pub fn weights(&self) -> &PreisachWeights {
+        &self.weights
+    }
+
+    /// The Everett function: half of what the output falls by, reversible part left out, when the input
+    /// falls from `a` to `b` after having risen from `b` or below; 0 unless `a > b`. Inputs in their
+    /// unit, the value in that of the output: theory.md (7.10).
+    pub fn everett(&self, a: f64, b: f64) -> f64 {
+        self.everett.value(self.everett.place(a), self.everett.place(b))
+    }
+
+    /// `c + k x + Σ v_j m_j(x)`
+    fn reversible_part(&self, x: f64) -> f64 {
+        let (interval, share) = self.everett.place(x).parts();
+        let between = self.reversible[interval] + 2.0 * share * self.weights.reversible[interval];
+        self.weights.constant + self.weights.slope * x + between
+    }
+}
+
+impl Law for Preisach {
+    /// Dominant extrema, each with the output there, reversible part left out.
+    type State = TurningPointStack<f64>;
+
+    fn virgin(&self) -> Self::State {
+        TurningPointStack::default()
+    }
+
+    fn step(&self, stack: &mut Self::State, sample: Sample) -> f64 {
+        let x = limited(sample.x);
+        stack.advance(x, 0.0);
+        let switched = match stack.branch() {
+            Branch::Virgin if x >= 0.0 => self.virgin + 2.0 * self.everett.virgin(x),
+            Branch::Virgin => self.virgin - 2.0 * self.everett.virgin(x),
+            Branch::From { start, .. } if x > start.x => start.value + 2.0 * self.everett(x, start.x),
+            Branch::From { start, .. } => start.value - 2.0 * self.everett(start.x, x),
+        };
+        stack.set_value(switched);
+        switched + self.reversible_part(x)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let parameter =
+            |symbol: String, meaning, value, unit| Parameter { symbol, meaning, value, bounds: any, unit };
+        let weights = &self.weights;
+        let mut all = vec![
+            parameter("c".into(), "output constant", weights.constant, Dimension::OUTPUT),
+            parameter("k".into(), "reversible slope", weights.slope, Dimension::SLOPE),
+        ];
+        for (i, &line) in weights.lines.iter().enumerate() {
+            all.push(parameter(format!("x_{i}"), "line of the Preisach plane", line, Dimension::INPUT));
+        }
+        for (j, &v) in weights.reversible.iter().enumerate() {
+            all.push(parameter(format!("v_{j}"), "reversible weight of an interval", v, Dimension::OUTPUT));
+        }
+        for ((i, j), &w) in Plane::new(weights.lines.clone()).indices().zip(&weights.cells) {
+            all.push(parameter(format!("w_{i},{j}"), "weight of a cell's relays", w, Dimension::OUTPUT));
+        }
+        all
+    }
+}

@@ -1,0 +1,146 @@
+//! Rate-dependent Prandtl-Ishlinskii model: plays whose thresholds grow with the rate of the input, so
+//! that loops grow wider and flatter with speed.
+//!
+//! ```text
+//! p_i,k = max(x_k - r_i, min(x_k + r_i, p_i,k-1)),   virgin: 0              theory.md (8.15)
+//! r_i   = α i + β |x'|             linear                                   theory.md (8.16)
+//! r_i   = α i ln(β + λ |x'|^ε)     logarithmic; not below 0                 theory.md (8.17)
+//! y     = c + a0 x + Σ_i a_i p_i,   a_i = ρ e^{-τ α i} or free,  i = 1 ... n   theory.md (8.18)
+//! ```
+//!
+//! At one rate it is a Prandtl-Ishlinskii model, with return-point memory at that rate only. Source: Al
+//! Janaideh, Rakheja and Su; that all thresholds of the logarithmic form share one factor is our reading.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{LARGEST_VALUE, Result};
+pub use crate::law::play_weights::PlayWeights;
+use crate::law::{Dimension, Law, Parameter, Sample};
+
+/// How the thresholds grow with the rate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Thresholds {
+    /// theory.md (8.16).
+    Linear {
+        /// `β`, in the unit of time.
+        beta: f64,
+    },
+    /// theory.md (8.17).
+    Logarithmic {
+        /// `β`: `ln β` is the factor at rest.
+        beta: f64,
+        /// `λ`: growth with the rate, in the unit of the rate to the power `-ε`.
+        lambda: f64,
+        /// `ε`.
+        epsilon: f64,
+    },
+}
+
+impl Thresholds {
+    /// What is added to all thresholds, and what they are multiplied with, at a rate.
+    fn growth(&self, rate: f64) -> (f64, f64) {
+        match *self {
+            Self::Linear { beta } => (beta * rate.abs(), 1.0),
+            Self::Logarithmic { beta, lambda, epsilon } => {
+                (0.0, (beta + lambda * rate.abs().powf(epsilon)).ln().max(0.0))
+            }
+        }
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let positive = (0.0, LARGEST_VALUE);
+        match *self {
+            Self::Linear { beta } => {
+                let time = Dimension { input: 0, output: 0, time: 1 };
+                vec![Parameter::new("β", "growth of every threshold with the rate", beta, positive, time)]
+            }
+            Self::Logarithmic { beta, lambda, epsilon } => vec![
+                Parameter::new(
+                    "β",
+                    "its logarithm is the factor at rest",
+                    beta,
+                    (1e-6, 1e6),
+                    Dimension::NONE,
+                ),
+                Parameter::new("λ", "growth of the factor with the rate", lambda, positive, Dimension::NONE),
+                Parameter::new("ε", "power of the rate", epsilon, (0.0, 2.0), Dimension::NONE),
+            ],
+        }
+    }
+}
+
+/// A rate-dependent Prandtl-Ishlinskii model in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RateDependentPrandtlIshlinskii {
+    /// `c`, in the unit of the output.
+    pub offset: f64,
+    /// `a0`: share of the output without memory.
+    pub spring: f64,
+    /// `α`: spacing of the thresholds at rest, in the unit of the input, not negative.
+    pub spacing: f64,
+    /// How the thresholds grow with the rate.
+    pub thresholds: Thresholds,
+    /// `a_i`: weights of the plays, in the unit of the output for that of the input.
+    pub weights: PlayWeights,
+}
+
+impl RateDependentPrandtlIshlinskii {
+    /// The law itself if its parameters are within their bounds.
+    ///
+    /// # Errors
+    /// A parameter that is not.
+    pub fn validated(self) -> Result<Self> {
+        const NAME: &str = "rate-dependent Prandtl-Ishlinskii";
+        for parameter in self.parameters() {
+            parameter.check(NAME)?;
+        }
+        self.weights.check(NAME, self.spacing, 1)?;
+        Ok(self)
+    }
+
+    /// Moves the plays to the next input.
+    pub(crate) fn advance(&self, plays: &mut [f64], sample: Sample) {
+        let (added, factor) = self.thresholds.growth(sample.rate);
+        for (index, play) in plays.iter_mut().enumerate() {
+            let r = self.spacing * (index + 1) as f64 * factor + added;
+            *play = (sample.x - r).max((sample.x + r).min(*play));
+        }
+    }
+}
+
+impl Law for RateDependentPrandtlIshlinskii {
+    /// The plays.
+    type State = Vec<f64>;
+
+    fn virgin(&self) -> Vec<f64> {
+        vec![0.0; self.weights.plays()]
+    }
+
+    fn step(&self, state: &mut Vec<f64>, sample: Sample) -> f64 {
+        let sample = sample.limited();
+        self.advance(state, sample);
+        let mut y = self.offset + self.spring * sample.x;
+        self.weights.for_each(self.spacing, 1, |index, weight| y += weight * state[index]);
+        y
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (-LARGEST_VALUE, LARGEST_VALUE);
+        let mut all = vec![
+            Parameter::new("c", "level of the output", self.offset, any, Dimension::OUTPUT),
+            Parameter::new("a0", "share without memory", self.spring, any, Dimension::SLOPE),
+            Parameter::new(
+                "α",
+                "spacing of the thresholds at rest",
+                self.spacing,
+                (0.0, LARGEST_VALUE),
+                Dimension::INPUT,
+            ),
+        ];
+        all.extend(self.thresholds.parameters());
+        all.extend(self.weights.parameters("a", 1, Dimension::SLOPE, Dimension::INPUT));
+        all
+    }
+}

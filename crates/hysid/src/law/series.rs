@@ -1,0 +1,96 @@
+//! Records as classical models are fitted to them: rows of samples and outputs in the user's units.
+
+use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Excitation, Record};
+use crate::error::Result;
+use crate::law::{Law, Sample};
+
+/// The samples of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// What a law is told, row by row.
+    pub samples: Vec<Sample>,
+    /// The measured output; NaN where it is blank.
+    pub output: Vec<f64>,
+}
+
+impl Series {
+    /// The samples of a record; rates are 0 without a method, time steps are 0 without time.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn of(record: &Record, rate: Option<RateMethod>) -> Result<Self> {
+        Ok(Self { samples: samples(&record.excitation(), rate)?, output: record.output().to_vec() })
+    }
+
+    /// All records of a data set that have an output.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn all(data: &Dataset, rate: Option<RateMethod>) -> Result<Vec<Self>> {
+        let used = data.records().iter().filter(|record| record.scored() > 0);
+        used.map(|record| Self::of(record, rate)).collect()
+    }
+}
+
+/// What a law is told, row by row; rates are 0 without a method, time steps are 0 without time.
+///
+/// # Errors
+/// A rate that cannot be computed.
+pub fn samples(excitation: &Excitation<'_>, rate: Option<RateMethod>) -> Result<Vec<Sample>> {
+    let mut rates = vec![0.0; excitation.len()];
+    if let Some(method) = rate {
+        method.fill(excitation, 0, &mut rates)?;
+    }
+    let time = excitation.time();
+    let step = |row: usize| time.filter(|_| row > 0).map_or(0.0, |time| time[row] - time[row - 1]);
+    let rows = excitation.inputs()[0].iter().zip(rates).enumerate();
+    Ok(rows.map(|(row, (&x, rate))| Sample { x, rate, step: step(row) }).collect())
+}
+
+/// Free run of a law from its virgin state.
+pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
+    let mut outputs = vec![0.0; samples.len()];
+    run_on(law, &mut law.virgin(), samples, &mut outputs);
+    outputs
+}
+
+/// Free run of a law from the state that it is in.
+pub(crate) fn run_on<L: Law>(law: &L, state: &mut L::State, samples: &[Sample], outputs: &mut [f64]) {
+    outputs.iter_mut().zip(samples).for_each(|(output, sample)| *output = law.step(state, *sample));
+}
+
+/// The work of all loops, `∮ y dx`: negative where the output lags behind a growing input as that of a
+/// play does, positive for friction, whose loops are passed the other way round.
+///
+/// Each measured row counts with half the way of the input from the row before to the row behind, which is
+/// the trapezoidal rule if all rows are measured, and still the right sign if only some are.
+pub(crate) fn work(series: &[Series]) -> f64 {
+    let slope = slope(series);
+    let of_one = |series: &Series| -> f64 {
+        let x = |row: usize| series.samples[row].x;
+        let last = series.samples.len().saturating_sub(1);
+        let measured = || series.output.iter().enumerate().filter(|(_, y)| !y.is_nan());
+        // Without a straight line through the first row, which has no loop but leaves an area where the
+        // ends of the record lie apart.
+        let Some((first, y_first)) = measured().next() else { return 0.0 };
+        let bent = |row: usize, y: f64| y - y_first - slope * (x(row) - x(first));
+        let way = |row: usize| 0.5 * (x((row + 1).min(last)) - x(row.saturating_sub(1)));
+        measured().map(|(row, y)| bent(row, *y) * way(row)).sum()
+    };
+    series.iter().map(of_one).sum()
+}
+
+/// Slope of the straight line that fits the rows with an output best.
+pub(crate) fn slope(series: &[Series]) -> f64 {
+    let rows = || {
+        let all = series.iter().flat_map(|series| series.samples.iter().zip(&series.output));
+        all.filter(|(_, y)| !y.is_nan()).map(|(sample, &y)| (sample.x, y))
+    };
+    let n = rows().count().max(1) as f64;
+    let x_mean = rows().map(|(x, _)| x).sum::<f64>() / n;
+    let y_mean = rows().map(|(_, y)| y).sum::<f64>() / n;
+    let product = rows().map(|(x, y)| (x - x_mean) * (y - y_mean)).sum::<f64>();
+    let square = rows().map(|(x, _)| (x - x_mean) * (x - x_mean)).sum::<f64>();
+    if square > 0.0 { product / square } else { 0.0 }
+}

@@ -1,0 +1,35 @@
+//! Thresholds of banks of operators, and what is asked of parameters in general.
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+
+/// Largest magnitude of a weight, which keeps a free run finite.
+const LARGEST_WEIGHT: f64 = 1e100;
+
+/// Refuses thresholds that are not positive, finite and rising.
+pub(crate) fn check_thresholds(thresholds: &[f64]) -> Result<()> {
+    let sound = |r: f64| r.is_finite() && r > 0.0;
+    if let Some(r) = thresholds.iter().find(|&&r| !sound(r)) {
+        return Err(Error::Option(format!("threshold {r}: it must be finite and greater than 0")));
+    }
+    match thresholds.windows(2).find(|pair| pair[1] <= pair[0]) {
+        Some(pair) => {
+            Err(Error::Option(format!("threshold {} after {}: thresholds must rise", pair[1], pair[0])))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses weights that are not finite, or so large that an output could overflow.
+pub(crate) fn check_weights(weights: &[f64]) -> Result<()> {
+    match weights.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_WEIGHT) {
+        Some(weight) => Err(Error::Option(format!("weight {weight} is not a usable number"))),
+        None => Ok(()),
+    }
+}
+
+/// An input as a law takes it: one beyond [`LARGEST_VALUE`] is taken as that, so that nothing
+/// overflows.
+#[inline(always)]
+pub(crate) fn limited(x: f64) -> f64 {
+    x.clamp(-LARGEST_VALUE, LARGEST_VALUE)
+}

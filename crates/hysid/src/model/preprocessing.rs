@@ -1,0 +1,347 @@
+//! What a model sees of its input: as measured, companded, or with a summary of the past beside it.
+//!
+//! ```text
+//! x - c in the place of x                                                   theory.md (11.8)
+//! u = asinh(x / s),    v = asinh(x' / s')                                   theory.md (11.1)
+//! m = max |x| so far / X,    p = ln(1 + 10 path so far / P) / ln 11         theory.md (11.2)
+//! ```
+//!
+//! A soft magnet reverses within a hundredth of the field range, a damper within a hundredth of its speeds;
+//! weights that are spread over these ranges see little of it. Since `u` grows with `x`, all laws of memory
+//! (turning points, wiping-out, Madelung's rules) hold in `u` as they hold in `x`. The largest input and the
+//! path so far tell a degrading structure's state more directly than its stops do.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Excitation, Record};
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::network::scaling::SCALES;
+use crate::options::shaping::HISTORY_INPUTS;
+use crate::options::shaping::Origin;
+use crate::options::shaping::Shaping;
+
+/// How a model sees its input, in the user's units.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Preprocessing {
+    /// `c` of theory.md (11.8): the value of each input that the model sees as 0, in the unit of the input.
+    /// The memory is virgin at the `c` of the first input. Empty where all are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub origins: Vec<f64>,
+    /// `s` of theory.md (11.1), in the unit of the input.
+    pub companding: Option<f64>,
+    /// `s'`, in the unit of the rate.
+    pub rate_companding: Option<f64>,
+    /// `X` and `P` of theory.md (11.2), in the unit of the input.
+    pub history: Option<(f64, f64)>,
+}
+
+/// Share of the rows whose rates stay below the one that the companding of the rate is measured by.
+const ROWS_BELOW: f64 = 0.995;
+
+impl Shaping {
+    /// With the scales that the data have.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn of(
+        &self,
+        data: &Dataset,
+        rate: Option<RateMethod>,
+        origin: Origin,
+    ) -> Result<Preprocessing> {
+        let origins = match origin {
+            Origin::Zero => Vec::new(),
+            Origin::OfData => origins(data),
+        };
+        let origin = origins.first().copied().unwrap_or_default();
+        let (low, high) = data.input_range(0);
+        let largest = (low - origin).abs().max((high - origin).abs());
+        let rate_companding = match (self.rate_companding, rate) {
+            (Some(share), Some(method)) => Some(share * common_rate(data, method)?),
+            _ => None,
+        };
+        let longest = || data.records().iter().map(|record| path(&record.inputs()[0])).fold(0.0, f64::max);
+        Ok(Preprocessing {
+            companding: self.companding.map(|share| share * largest),
+            rate_companding,
+            history: self.history.then(|| (largest, longest())),
+            origins,
+        })
+    }
+}
+
+/// Share of the range of an input that zero must lie away from its ends to be what the input goes about.
+/// Also how far apart, as a share of the range, records may begin that begin at one point. Designed.
+const MARGIN: f64 = 0.05;
+
+/// `c` of theory.md (11.8), one for each input; none where all are 0.
+fn origins(data: &Dataset) -> Vec<f64> {
+    let origins: Vec<f64> = (0..data.names().inputs.len()).map(|input| origin(data, input)).collect();
+    if origins.iter().all(|origin| *origin == 0.0) { Vec::new() } else { origins }
+}
+
+/// The physical zero where the input goes about it. Elsewhere (0 to 150 V, 198 to 202 mm) it means nothing or
+/// is an end: what counts is where the specimen was at rest, and that is where its records begin. Of records
+/// that begin here and there, nobody knows; further inputs have no beginning that matters.
+pub(crate) fn origin(data: &Dataset, input: usize) -> f64 {
+    let (low, high) = data.input_range(input);
+    let margin = MARGIN * (high - low);
+    if low + margin < 0.0 && high - margin > 0.0 {
+        return 0.0;
+    }
+    let beginnings = || data.records().iter().map(|record| record.inputs()[input][0]);
+    let first = beginnings().next().unwrap_or_default();
+    if input == 0 && beginnings().all(|beginning| (beginning - first).abs() <= margin) {
+        return first;
+    }
+    0.5 * low + 0.5 * high
+}
+
+fn path(x: &[f64]) -> f64 {
+    x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
+}
+
+/// The rate that most rows stay below; 1 if all are 0.
+fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
+    let mut rates = Vec::with_capacity(data.rows());
+    for record in data.records() {
+        rates.extend(method.rate(record)?.into_iter().map(f64::abs));
+    }
+    let place = ((rates.len() - 1) as f64 * ROWS_BELOW) as usize;
+    let (_, rate, _) = rates.select_nth_unstable_by(place, f64::total_cmp);
+    Ok(if *rate > 0.0 { *rate } else { 1.0 })
+}
+
+/// Data as a model sees them, and how the rate is found there.
+pub(crate) struct Seen<'d> {
+    pub preprocessing: Preprocessing,
+    pub data: Cow<'d, Dataset>,
+    pub rate: Option<RateMethod>,
+}
+
+impl<'d> Seen<'d> {
+    /// # Errors
+    /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
+    pub fn of(
+        data: &'d Dataset,
+        shaping: &Shaping,
+        rate: Option<RateMethod>,
+        origin: Origin,
+    ) -> Result<Self> {
+        shaping.check()?;
+        let data = match shaping.warm_up {
+            0 => Cow::Borrowed(data),
+            rows => Cow::Owned(data.clone().warmed_up(rows)),
+        };
+        data.check_identifiable(FEWEST_ROWS)?;
+        let preprocessing = shaping.of(&data, rate, origin)?;
+        let (seen, seen_rate) = preprocessing.data(&data, rate)?;
+        let seen = match seen {
+            Cow::Owned(seen) => Some(seen),
+            Cow::Borrowed(_) => None,
+        };
+        Ok(Self { preprocessing, data: seen.map_or(data, Cow::Owned), rate: seen_rate })
+    }
+}
+
+/// What has been so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Past {
+    largest: f64,
+    path: f64,
+    last: Option<f64>,
+}
+
+impl Past {
+    /// Takes the next input; gives `m` and `p` of theory.md (11.2).
+    fn take(&mut self, x: f64, (largest, longest): (f64, f64)) -> [f64; HISTORY_INPUTS] {
+        self.largest = self.largest.max(x.abs());
+        self.path += self.last.map_or(0.0, |last| (x - last).abs());
+        self.last = Some(x);
+        [self.largest / largest, (10.0 * self.path / longest).ln_1p() / f64::ln(11.0)]
+    }
+}
+
+impl Preprocessing {
+    /// True if the model sees its input as it is.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Inputs that are added to those of the record.
+    pub fn added_inputs(&self) -> usize {
+        if self.history.is_some() { HISTORY_INPUTS } else { 0 }
+    }
+
+    /// What an input of the record is measured from.
+    pub fn origin(&self, input: usize) -> f64 {
+        self.origins.get(input).copied().unwrap_or_default()
+    }
+
+    /// The first input as the model sees it.
+    pub fn input(&self, x: f64) -> f64 {
+        let x = x - self.origin(0);
+        self.companding.map_or(x, |scale| (x / scale).asinh())
+    }
+
+    /// Any input as the model sees it; the first counts as 0.
+    pub(crate) fn input_as_seen(&self, input: usize, value: f64) -> f64 {
+        if input == 0 { self.input(value) } else { value - self.origin(input) }
+    }
+
+    /// The rate as the model sees it.
+    pub fn rate(&self, rate: f64) -> f64 {
+        self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
+    }
+
+    /// All inputs of a sample as the model sees them, into `seen`.
+    pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
+        seen.clear();
+        seen.extend(
+            inputs.iter().enumerate().map(|(input, &value)| self.input_as_seen(input, limited(value))),
+        );
+        if let Some(scales) = self.history {
+            seen.extend(past.take(limited(inputs[0]) - self.origin(0), scales));
+        }
+    }
+
+    /// What the model sees of an excitation; `None` where that is the excitation itself.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn columns(
+        &self,
+        excitation: &Excitation<'_>,
+        rate: Option<RateMethod>,
+    ) -> Result<Option<SeenColumns>> {
+        if self.is_none() {
+            return Ok(None);
+        }
+        let x = excitation.inputs()[0];
+        let measured = excitation.inputs().iter().enumerate();
+        let mut inputs: Vec<Vec<f64>> = measured
+            .map(|(input, values)| values.iter().map(|&value| self.input_as_seen(input, value)).collect())
+            .collect();
+        if let Some(scales) = self.history {
+            let mut past = Past::default();
+            let (largest, path) = x.iter().map(|&x| past.take(x - self.origin(0), scales).into()).unzip();
+            inputs.extend([largest, path]);
+        }
+        let seen_rate = |method: RateMethod| -> Result<Vec<f64>> {
+            let mut rates = vec![0.0; excitation.len()];
+            method.fill(excitation, 0, &mut rates)?;
+            rates.iter_mut().for_each(|rate| *rate = self.rate(*rate));
+            Ok(rates)
+        };
+        Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()? }))
+    }
+
+    /// Data as the model sees them, and how the rate is found there.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn data<'d>(
+        &self,
+        data: &'d Dataset,
+        rate: Option<RateMethod>,
+    ) -> Result<(Cow<'d, Dataset>, Option<RateMethod>)> {
+        let mut records = Vec::with_capacity(data.records().len());
+        for record in data.records() {
+            let Some(seen) = self.columns(&record.excitation(), rate)? else {
+                return Ok((Cow::Borrowed(data), rate));
+            };
+            records.push(seen.record(record)?);
+        }
+        let mut names = data.names().clone();
+        names.inputs.extend((0..self.added_inputs()).map(|added| format!("history {}", added + 1)));
+        Ok((Cow::Owned(Dataset::new(names, records)?), rate.map(|_| RateMethod::Given)))
+    }
+
+    /// Refuses scales of a file that are none.
+    pub(crate) fn check(&self) -> Result<()> {
+        let scales =
+            [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
+        let is_scale = |scale: f64| SCALES.contains(&scale);
+        let is_value = |origin: &f64| origin.abs() <= LARGEST_VALUE;
+        if scales.into_iter().flatten().all(is_scale) && self.origins.iter().all(is_value) {
+            return Ok(());
+        }
+        Err(Error::Option("its preprocessing has a scale that is none".into()))
+    }
+}
+
+/// A value of the user's as a model takes it, so that nothing overflows: records have no larger ones.
+pub(crate) fn limited(value: f64) -> f64 {
+    value.clamp(-LARGEST_VALUE, LARGEST_VALUE)
+}
+
+/// Columns that a model sees in the place of those measured.
+pub(crate) struct SeenColumns {
+    inputs: Vec<Vec<f64>>,
+    rate: Option<Vec<f64>>,
+}
+
+impl SeenColumns {
+    /// A record of these columns, with all else of the one measured.
+    fn record(self, measured: &Record) -> Result<Record> {
+        let mut seen = Record::new(measured.name(), self.inputs, measured.output().to_vec())?;
+        if let Some(time) = measured.time() {
+            seen = seen.with_time(time.to_vec())?;
+        }
+        match self.rate {
+            Some(rate) => seen.with_given_rate(rate),
+            None => Ok(seen),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::record::ColumnNames;
+
+    fn data() -> Dataset {
+        let x = vec![0.0, 1.0, -2.0, 0.5];
+        let record = Record::new("r", vec![x], vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        let record = record.with_time(vec![0.0, 1.0, 2.0, 3.0]).unwrap();
+        Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
+    }
+
+    #[test]
+    fn every_row_follows_the_formulas() {
+        let data = data();
+        let shaping =
+            Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
+        let rate = Some(RateMethod::Backward);
+        let preprocessing = shaping.of(&data, rate, Origin::OfData).unwrap();
+        let (seen, method) = preprocessing.data(&data, rate).unwrap();
+        assert_eq!(method, Some(RateMethod::Given));
+        let record = &seen.records()[0];
+        // s = 0.2, X = 2, P = 1 + 3 + 2.5; the rates are 0, 1, -3, 2.5 and 99.5 % of three rows stay below 2.5.
+        let [u, m, p] = record.inputs() else { panic!("three inputs") };
+        assert_eq!(u[2], f64::asinh(-10.0));
+        assert_eq!(m, &[0.0, 0.5, 1.0, 1.0]);
+        assert!((p[2] - f64::ln(1.0 + 10.0 * 4.0 / 6.5) / f64::ln(11.0)).abs() < 1e-15);
+        assert!((p[3] - 1.0).abs() < 1e-15);
+        assert!((record.given_rate().unwrap()[2] - f64::asinh(-3.0 / 1.25)).abs() < 1e-15);
+
+        let (mut past, mut sample) = (Past::default(), Vec::new());
+        for (row, &x) in data.records()[0].inputs()[0].iter().enumerate() {
+            preprocessing.sample(&[x], &mut past, &mut sample);
+            assert_eq!(sample, [u[row], m[row], p[row]]);
+        }
+    }
+
+    #[test]
+    fn nothing_asked_for_is_nothing_done() {
+        let data = data();
+        let preprocessing = Shaping::default().of(&data, None, Origin::OfData).unwrap();
+        assert!(preprocessing.is_none());
+        assert!(matches!(preprocessing.data(&data, None).unwrap().0, Cow::Borrowed(_)));
+    }
+}

@@ -1,0 +1,137 @@
+//! How a model was chosen among candidates.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::Weights;
+use crate::significant::Significant;
+
+/// How candidates did on data held out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Selection {
+    /// What was held out, fold by fold, in words.
+    pub folds: Vec<String>,
+    /// Error of the ensemble, in percent of the standard deviation: geometric mean over the folds, of rows
+    /// inside the trained range and of rows beyond it (theory.md 11.5).
+    pub error_percent: (f64, f64),
+    /// The candidates, the best of each kind first.
+    pub candidates: Vec<CandidateResult>,
+    /// How a single model came about; `None` for an ensemble.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub single: Option<SingleModel>,
+    /// Rows at the beginning of each record that were not trained on; `None` if there are none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warm_up: Option<WarmUp>,
+    /// All reversals of the first input lie at the ends of its range: the data cannot tell candidates apart
+    /// inside the loop. The weights then also use how candidates did on generated cases, and the band is wider.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub one_loop: bool,
+    /// Candidates that were dropped early, because they stayed far behind the best.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dropped: Vec<String>,
+}
+
+impl Selection {
+    /// What was chosen and why, in two lines.
+    pub fn summary(&self) -> [String; 2] {
+        let mut kinds: Vec<&str> = self.candidates.iter().map(|one| one.kind.as_str()).collect();
+        kinds.dedup();
+        [self.chosen(&kinds), self.why(&kinds)]
+    }
+
+    fn chosen(&self, kinds: &[&str]) -> String {
+        if let Some(SingleModel { name, distilled, .. }) = &self.single {
+            return match distilled {
+                true => format!("one {name}, distilled from the ensemble"),
+                false => format!("one {name}, fitted to the data alone"),
+            };
+        }
+        let count = |kind: &str| -> usize {
+            self.candidates.iter().filter(|one| one.kind == kind).map(|one| one.members).sum()
+        };
+        let parts = kinds.iter().filter(|kind| count(kind) > 0);
+        let part = |kind: &&str| match (count(kind), *kind) {
+            (1, "networks") => "1 network".into(),
+            (count, kind) => format!("{count} {kind}"),
+        };
+        let parts: Vec<String> = parts.map(part).collect();
+        let most = self.candidates.iter().max_by(|a, b| a.share.inside.total_cmp(&b.share.inside));
+        let leading = most.map_or_else(String::new, |one| format!("; the largest weight has {}", one.name));
+        format!("the weighted median of {}{leading}", parts.join(", "))
+    }
+
+    fn why(&self, kinds: &[&str]) -> String {
+        let percent = |error: (f64, f64)| format!("{:.3} %", Significant(error.0));
+        let ensemble = format!("the ensemble {}", percent(self.error_percent));
+        let errors = match &self.single {
+            Some(SingleModel { distilled_percent, plain_percent, .. }) => {
+                let distilled =
+                    distilled_percent.map(|error| format!("a distilled model {}", percent(error)));
+                let plain = format!("the best single fit {}", percent(*plain_percent));
+                distilled.into_iter().chain([plain, ensemble]).collect::<Vec<String>>().join(", ")
+            }
+            None => {
+                let best_of = |kind: &&str| {
+                    let of_kind = self.candidates.iter().filter(|one| one.kind == **kind);
+                    let best = of_kind.min_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0))?;
+                    Some(format!("{} {}", best.name, percent(best.error_percent)))
+                };
+                let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
+                format!("{ensemble}; the best of each kind alone: {}", bests.join(", "))
+            }
+        };
+        format!("cross-validated error, geometric mean of {} folds, in % of std: {errors}", self.folds.len())
+    }
+}
+
+/// How a candidate did.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CandidateResult {
+    /// What it is.
+    pub name: String,
+    /// Its kind.
+    pub kind: String,
+    /// Its error, as that of the ensemble.
+    pub error_percent: (f64, f64),
+    /// What it counts in the whole, as a share of all.
+    pub share: Weights,
+    /// Fits of it in the model.
+    pub members: usize,
+    /// Error of the ensemble without it; `None` if it does not count.
+    pub without_percent: Option<(f64, f64)>,
+}
+
+/// A single model that was asked for, and how it was chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SingleModel {
+    /// The candidate that it is a fit of.
+    pub name: String,
+    /// True if it was distilled from the ensemble, false if it was fitted to the data alone.
+    pub distilled: bool,
+    /// Error of a distilled model on data held out, as that of the ensemble; `None` if none was made.
+    pub distilled_percent: Option<(f64, f64)>,
+    /// Error of the best candidate fitted to the data alone, from one start, as that of the ensemble.
+    pub plain_percent: (f64, f64),
+}
+
+/// Rows at the beginning of each record that drive the memory and are not trained on, and what that changes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WarmUp {
+    /// Rows of each record.
+    pub rows: usize,
+    /// Cross-validated error of a quick model that was not trained on them, on the rows behind, in percent of
+    /// the standard deviation (theory.md 11.5); `None` where the user has decided.
+    pub without_percent: Option<f64>,
+    /// The same of a model that was.
+    pub with_percent: Option<f64>,
+}
+
+impl WarmUp {
+    /// So many rows, because the user has decided so.
+    pub(crate) fn decided(rows: usize) -> Self {
+        Self { rows, without_percent: None, with_percent: None }
+    }
+}

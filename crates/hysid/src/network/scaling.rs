@@ -1,0 +1,145 @@
+//! Factors between the user's units and those of a network, theory.md (2.1).
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::rate::RateMethod;
+use crate::data::record::{Dataset, Excitation, Record};
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::network::{Architecture, Drive};
+
+/// Scale factors, found on the training data and stored in the model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scaling {
+    /// Largest magnitude of each input in training, in its unit: 1 in scaled units.
+    pub inputs: Vec<f64>,
+    /// Largest magnitude of the rate in training, in the unit of the input over that of time.
+    pub rate: Option<f64>,
+    /// Mean output in training: 0 in scaled units.
+    pub output_mean: f64,
+    /// Standard deviation of the output in training: 1 in scaled units.
+    pub output_deviation: f64,
+}
+
+/// Scales that a value of the user's can be divided by, and its quotient be squared.
+pub(crate) const SCALES: RangeInclusive<f64> = 1e-150..=1e150;
+
+impl Scaling {
+    /// Refuses factors of a file that are none.
+    ///
+    /// # Errors
+    /// A factor that cannot be divided by, or a mean beyond any record's.
+    pub(crate) fn check(&self) -> Result<()> {
+        let factors = self.inputs.iter().chain(&self.rate).chain([&self.output_deviation]);
+        if let Some(factor) = factors.into_iter().find(|factor| !SCALES.contains(factor)) {
+            return Err(Error::Option(format!("its scaling has the factor {factor}")));
+        }
+        if self.output_mean.abs() <= LARGEST_VALUE {
+            return Ok(());
+        }
+        Err(Error::Option(format!("its scaling has the mean output {}", self.output_mean)))
+    }
+
+    /// Finds the factors of a data set.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn of(data: &Dataset, rate: Option<RateMethod>) -> Result<Self> {
+        let inputs = (0..data.names().inputs.len()).map(|input| {
+            let (low, high) = data.input_range(input);
+            usable(low.abs().max(high.abs()))
+        });
+        let mut largest_rate: f64 = 0.0;
+        if let Some(method) = rate {
+            for record in data.records() {
+                largest_rate =
+                    method.rate(record)?.iter().fold(largest_rate, |most, rate| most.max(rate.abs()));
+            }
+        }
+        let outputs = || data.records().iter().flat_map(|record| record.output()).filter(|y| !y.is_nan());
+        let n = outputs().count().max(1) as f64;
+        let mean = outputs().map(|y| y / n).sum::<f64>();
+        let variance = outputs().map(|y| (y - mean) * ((y - mean) / n)).sum::<f64>();
+        Ok(Self {
+            inputs: inputs.collect(),
+            rate: rate.map(|_| usable(largest_rate)),
+            output_mean: mean,
+            output_deviation: usable(variance.sqrt()),
+        })
+    }
+
+    /// A record as a network of the architecture sees it.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub fn drive(
+        &self,
+        record: &Record,
+        architecture: &Architecture,
+        rate: Option<RateMethod>,
+    ) -> Result<Drive> {
+        let rate = rate.filter(|_| architecture.rate);
+        let mut channels = vec![vec![0.0; record.len()]; architecture.channels()];
+        let excitation = record.excitation();
+        self.fill_channels(&excitation, rate, 0, record.len(), &mut channels)?;
+        let mut steps = vec![0.0; if architecture.relaxation > 0 { record.len() } else { 0 }];
+        Self::fill_steps(&excitation, 0, &mut steps);
+        Ok(Drive { channels, steps })
+    }
+
+    /// Fills the channels (first input, its rate if there is a method for it, further inputs) of
+    /// `rows` rows from `first` on.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
+    pub(crate) fn fill_channels(
+        &self,
+        excitation: &Excitation<'_>,
+        rate: Option<RateMethod>,
+        first: usize,
+        rows: usize,
+        channels: &mut [impl AsMut<[f64]>],
+    ) -> Result<()> {
+        let mut channels = channels.iter_mut().map(|channel| &mut channel.as_mut()[..rows]);
+        for (input, (x, &scale)) in excitation.inputs().iter().zip(&self.inputs).enumerate() {
+            let Some(channel) = channels.next() else { break };
+            let factor = 1.0 / scale;
+            for (u, &x) in channel.iter_mut().zip(&x[first..]) {
+                *u = x * factor;
+            }
+            if let (0, Some(method), Some(scale)) = (input, rate, self.rate)
+                && let Some(channel) = channels.next()
+            {
+                method.fill(excitation, first, channel)?;
+                let factor = 1.0 / scale;
+                channel.iter_mut().for_each(|rate| *rate *= factor);
+            }
+        }
+        Ok(())
+    }
+
+    /// Fills the time steps before each row from `first` on, 0 at the first row of the record.
+    pub(crate) fn fill_steps(excitation: &Excitation<'_>, first: usize, steps: &mut [f64]) {
+        let Some(time) = excitation.time() else { return };
+        for (row, step) in (first..).zip(steps) {
+            *step = if row == 0 { 0.0 } else { time[row] - time[row - 1] };
+        }
+    }
+
+    /// Measured outputs in scaled units; blanks stay NaN.
+    pub fn scaled_output(&self, output: &[f64]) -> Vec<f64> {
+        output.iter().map(|y| (y - self.output_mean) / self.output_deviation).collect()
+    }
+
+    /// A scaled output in the user's unit.
+    pub fn output(&self, scaled: f64) -> f64 {
+        self.output_mean + self.output_deviation * scaled
+    }
+}
+
+/// A scale that can be divided by: 1 for a channel that is always 0, or as good as that.
+fn usable(scale: f64) -> f64 {
+    if SCALES.contains(&scale) { scale } else { 1.0 }
+}

@@ -1,0 +1,14 @@
+//! What can be asked for: models by their names, and the options of each. A model file keeps what its model was
+//! identified with.
+
+pub mod auto;
+pub mod chosen;
+pub mod classical;
+pub mod model_name;
+pub mod network;
+pub mod request;
+pub mod shaping;
+pub(crate) mod variants;
+
+pub use model_name::ModelName;
+pub use request::Request;

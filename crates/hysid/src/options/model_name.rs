@@ -1,0 +1,86 @@
+//! Models by their names.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::network::Family;
+use crate::options::auto::Automatic;
+use crate::options::classical::Rival;
+
+/// A model by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum ModelName {
+    /// A network of the family.
+    Network(Family),
+    /// Another model.
+    Rival(Rival),
+    /// What validation chooses, alone or together.
+    Auto(Automatic),
+}
+
+impl ModelName {
+    /// The automatic model.
+    pub const AUTO: ModelName = ModelName::Auto(Automatic::Auto);
+
+    /// All models that there are, the networks first; [`ModelName::AUTO`] chooses among them.
+    pub fn all() -> impl Iterator<Item = ModelName> {
+        Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.into_iter().map(Self::Rival))
+    }
+
+    /// The name on the command line and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Network(family) => family.name(),
+            Self::Rival(rival) => rival.name(),
+            Self::Auto(_) => "auto",
+        }
+    }
+
+    /// True if the model can make use of the rate of the input.
+    pub fn uses_rate(self) -> bool {
+        match self {
+            Self::Network(family) => family.uses_rate(),
+            Self::Rival(rival) => rival.uses_rate(),
+            Self::Auto(_) => true,
+        }
+    }
+
+    /// True if it takes more than one input.
+    pub fn takes_further_inputs(self) -> bool {
+        match self {
+            Self::Network(family) => family.takes_further_inputs(),
+            Self::Rival(rival) => rival.takes_further_inputs(),
+            Self::Auto(_) => true,
+        }
+    }
+
+    /// Why the model cannot be fitted to data like these, in words; `None` if it can.
+    pub fn hindrance(self, data: &Dataset, rate: Option<RateMethod>) -> Option<String> {
+        let inputs = data.names().inputs.len();
+        if inputs > 1 && !self.takes_further_inputs() {
+            return Some(format!("takes one input, not {inputs}"));
+        }
+        match self {
+            Self::Rival(rival) if rival.needs_rate() && rate.is_none() => {
+                Some("needs the rate of the input: there is no time".into())
+            }
+            _ => None,
+        }
+    }
+}
+
+impl std::str::FromStr for ModelName {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        let known = if name == "epnn" { "xpnn" } else { name };
+        let all = || std::iter::once(Self::AUTO).chain(Self::all());
+        all().find(|model| model.name() == known).ok_or_else(|| {
+            let names: Vec<&str> = all().map(Self::name).collect();
+            Error::Option(format!("model `{name}` is unknown: choose one of {}", names.join(", ")))
+        })
+    }
+}

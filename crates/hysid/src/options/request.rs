@@ -1,0 +1,115 @@
+//! What is to be identified, and how.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::rate::RateMethod;
+use crate::network::Family;
+use crate::options::ModelName;
+use crate::options::auto::AutoOptions;
+use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::network::{ENSEMBLE_PENALTIES, FitOptions};
+
+/// What is to be identified, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Request {
+    /// A network.
+    Network(FitOptions),
+    /// Another model.
+    Classical(ClassicalOptions),
+    /// What validation chooses.
+    Auto(AutoOptions),
+}
+
+impl Request {
+    /// A model with its defaults, and this rate if it has a use for one.
+    pub fn of(model: ModelName, rate: Option<RateMethod>, seed: u64) -> Self {
+        let rate = rate.filter(|_| model.uses_rate());
+        match model {
+            ModelName::Network(model) => {
+                Self::Network(FitOptions { model, rate, seed, ..FitOptions::default() })
+            }
+            ModelName::Rival(model) => {
+                Self::Classical(ClassicalOptions { rate, seed, ..ClassicalOptions::of(model) })
+            }
+            ModelName::Auto(_) => Self::Auto(AutoOptions { rate, seed, ..AutoOptions::default() }),
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> ModelName {
+        match self {
+            Self::Network(options) => ModelName::Network(options.model),
+            Self::Classical(options) => ModelName::Rival(options.model),
+            Self::Auto(options) => ModelName::Auto(options.model),
+        }
+    }
+
+    /// The model and its variant in a few words, such as `bouc-wen (degradation, rate)`.
+    pub fn label(&self) -> String {
+        let variant = self.variant();
+        let name = self.model().name();
+        if variant.is_empty() { name.into() } else { format!("{name} ({})", variant.join(", ")) }
+    }
+
+    /// What is not the model's default, in a few words.
+    fn variant(&self) -> Vec<String> {
+        let (shaping, mut variant) = match self {
+            Self::Network(options) => (
+                options.shaping,
+                named([
+                    ("deterioration", options.deteriorates()),
+                    ("rate", options.rate.is_some()),
+                    ("relaxation", options.model == Family::XpnnPlus && options.sizes.relaxation > 0),
+                ]),
+            ),
+            Self::Classical(options) => {
+                let has_tanh_layer =
+                    options.model == Rival::RandomStops && options.hidden.is_some_and(|hidden| hidden > 0);
+                (
+                    options.shaping,
+                    named([
+                        ("deterioration", options.deterioration == Some(true)),
+                        ("degradation", options.degradation),
+                        ("differential form", options.differential_form),
+                        ("logarithmic thresholds", options.logarithmic_thresholds),
+                        ("rate", options.rate.is_some() && !options.model.needs_rate()),
+                        ("tanh layer", has_tanh_layer),
+                    ]),
+                )
+            }
+            Self::Auto(_) => return Vec::new(),
+        };
+        if let Self::Network(options) = self {
+            let ridge = options.ridge.filter(|ridge| *ridge != ENSEMBLE_PENALTIES.ridge);
+            variant.extend(ridge.map(|ridge| format!("ridge {ridge:e}")));
+        }
+        variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
+        variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));
+        variant.extend(shaping.history.then(|| "history".to_string()));
+        variant
+    }
+
+    /// How the rate is found.
+    pub fn rate(&self) -> Option<RateMethod> {
+        match self {
+            Self::Network(options) => options.rate,
+            Self::Classical(options) => options.rate,
+            Self::Auto(options) => options.rate,
+        }
+    }
+
+    /// Starts of the search that was asked for; 1 where the model's own default is taken.
+    pub fn starts(&self) -> usize {
+        match self {
+            Self::Network(options) => options.starts,
+            Self::Classical(options) => options.starts.unwrap_or(1),
+            Self::Auto(options) => options.starts,
+        }
+    }
+}
+
+/// The names of what is so.
+fn named<const N: usize>(all: [(&str, bool); N]) -> Vec<String> {
+    all.into_iter().filter(|(_, is_so)| *is_so).map(|(name, _)| name.to_string()).collect()
+}

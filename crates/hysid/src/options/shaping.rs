@@ -1,0 +1,59 @@
+//! What a model sees of its input, as it is asked for.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+
+/// What is asked for, in shares of what the data show.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Shaping {
+    /// `s` of theory.md (11.1) as a share of the largest magnitude of the first input; `None` for an input
+    /// as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub companding: Option<f64>,
+    /// `s'` as a share of the rate that 99.5 % of all rows stay below.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate_companding: Option<f64>,
+    /// The largest magnitude and the path of the first input so far are inputs too, theory.md (11.2).
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub history: bool,
+    /// Rows at the beginning of each record that drive the memory and are not trained on: a record that
+    /// does not begin in the virgin state comes to its own memory there.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub warm_up: usize,
+}
+
+fn is_zero(rows: &usize) -> bool {
+    *rows == 0
+}
+
+/// Inputs that a summary of the past adds.
+pub(crate) const HISTORY_INPUTS: usize = 2;
+
+impl Shaping {
+    /// True if nothing is asked for.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Refuses shares that spread nothing, or everything.
+    pub(crate) fn check(&self) -> Result<()> {
+        for (name, share) in [("companding", self.companding), ("rate companding", self.rate_companding)] {
+            if share.is_some_and(|share| !(1e-6..=1e3).contains(&share)) {
+                let share = share.unwrap_or_default();
+                return Err(Error::Option(format!("{name} {share} is not between 1e-6 and 1e3")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// From where the inputs of a model are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// From 0, for laws in which 0 is more than a number.
+    Zero,
+    /// From 0 where the data go about it, else from where they begin or from their middle.
+    OfData,
+}

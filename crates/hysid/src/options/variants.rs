@@ -1,0 +1,85 @@
+//! The variants of a law: the same equations with and without a term that not every specimen needs.
+
+use crate::options::Request;
+use crate::options::classical::{ClassicalOptions, Rival};
+
+impl Request {
+    /// The name of the model, and of the variant of its law if it has more than one.
+    pub fn variant_label(&self) -> String {
+        if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
+    }
+
+    /// The same in all variants of its law, the simplest first: Bouc-Wen with and without degradation,
+    /// Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its thresholds, and
+    /// laws that can leave out the rate with and without it. A network has one variant.
+    pub fn variants(&self) -> Vec<Self> {
+        match self {
+            Self::Classical(options) => variants(options).into_iter().map(Self::Classical).collect(),
+            Self::Network(_) | Self::Auto(_) => vec![self.clone()],
+        }
+    }
+}
+
+/// The variants of a law with these options.
+pub(crate) fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
+    let rate = options.rate.filter(|_| options.model.uses_rate());
+    let needs_rate = options.model.needs_rate() || options.model == Rival::RandomStops;
+    let without_rate = ClassicalOptions { rate: None, ..options.clone() };
+    let with_rate = rate.map(|rate| ClassicalOptions { rate: Some(rate), ..options.clone() });
+    let by_rate = match with_rate {
+        Some(with_rate) if needs_rate => vec![with_rate],
+        Some(with_rate) => vec![without_rate, with_rate],
+        None => vec![without_rate],
+    };
+    by_rate.iter().flat_map(terms).collect()
+}
+
+/// A law with and without the term, or the form, that it can have.
+fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
+    let either = |term: fn(&mut ClassicalOptions) -> &mut bool| {
+        let with = |is_there| {
+            let mut options = options.clone();
+            *term(&mut options) = is_there;
+            options
+        };
+        vec![with(false), with(true)]
+    };
+    match options.model {
+        Rival::BoucWen => either(|options| &mut options.degradation),
+        Rival::JilesAtherton => either(|options| &mut options.differential_form),
+        Rival::RateDependentPrandtlIshlinskii => either(|options| &mut options.logarithmic_thresholds),
+        _ => vec![options.clone()],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::rate::RateMethod;
+    use crate::options::ModelName;
+
+    fn labels(model: ModelName, rate: Option<RateMethod>) -> Vec<String> {
+        Request::of(model, rate, 1).variants().iter().map(Request::variant_label).collect()
+    }
+
+    #[test]
+    fn every_variant_has_a_label_of_its_own() {
+        let rate = Some(RateMethod::Central);
+        let all: Vec<String> = ModelName::all().flat_map(|model| labels(model, rate)).collect();
+        let mut distinct = all.clone();
+        distinct.sort();
+        distinct.dedup();
+        assert_eq!(distinct.len(), all.len(), "{all:?}");
+    }
+
+    #[test]
+    fn the_simplest_variant_comes_first() {
+        let bouc_wen = ModelName::Rival(Rival::BoucWen);
+        assert_eq!(labels(bouc_wen, None), ["bouc-wen", "bouc-wen (degradation)"]);
+        assert_eq!(
+            labels(bouc_wen, Some(RateMethod::Central)),
+            ["bouc-wen", "bouc-wen (degradation)", "bouc-wen (rate)", "bouc-wen (degradation, rate)"]
+        );
+        assert_eq!(labels(ModelName::AUTO, None), ["auto"]);
+    }
+}
