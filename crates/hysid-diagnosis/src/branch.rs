@@ -1,13 +1,16 @@
 //! The way of the input as branches between turning points, and what closes what, theory.md (10.2).
 
+mod opening;
+
 use std::ops::Range;
 
 use super::noise;
-use super::opening::{Opening, openings};
 use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::turning_points::turning_points;
+pub(crate) use opening::Opening;
+use opening::openings;
 
 /// Branches of twice as many rows are averaged in blocks, to about so many points.
 const MOST_POINTS: usize = 400;

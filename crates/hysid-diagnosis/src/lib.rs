@@ -19,7 +19,6 @@ mod branch;
 mod comparison;
 mod congruency;
 pub mod cycles;
-pub mod delay;
 mod deterioration;
 mod doctor;
 mod loop_closure;
@@ -27,7 +26,6 @@ mod masing;
 pub mod model;
 mod noise;
 mod odd_symmetry;
-mod opening;
 mod orientation;
 mod rate_dependence;
 mod saturation;
@@ -42,11 +40,11 @@ use serde::Serialize;
 pub use advice::Advice;
 use branch::Survey;
 pub use cycles::Cycle;
-pub use delay::Delay;
 pub use doctor::{Complaint, ComplaintKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 pub use model::ModelDiagnosis;
+pub use rate_dependence::delay::{self, Delay};
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;

@@ -3,9 +3,9 @@
 //! output that lags behind.
 
 use super::branch::Survey;
-use super::opening::Opening;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict};
+use crate::branch::Opening;
 
 /// Below this magnitude loops cross themselves.
 const CLEAR: f64 = 0.3;

@@ -6,12 +6,14 @@
 //! An output that lags behind by a fixed time also differs with the speed. Where shifting the output by
 //! one time makes all speeds agree, that time is a delay, and the law behind it does not depend on the rate.
 
+pub mod delay;
+
 use std::collections::HashMap;
 
 use super::branch::{Branch, Reading, Survey};
 use super::comparison::{Comparison, judge};
-use super::delay::{self, Delay};
 use super::{Finding, Property, Verdict};
+use delay::Delay;
 
 /// A difference that matters, as a share of the range of the output.
 pub(super) const EFFECT: f64 = 0.01;

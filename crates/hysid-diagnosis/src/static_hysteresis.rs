@@ -2,9 +2,9 @@
 //! carried on to speed 0 where there are several speeds, theory.md (10.12).
 
 use super::branch::Survey;
-use super::opening::Opening;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, noise};
+use crate::branch::Opening;
 
 /// Loops fuller than this share of their box are loops.
 pub(super) const FULL: f64 = 0.02;

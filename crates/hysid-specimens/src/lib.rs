@@ -5,6 +5,7 @@
 //! chosen by us so that the specimen shows what it is meant to show. [`Specimen`] is the catalogue.
 
 pub mod cases;
+mod catalogue;
 pub mod concrete;
 mod cyclic_plasticity;
 mod elastomer;

@@ -1,28 +1,7 @@
-//! The catalogue of specimens: those of the paper's examples, with what is known about it and
-//! how it is tested.
+//! A specimen: what is known about it and how it is tested.
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::Result;
-
-use super::{
-    concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator, rate_dependent_actuator,
-    reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator, terfenol_rod, two_wire_actuator,
-};
-
-/// All specimens, in the order of the paper's examples.
-static ALL: [&Specimen; 11] = [
-    &ferromagnet::SPECIMEN,
-    &reinforced_concrete_joint::SPECIMEN,
-    &reinforced_concrete_joint::CYCLES,
-    &terfenol_actuator::SPECIMEN,
-    &terfenol_rod::SPECIMEN,
-    &shape_memory_actuator::SPECIMEN,
-    &two_wire_actuator::SPECIMEN,
-    &concrete::SPECIMEN,
-    &piezo_actuator::SPECIMEN,
-    &rate_dependent_actuator::SPECIMEN,
-    &magnetostrictive_actuator::SPECIMEN,
-];
 
 /// A synthetic specimen: where its law comes from, and records to train and to test on.
 ///
@@ -66,16 +45,6 @@ pub(super) struct Columns {
 }
 
 impl Specimen {
-    /// All specimens, in the order of the paper's examples.
-    pub fn all() -> &'static [&'static Specimen] {
-        &ALL
-    }
-
-    /// The specimen of this name; `None` if there is none.
-    pub fn named(name: &str) -> Option<&'static Specimen> {
-        ALL.into_iter().find(|specimen| specimen.name == name)
-    }
-
     /// Names of its columns, with their units.
     pub fn columns(&self) -> ColumnNames {
         ColumnNames {

@@ -3,8 +3,8 @@
 
 use serde::Serialize;
 
-use super::branch::{Branch, Survey};
-use super::rate_dependence::Speeds;
+use crate::branch::{Branch, Survey};
+use crate::rate_dependence::Speeds;
 use hysid_core::data::record::Record;
 
 /// Delays are sought up to this share of the shortest branch, either way.

@@ -1,7 +1,7 @@
 //! How far a branch and the one after it stand open, whether or not they close a loop.
 
-use super::branch::{Branch, Survey};
-use super::{PictureCurve, Piece};
+use crate::branch::{Branch, Survey};
+use crate::{PictureCurve, Piece};
 
 /// Places along the inputs that both branches go through, at most.
 const MOST_PLACES: usize = 100;
