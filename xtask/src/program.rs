@@ -2,7 +2,7 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -49,6 +49,37 @@ pub fn version(program: &Path) -> Result<String> {
     let output = Command::new(program).arg("--version").stdin(Stdio::null()).output();
     let output = output.with_context(|| format!("{} could not be started", program.display()))?;
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// A program in a folder where its files are. Arguments are separated by blanks.
+pub struct InFolder {
+    pub program: PathBuf,
+    pub folder: PathBuf,
+}
+
+impl InFolder {
+    /// A file of the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// The command, which reads nothing.
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.current_dir(&self.folder).args(arguments.split_whitespace()).stdin(Stdio::null());
+        command
+    }
+
+    /// What it writes until it ends.
+    pub fn output(&self, arguments: &str) -> Result<Output> {
+        let output = self.command(arguments).output();
+        output.with_context(|| format!("{} could not be started", self.program.display()))
+    }
+}
+
+/// The last line on stderr.
+pub fn last_line(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_owned()
 }
 
 /// How the program's answers are read.

@@ -3,12 +3,12 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
-use crate::{Usage, program};
+use crate::Usage;
+use crate::program::{self, InFolder, last_line};
 
 /// Rows of each table.
 const ROWS: usize = 500;
@@ -73,12 +73,16 @@ impl Request {
 
 pub fn run(request: &Request) -> Result<()> {
     let new = request.new.clone().map_or_else(program::build, Ok)?;
-    let programs = [fs::canonicalize(&request.old).context("the old program")?, fs::canonicalize(new)?];
     let folder = program::target()?.join("same-models");
     fs::create_dir_all(&folder)?;
+    let in_folder = |program: &Path| -> Result<InFolder> {
+        let program = fs::canonicalize(program).with_context(|| program.display().to_string())?;
+        Ok(InFolder { program, folder: folder.clone() })
+    };
+    let programs = [in_folder(&request.old)?, in_folder(&new)?];
     for specimen in SPECIMENS {
         let arguments = format!("generate {specimen} --noise 1 --force -o {specimen}.csv");
-        answer(&programs[0], &folder, &arguments)?;
+        answer(&programs[0], &arguments)?;
         shorten(&folder.join(format!("{specimen}.csv")))?;
     }
     let everywhere = FITS.iter().flat_map(|fit| SPECIMENS.map(|specimen| (specimen, *fit)));
@@ -86,7 +90,7 @@ pub fn run(request: &Request) -> Result<()> {
     for (specimen, options) in everywhere.chain(FURTHER) {
         let [old, new] = [0, 1].map(|index| {
             let began = Instant::now();
-            let outcome = outcome(&programs[index], &folder, specimen, options);
+            let outcome = outcome(&programs[index], specimen, options);
             spent[index] += began.elapsed();
             outcome
         });
@@ -143,36 +147,22 @@ impl Outcome {
     }
 }
 
-fn outcome(program: &Path, folder: &Path, specimen: &str, options: &str) -> Result<Outcome> {
+fn outcome(program: &InFolder, specimen: &str, options: &str) -> Result<Outcome> {
     let fit = format!("fit {specimen}.csv --no-report --force -o model.json {options}");
-    let (is_fitted, said) = spoken(program, folder, &fit)?;
-    if !is_fitted {
-        return Ok(Outcome::Refused(said));
+    let fitted = program.output(&fit)?;
+    if !fitted.status.success() {
+        return Ok(Outcome::Refused(last_line(&fitted)));
     }
-    let file = fs::read_to_string(folder.join("model.json"))?;
-    let simulated = answer(program, folder, &format!("simulate model.json {specimen}.csv"))?;
+    let file = fs::read_to_string(program.path("model.json"))?;
+    let simulated = answer(program, &format!("simulate model.json {specimen}.csv"))?;
     Ok(Outcome::Model { file, simulated })
 }
 
 /// What the program writes on stdout.
-fn answer(program: &Path, folder: &Path, arguments: &str) -> Result<String> {
-    match spoken(program, folder, arguments)? {
-        (true, said) => Ok(said),
-        (false, said) => bail!("{} {arguments}: {said}", program.display()),
-    }
-}
-
-/// True if the program succeeded, and what it wrote on stdout; otherwise its last line on stderr.
-fn spoken(program: &Path, folder: &Path, arguments: &str) -> Result<(bool, String)> {
-    let output = Command::new(program)
-        .args(arguments.split_whitespace())
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .output()
-        .with_context(|| format!("{} could not be started", program.display()))?;
-    let is_well = output.status.success();
-    let text = String::from_utf8_lossy(if is_well { &output.stdout } else { &output.stderr }).into_owned();
-    Ok((is_well, if is_well { text } else { text.lines().last().unwrap_or_default().into() }))
+fn answer(program: &InFolder, arguments: &str) -> Result<String> {
+    let output = program.output(arguments)?;
+    ensure!(output.status.success(), "{} {arguments}: {}", program.program.display(), last_line(&output));
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// Keeps the first rows of a table.

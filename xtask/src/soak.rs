@@ -3,15 +3,14 @@
 //! limit. A report says what was done and what went wrong.
 
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 use hysid::options::ModelName;
 
-use crate::program;
+use crate::program::{self, InFolder, last_line};
 
 /// Fits killed unless said otherwise.
 pub const KILLS: usize = 200;
@@ -43,10 +42,7 @@ impl Report {
 }
 
 /// The program in a folder of its own.
-struct Bench {
-    program: PathBuf,
-    folder: PathBuf,
-}
+struct Bench(InFolder);
 
 pub fn run(kills: usize) -> Result<()> {
     let program = program::build()?;
@@ -55,7 +51,7 @@ pub fn run(kills: usize) -> Result<()> {
         fs::remove_dir_all(&folder)?;
     }
     fs::create_dir_all(&folder)?;
-    let bench = Bench { program, folder };
+    let bench = Bench(InFolder { program, folder });
     let mut report = Report { lines: Vec::new(), faults: Vec::new() };
     bench.kills(kills, &mut report)?;
     if cfg!(unix) {
@@ -71,40 +67,26 @@ pub fn run(kills: usize) -> Result<()> {
 }
 
 impl Bench {
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(&self.program);
-        command.current_dir(&self.folder).args(arguments.split_whitespace()).stdin(Stdio::null());
-        command
-    }
-
     fn spawn(&self, arguments: &str) -> Result<Child> {
-        let mut command = self.command(arguments);
+        let mut command = self.0.command(arguments);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         command.spawn().context("the program could not be started")
     }
 
-    fn output(&self, arguments: &str) -> Result<Output> {
-        self.command(arguments).output().context("the program could not be started")
-    }
-
     fn succeeds(&self, arguments: &str) -> Result<bool> {
-        Ok(self.output(arguments)?.status.success())
+        Ok(self.0.output(arguments)?.status.success())
     }
 
     /// A fit is killed at random moments and resumed: whatever is there is whole.
     fn kills(&self, kills: usize, report: &mut Report) -> Result<()> {
-        fs::write(self.path("data.csv"), record(1000, 1))?;
+        fs::write(self.0.path("data.csv"), record(1000, 1))?;
         let fit = "fit data.csv --model xpnn+ --starts 2 --epochs 30 --no-report --force -o model.json";
         let began = Instant::now();
         report.require(self.succeeds(fit)?, || "the fit that is to be killed failed".into());
         let undisturbed = began.elapsed();
         let (mut resumed, mut finished) = (0, 0);
         for kill in 0..kills {
-            let has_checkpoint = self.path("state.bin").exists();
+            let has_checkpoint = self.0.path("state.bin").exists();
             let arguments = match has_checkpoint && kill % 4 != 0 {
                 true => "fit data.csv --no-report --force -o model.json --resume state.bin".to_string(),
                 false => format!("{fit} --checkpoint state.bin"),
@@ -119,9 +101,9 @@ impl Bench {
             finished += usize::from(child.wait()?.success());
             let is_whole = self.succeeds("evaluate model.json data.csv")?;
             report.require(is_whole, || format!("kill {kill}: model.json cannot be read"));
-            if self.path("state.bin").exists() && kill % 10 == 0 {
+            if self.0.path("state.bin").exists() && kill % 10 == 0 {
                 resumed += 1;
-                let goes_on = self.output(
+                let goes_on = self.0.output(
                     "fit data.csv --no-report --force -o resumed.json --resume state.bin --time-limit 0.2",
                 )?;
                 report.require(goes_on.status.success(), || format!("kill {kill}: {}", last_line(&goes_on)));
@@ -138,7 +120,7 @@ impl Bench {
     }
 
     fn require_no_partial_files(&self, after: &str, report: &mut Report) -> Result<()> {
-        for entry in fs::read_dir(&self.folder)? {
+        for entry in fs::read_dir(&self.0.folder)? {
             let name = entry?.file_name().to_string_lossy().into_owned();
             report.require(!name.ends_with(".hysid-partial"), || format!("{name} is left after {after}"));
         }
@@ -147,16 +129,16 @@ impl Bench {
 
     /// A file that may not grow: an error, and the old model stays.
     fn full_disk(&self, report: &mut Report) -> Result<()> {
-        self.output("fit data.csv --model pnn --starts 1 --epochs 2 --no-report --force -o full.json")?;
-        let before = fs::read(self.path("full.json"))?;
+        self.0.output("fit data.csv --model pnn --starts 1 --epochs 2 --no-report --force -o full.json")?;
+        let before = fs::read(self.0.path("full.json"))?;
         let mut failed = 0;
         for blocks in 0..6 {
             let line = format!(
                 "ulimit -f {blocks}; exec '{}' fit data.csv --model xpnn+ --starts 1 --epochs 2 --force -o full.json",
-                self.program.display()
+                self.0.program.display()
             );
-            let output = Command::new("sh").current_dir(&self.folder).args(["-c", &line]).output()?;
-            let now = fs::read(self.path("full.json"))?;
+            let output = Command::new("sh").current_dir(&self.0.folder).args(["-c", &line]).output()?;
+            let now = fs::read(self.0.path("full.json"))?;
             let is_whole = self.succeeds("evaluate full.json data.csv")?;
             report.require(is_whole, || format!("with {blocks} blocks full.json cannot be read"));
             if !output.status.success() {
@@ -196,12 +178,12 @@ impl Bench {
     fn nasty_data(&self, report: &mut Report) -> Result<()> {
         report.lines.push(format!("time limit of {LIMIT} s: longest time, models and errors"));
         for (name, text) in nasty() {
-            fs::write(self.path("nasty.csv"), text)?;
+            fs::write(self.0.path("nasty.csv"), text)?;
             let (mut longest, mut slowest, mut models, mut errors) = (0.0, "", 0, 0);
             for model in ModelName::all().chain([ModelName::AUTO]) {
                 let model = model.name();
                 let began = Instant::now();
-                let output = self.output(&format!(
+                let output = self.0.output(&format!(
                     "fit nasty.csv --model {model} --no-report --force -o nasty.json --time-limit {LIMIT}"
                 ))?;
                 let elapsed = began.elapsed().as_secs_f64();
@@ -221,10 +203,6 @@ impl Bench {
         }
         Ok(())
     }
-}
-
-fn last_line(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_owned()
 }
 
 /// A number from 0 to 1, another for each number.

@@ -10,19 +10,19 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
-use crate::model::preprocessing::Seen;
-use crate::model::{Body, Found, Model};
-use crate::options::classical::{ClassicalOptions, Rival};
-use crate::options::shaping::Origin;
-use crate::stop_check::StopCheck;
-pub use memory_need::{MemoryNeed, memory_need};
-pub use validate::cross_validate;
-
 use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
 use crate::model::history::{HistoryPoint, Phase, Run};
+use crate::model::preprocessing::Seen;
+use crate::model::{Body, Found, Model};
 use crate::options::Request;
+use crate::options::classical::{ClassicalOptions, Rival};
 use crate::options::network::Method;
+use crate::options::shaping::Origin;
+use crate::stop_check::StopCheck;
 use crate::termination::Termination;
+
+pub use memory_need::{MemoryNeed, memory_need};
+pub use validate::cross_validate;
 
 /// Identifies a model. The observer is as in [`network::fit`]; of a classical model it hears after every
 /// round of its search, or now and then if there is none, and there is no checkpoint.

@@ -150,6 +150,16 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_the_root_gives_on_under_another_name_is_that_of_its_room() {
+        let found = circles(&[
+            ("a/src/lib.rs", "mod upper; mod lower; pub use upper::Thing as Other;"),
+            ("a/src/upper.rs", "use crate::lower::X;"),
+            ("a/src/lower.rs", "use crate::Other;"),
+        ]);
+        assert_eq!(found.len(), 1, "{found:?}");
+    }
+
+    #[test]
     fn a_long_circle_is_reported_once() {
         let found = circles(&[
             ("a/src/main.rs", "mod one; mod two; mod three;"),
@@ -163,7 +173,14 @@ mod tests {
 
     #[test]
     fn a_circle_of_python_files_is_found() {
-        for back in ["from . import upper", "from .upper import f", "import p.upper", "from p import upper"] {
+        for back in [
+            "from . import upper",
+            "from .upper import f",
+            "import p.upper",
+            "import os, p.upper as u",
+            "from p import upper",
+            "from . import (  # all of it\n        other,\n        upper,\n    )",
+        ] {
             let local = format!("def g():\n    {back}\n");
             let found = circles(&[
                 ("x/python/p/__init__.py", "from .upper import f\n"),

@@ -23,11 +23,10 @@ use crate::fit::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskiiOptio
 use crate::fit::law::neuro_madelung::NeuroMadelungOptions;
 use crate::fit::law::prandtl_ishlinskii::PrandtlIshlinskiiOptions;
 use crate::fit::law::preisach::PreisachOptions;
-use crate::fit::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskiiOptions;
-use crate::fit::law::rate_dependent_prandtl_ishlinskii::ThresholdForm;
+use crate::fit::law::rate_dependent_prandtl_ishlinskii::{
+    RateDependentPrandtlIshlinskiiOptions, ThresholdForm,
+};
 use crate::fit::law::search::{Identified, SearchObserver};
-use crate::law::Classical;
-use crate::law::Law;
 use crate::law::bouc_wen::BoucWen;
 use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
 use crate::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
@@ -37,9 +36,10 @@ use crate::law::neuro_madelung::NeuroMadelung;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::preisach::Preisach;
 use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
-use crate::options::classical::ClassicalOptions;
-use crate::options::classical::Rival;
+use crate::law::{Classical, Law};
+use crate::options::classical::{ClassicalOptions, Rival};
 use crate::stop_check::StopCheck;
+use crate::termination::Termination;
 
 /// A law that can be identified from data.
 pub trait Identify: Law + Sized {
@@ -69,6 +69,32 @@ pub trait Identify: Law + Sized {
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
         Self::identify(data, options, observer, StopCheck::never())
+    }
+}
+
+/// A law that is found by least squares from one start. Such a fit has no rounds that an observer could hear of.
+pub trait LeastSquaresLaw: Law + Sized {
+    /// What can be chosen.
+    type Options;
+
+    /// The law; after a stop, the best of what was compared until then.
+    ///
+    /// # Errors
+    /// As [`Identify::identify`].
+    fn fitted(data: &Dataset, options: &Self::Options, stop: StopCheck<'_>) -> Result<Self>;
+}
+
+impl<L: LeastSquaresLaw> Identify for L {
+    type Options = L::Options;
+
+    fn identify(
+        data: &Dataset,
+        options: &Self::Options,
+        _: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        let (law, termination) = (L::fitted(data, options, stop)?, Termination::Converged);
+        Ok(Identified { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination })
     }
 }
 

@@ -136,9 +136,9 @@ pub struct Fit {
 /// Identifies a network.
 ///
 /// `observer` is told of every epoch and may stop the fit by breaking: the best model so far is then
-/// returned, with [`Termination::Stopped`](crate::termination::Termination::Stopped). It is also asked in the midst of long epochs, so that it is obeyed
-/// soon; what such an epoch has not finished is thrown away. The result depends on data, options and seed only, not on
-/// the number of threads.
+/// returned, with [`Stopped`](crate::termination::Termination::Stopped) as the reason for its end. It is also asked
+/// in the midst of long epochs, so that it is obeyed soon; what such an epoch has not finished is thrown away. The
+/// result depends on data, options and seed only, not on the number of threads.
 ///
 /// # Errors
 /// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.

@@ -16,8 +16,8 @@ pub fn uses(package: &str, files: &[SourceFile]) -> Uses {
     let mut uses = Uses::default();
     for file in files {
         let Some(from) = module(&file.path) else { continue };
-        for (number, line) in (1..).zip(file.text.lines()) {
-            for to in imported(line.trim(), name).filter(|to| modules.contains(to)) {
+        for (number, statement) in imports(&file.text) {
+            for to in imported(&statement, name).into_iter().filter(|to| modules.contains(to)) {
                 uses.add(&from, &to, Place { path: file.path.clone(), line: number });
             }
         }
@@ -25,20 +25,38 @@ pub fn uses(package: &str, files: &[SourceFile]) -> Uses {
     uses
 }
 
-/// The modules of the package that a line may import.
-fn imported<'l>(line: &'l str, package: &str) -> impl Iterator<Item = String> + 'l {
-    let first = |path: &str| path.split(['.', ' ', ',']).next().unwrap_or_default().to_owned();
-    let (whole, inside) = (format!("{package} import "), format!("{package}."));
-    let mut found = Vec::new();
-    if let Some(from) = line.strip_prefix("from ") {
-        let listed = from.strip_prefix(". import ").or_else(|| from.strip_prefix(&whole));
-        if let Some(listed) = listed {
-            found.extend(listed.trim_matches(['(', ')']).split(',').map(|name| first(name.trim())));
-        } else if let Some(path) = from.strip_prefix('.').or_else(|| from.strip_prefix(&inside)) {
-            found.push(first(path));
+/// The imports of a text, each as one line, with the line where it begins.
+fn imports(text: &str) -> Vec<(usize, String)> {
+    let mut found: Vec<(usize, String)> = Vec::new();
+    let mut is_open = false;
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        match found.last_mut().filter(|_| is_open) {
+            Some((_, statement)) => statement.push_str(line),
+            None if line.starts_with("from ") || line.starts_with("import ") => {
+                found.push((number, line.to_owned()));
+            }
+            None => continue,
         }
-    } else if let Some(path) = line.strip_prefix("import ").and_then(|path| path.strip_prefix(&inside)) {
-        found.push(first(path));
+        is_open =
+            found.last().is_some_and(|(_, statement)| statement.contains('(') && !statement.contains(')'));
     }
-    found.into_iter()
+    found
+}
+
+/// The modules of the package that a statement may import.
+fn imported(statement: &str, package: &str) -> Vec<String> {
+    let first = |path: &str| path.split(['.', ' ']).next().unwrap_or_default().to_owned();
+    let each = |listed: &str| -> Vec<String> {
+        listed.replace(['(', ')'], "").split(',').map(|name| first(name.trim())).collect()
+    };
+    let (whole, inside) = (format!("{package} import "), format!("{package}."));
+    if let Some(listed) = statement.strip_prefix("import ") {
+        return listed.split(',').filter_map(|name| name.trim().strip_prefix(&inside)).map(first).collect();
+    }
+    let Some(from) = statement.strip_prefix("from ") else { return Vec::new() };
+    if let Some(listed) = from.strip_prefix(". import ").or_else(|| from.strip_prefix(&whole)) {
+        return each(listed);
+    }
+    from.strip_prefix('.').or_else(|| from.strip_prefix(&inside)).map(first).into_iter().collect()
 }

@@ -66,7 +66,7 @@ fn re_exports(items: &[Item], names: &mut BTreeMap<String, String>) {
     }
 }
 
-/// The paths of a `use`.
+/// The paths of a `use`; behind one that gets another name stands that name.
 fn paths(tree: &UseTree) -> Vec<Vec<String>> {
     let below = |name: String, tree: &UseTree| {
         let mut paths = paths(tree);
@@ -76,7 +76,7 @@ fn paths(tree: &UseTree) -> Vec<Vec<String>> {
     match tree {
         UseTree::Path(path) => below(path.ident.to_string(), &path.tree),
         UseTree::Name(name) => vec![vec![name.ident.to_string()]],
-        UseTree::Rename(name) => vec![vec![name.ident.to_string()]],
+        UseTree::Rename(name) => vec![vec![name.ident.to_string(), name.rename.to_string()]],
         UseTree::Glob(_) => vec![vec!["*".into()]],
         UseTree::Group(group) => group.items.iter().flat_map(paths).collect(),
     }

@@ -1,6 +1,7 @@
 //! Thresholds that a fit tries.
 
 use crate::error::{Error, Result};
+use crate::fit::law::linear::lowest;
 use crate::law::thresholds::check_thresholds;
 
 /// `count` thresholds spread over the range of the input, theory.md (7.5): `r_i = X (i/(n+1))^e` for
@@ -50,3 +51,16 @@ pub(crate) fn fits_on_grids<F>(grids: &[Vec<f64>], fit: impl Fn(&[f64]) -> Resul
 
 /// Most operators of a bank.
 const MOST_OPERATORS: usize = 1000;
+
+/// The grid whose fit has the lowest score, with the weights found on it.
+///
+/// # Errors
+/// As [`fits_on_grids`].
+pub(crate) fn best_on_grids(
+    mut grids: Vec<Vec<f64>>,
+    fit: impl Fn(&[f64]) -> Result<(f64, Vec<f64>)>,
+) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (scores, mut weights): (Vec<f64>, Vec<Vec<f64>>) = fits_on_grids(&grids, fit)?.into_iter().unzip();
+    let best = lowest(&scores);
+    Ok((grids.swap_remove(best), weights.swap_remove(best)))
+}

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::Identify;
+use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
-use crate::fit::law::grids::fits_on_grids;
+use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linear::Bounds;
 use crate::fit::law::linear::FoldSums;
 use crate::fit::law::linear::Folds;
@@ -14,9 +14,6 @@ use crate::fit::law::linear::Gatherer;
 use crate::fit::law::linear::Penalty;
 use crate::fit::law::linear::identifiable_series;
 use crate::fit::law::linear::logarithmic;
-use crate::fit::law::linear::lowest;
-use crate::fit::law::search::Identified;
-use crate::fit::law::search::SearchObserver;
 use crate::law::masing::Masing;
 use crate::law::masing::MasingParts;
 use crate::law::series::Series;
@@ -46,34 +43,24 @@ impl Default for MasingOptions {
     }
 }
 
-impl Identify for Masing {
+/// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.
+impl LeastSquaresLaw for Masing {
     type Options = MasingOptions;
 
-    fn identify(
-        data: &Dataset,
-        options: &MasingOptions,
-        _: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    fn fitted(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Self> {
+        // A stop leaves out grids and penalties that were not compared yet.
+        let series = identifiable_series(data)?;
+        let scaling = Scaling::of(data, None)?;
+        let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
+        let (grid, weights) =
+            best_on_grids(grids, |grid| slopes_on_grid(&series, &scaling, grid, options.sign, stop))?;
+        let slope = scaling.output_deviation / scaling.inputs[0];
+        Self::new(MasingParts {
+            constant: scaling.output(weights[0]),
+            thresholds: grid,
+            slopes: weights[1..].iter().map(|weight| weight * slope).collect(),
+        })
     }
-}
-
-/// Fits a model: least squares with a penalty on the bends of the virgin curve, chosen by
-/// cross-validation. Asked to stop, with the grids and penalties compared so far.
-fn fitted(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Masing> {
-    let series = identifiable_series(data)?;
-    let scaling = Scaling::of(data, None)?;
-    let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-    let fits = fits_on_grids(&grids, |grid| slopes_on_grid(&series, &scaling, grid, options.sign, stop))?;
-    let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
-    let best = lowest(&scores);
-    let slope = scaling.output_deviation / scaling.inputs[0];
-    Masing::new(MasingParts {
-        constant: scaling.output(fits[best].1[0]),
-        thresholds: grids[best].clone(),
-        slopes: fits[best].1[1..].iter().map(|weight| weight * slope).collect(),
-    })
 }
 
 /// Score by cross-validation, and weights (constant, slopes) in scaled units.

@@ -14,13 +14,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::Identify;
+use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::linear::{
     Bounds, FoldSums, Folds, Gatherer, Penalty, Quadratic, identifiable_series, logarithmic, lowest,
 };
-use crate::fit::law::search::Identified;
-use crate::fit::law::search::SearchObserver;
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
@@ -68,61 +66,52 @@ const ITERATIONS_IN_VALIDATION: usize = 10;
 /// Steps refused in a row after which the refinement ends.
 const REFUSALS: usize = 8;
 
-impl Identify for ModifiedPrandtlIshlinskii {
+/// A convex start, then Levenberg-Marquardt.
+impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
     type Options = ModifiedPrandtlIshlinskiiOptions;
 
-    fn identify(
+    fn fitted(
         data: &Dataset,
         options: &ModifiedPrandtlIshlinskiiOptions,
-        _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
-    }
-}
-
-/// Fits a model. Asked to stop, with the best prior so far and no further
-/// refinement.
-fn fitted(
-    data: &Dataset,
-    options: &ModifiedPrandtlIshlinskiiOptions,
-    stop: StopCheck<'_>,
-) -> Result<ModifiedPrandtlIshlinskii> {
-    let series = identifiable_series(data)?;
-    let scaling = Scaling::of(data, None)?;
-    if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
-        let found = options.dead_zones;
-        return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
-    }
-    options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
-    let given: Option<Vec<f64>> =
-        options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
-    let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
-    let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
-    let problems = grids::fits_on_grids(&grids, problem)?;
-    let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
-    let mut candidates = Vec::new();
-    for sign in signs {
-        // The convex problem tells which grid is best, outputs tell the rest.
-        let score = |problem: &Problem| match problem.convex_score(sign, stop) {
+    ) -> Result<Self> {
+        // A stop leaves out priors that were not compared yet, and further refinement.
+        let series = identifiable_series(data)?;
+        let scaling = Scaling::of(data, None)?;
+        if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
+            let found = options.dead_zones;
+            return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
+        }
+        options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
+        let given: Option<Vec<f64>> =
+            options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
+        let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
+        let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
+        let problems = grids::fits_on_grids(&grids, problem)?;
+        let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
+        let mut candidates = Vec::new();
+        for sign in signs {
+            // The convex problem tells which grid is best, outputs tell the rest.
+            let score = |problem: &Problem| match problem.convex_score(sign, stop) {
+                Err(Error::Stopped) => Ok(f64::INFINITY),
+                score => score,
+            };
+            let scores: Vec<f64> = problems.iter().map(score).collect::<Result<_>>()?;
+            let grid = lowest(&scores);
+            for ridge in logarithmic(1e-7, 1e-1, RIDGES) {
+                candidates.push((grid, Prior { sign, ridge }));
+            }
+        }
+        let score = |&(grid, prior): &(usize, Prior)| match problems[grid].score(prior, stop) {
             Err(Error::Stopped) => Ok(f64::INFINITY),
             score => score,
         };
-        let scores: Vec<f64> = problems.iter().map(score).collect::<Result<_>>()?;
-        let grid = lowest(&scores);
-        for ridge in logarithmic(1e-7, 1e-1, RIDGES) {
-            candidates.push((grid, Prior { sign, ridge }));
-        }
+        let scores: Vec<f64> = candidates.par_iter().map(score).collect::<Result<_>>()?;
+        let (grid, prior) = candidates[lowest(&scores)];
+        let problem = &problems[grid];
+        let start = problem.convex_start(prior, stop)?;
+        problem.refine(start, ITERATIONS, stop)?.in_users_units(&grids[grid], &scaling)
     }
-    let score = |&(grid, prior): &(usize, Prior)| match problems[grid].score(prior, stop) {
-        Err(Error::Stopped) => Ok(f64::INFINITY),
-        score => score,
-    };
-    let scores: Vec<f64> = candidates.par_iter().map(score).collect::<Result<_>>()?;
-    let (grid, prior) = candidates[lowest(&scores)];
-    let problem = &problems[grid];
-    let start = problem.convex_start(prior, stop)?;
-    problem.refine(start, ITERATIONS, stop)?.in_users_units(&grids[grid], &scaling)
 }
 
 /// Values of the ridge that are tried.

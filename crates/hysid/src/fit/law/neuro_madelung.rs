@@ -28,7 +28,7 @@ use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
 use crate::fit::law::Identify;
-use crate::law::neuro_madelung::{Branch, NeuroMadelung, argument};
+use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, NeuroMadelung, argument};
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
@@ -505,7 +505,7 @@ impl Walk {
                 let foretold: f64 = (0..n)
                     .map(|i| step[i] * (self.damping * (matrix.diagonal(i) + 1e-6) * step[i] - gradient[i]))
                     .sum();
-                let limit = crate::law::neuro_madelung::LARGEST_WEIGHT;
+                let limit = LARGEST_WEIGHT;
                 let there: Vec<f64> =
                     self.parameters.iter().zip(&step).map(|(p, by)| (p + by).clamp(-limit, limit)).collect();
                 let (objective, mean_square) = self.value(task, &there);

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::Identify;
+use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
-use crate::fit::law::grids::fits_on_grids;
+use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linear::Bounds;
 use crate::fit::law::linear::FoldSums;
 use crate::fit::law::linear::Folds;
@@ -14,9 +14,6 @@ use crate::fit::law::linear::Gatherer;
 use crate::fit::law::linear::Penalty;
 use crate::fit::law::linear::identifiable_series;
 use crate::fit::law::linear::logarithmic;
-use crate::fit::law::linear::lowest;
-use crate::fit::law::search::Identified;
-use crate::fit::law::search::SearchObserver;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::Series;
 use crate::network::scaling::Scaling;
@@ -43,39 +40,25 @@ impl Default for PrandtlIshlinskiiOptions {
     }
 }
 
-impl Identify for PrandtlIshlinskii {
+/// Linear least squares with a ridge penalty chosen by cross-validation.
+impl LeastSquaresLaw for PrandtlIshlinskii {
     type Options = PrandtlIshlinskiiOptions;
 
-    fn identify(
-        data: &Dataset,
-        options: &PrandtlIshlinskiiOptions,
-        _: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
+    fn fitted(data: &Dataset, options: &PrandtlIshlinskiiOptions, stop: StopCheck<'_>) -> Result<Self> {
+        // A stop leaves out grids and penalties that were not compared yet.
+        let series = identifiable_series(data)?;
+        let scaling = Scaling::of(data, None)?;
+        let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
+        let (grid, weights) =
+            best_on_grids(grids, |grid| weights_on_grid(&series, &scaling, grid, options.sign, stop))?;
+        let slope = scaling.output_deviation / scaling.inputs[0];
+        Self::new(
+            scaling.output(weights[0]),
+            weights[1] * slope,
+            grid,
+            weights[2..].iter().map(|weight| weight * slope).collect(),
+        )
     }
-}
-
-/// Fits a model: least squares with a ridge penalty chosen by cross-validation. Asked to stop, with the grids and penalties compared so far.
-fn fitted(
-    data: &Dataset,
-    options: &PrandtlIshlinskiiOptions,
-    stop: StopCheck<'_>,
-) -> Result<PrandtlIshlinskii> {
-    let series = identifiable_series(data)?;
-    let scaling = Scaling::of(data, None)?;
-    let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-    let fits = fits_on_grids(&grids, |grid| weights_on_grid(&series, &scaling, grid, options.sign, stop))?;
-    let scores: Vec<f64> = fits.iter().map(|fit| fit.0).collect();
-    let best = lowest(&scores);
-    let slope = scaling.output_deviation / scaling.inputs[0];
-    let weights = &fits[best].1;
-    PrandtlIshlinskii::new(
-        scaling.output(weights[0]),
-        weights[1] * slope,
-        grids[best].clone(),
-        weights[2..].iter().map(|weight| weight * slope).collect(),
-    )
 }
 
 /// Score by cross-validation and weights (constant, input, plays) in scaled units.

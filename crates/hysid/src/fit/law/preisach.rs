@@ -10,12 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::Identify;
+use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::linear::{
     Bounds, Choice, FoldSums, Folds, Gatherer, Penalty, identifiable_series, logarithmic,
 };
-use crate::fit::law::search::Identified;
-use crate::fit::law::search::SearchObserver;
 use crate::law::preisach::plane::Plane;
 use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
@@ -47,44 +45,35 @@ const INTERVALS_FOR_CHOICE: usize = 20;
 /// Share of the lines that are spread evenly; the others go where the output changes. Designed.
 const EVEN_SHARE: f64 = 0.5;
 
-impl Identify for Preisach {
+/// Linear least squares with a smoothness penalty chosen by cross-validation.
+impl LeastSquaresLaw for Preisach {
     type Options = PreisachOptions;
 
-    fn identify(
-        data: &Dataset,
-        options: &PreisachOptions,
-        _: &mut SearchObserver<'_>,
-        stop: StopCheck<'_>,
-    ) -> Result<Identified<Self>> {
-        Ok(Identified::by_least_squares(fitted(data, options, stop)?))
-    }
-}
-
-/// Fits a model: least squares with a smoothness penalty chosen by cross-validation. Asked to stop, with a penalty chosen by fewer folds, and on the coarser plane that it was
-/// chosen on.
-fn fitted(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Preisach> {
-    let series = identifiable_series(data)?;
-    let scaling = Scaling::of(data, None)?;
-    let intervals = options.intervals;
-    if !(1..=MOST_INTERVALS).contains(&intervals) {
-        return Err(Error::Option(format!("{intervals} intervals: choose 1 to {MOST_INTERVALS}")));
-    }
-    let density = LineDensity::new(&series, data.input_range(0));
-    let penalties = logarithmic(1e-9, 1e2, 12);
-
-    let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
-    let sums = coarse.sums(&series, &scaling, &Folds::of_series(&series), stop)?;
-    let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
-    if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
-        let fine = Problem::new(Plane::new(density.lines(intervals)));
-        // Nothing is held out here, and the sums of a fine plane are gigabytes.
-        let sums = fine.sums(&series, &scaling, &Folds::none(&series), stop);
-        match sums.and_then(|sums| fine.weighted(sums, choice, &scaling, stop)) {
-            Err(Error::Stopped) => {}
-            fitted => return fitted,
+    fn fitted(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Self> {
+        // A stop leaves out folds of the choice, and the finer plane.
+        let series = identifiable_series(data)?;
+        let scaling = Scaling::of(data, None)?;
+        let intervals = options.intervals;
+        if !(1..=MOST_INTERVALS).contains(&intervals) {
+            return Err(Error::Option(format!("{intervals} intervals: choose 1 to {MOST_INTERVALS}")));
         }
+        let density = LineDensity::new(&series, data.input_range(0));
+        let penalties = logarithmic(1e-9, 1e2, 12);
+
+        let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
+        let sums = coarse.sums(&series, &scaling, &Folds::of_series(&series), stop)?;
+        let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
+        if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
+            let fine = Problem::new(Plane::new(density.lines(intervals)));
+            // Nothing is held out here, and the sums of a fine plane are gigabytes.
+            let sums = fine.sums(&series, &scaling, &Folds::none(&series), stop);
+            match sums.and_then(|sums| fine.weighted(sums, choice, &scaling, stop)) {
+                Err(Error::Stopped) => {}
+                fitted => return fitted,
+            }
+        }
+        coarse.weighted(sums, choice, &scaling, stop)
     }
-    coarse.weighted(sums, choice, &scaling, stop)
 }
 
 /// Where the lines of a plane go: the cumulative share of lines along the input, at increasing places.

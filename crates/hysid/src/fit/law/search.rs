@@ -134,13 +134,6 @@ pub struct Identified<L> {
     pub termination: Termination,
 }
 
-impl<L> Identified<L> {
-    /// A law found by linear least squares, without rounds.
-    pub(crate) fn by_least_squares(law: L) -> Self {
-        Self { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination: Termination::Converged }
-    }
-}
-
 /// How much is searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Effort {
