@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use hysid::fit::{identify, memory_need};
 use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::table::OPTIONS;
 use serde_json::{Map, Value, json};
 
 use crate::bytes::Bytes;
@@ -50,7 +51,7 @@ pub fn run(data: &[u8]) {
 }
 
 fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
-    let names = ChosenOptions::names();
+    let names = OPTIONS.map(|option| option.name);
     let models: Vec<&str> = hysid::options::ModelName::all().map(|model| model.name()).collect();
     let mut all = Map::new();
     all.insert("model".into(), json!(bytes.one_of(&models)));
@@ -58,7 +59,7 @@ fn chosen(bytes: &mut Bytes) -> Map<String, Value> {
     all.insert("epochs".into(), json!(2));
     all.insert("starts".into(), json!(1 + bytes.below(3)));
     for _ in 0..bytes.below(MOST) {
-        let name = names[bytes.below(names.len())].clone();
+        let name = names[bytes.below(names.len())].to_string();
         if name == "model" {
             continue;
         }

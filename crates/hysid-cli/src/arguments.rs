@@ -1,5 +1,6 @@
-//! The command line. Every option of a model and its training has the name of its field in the library's
-//! `ChosenOptions`.
+//! The command line.
+
+mod model_options;
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -10,15 +11,12 @@ use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::BAND_PROBABILITIES;
 use hysid::options::ModelName;
-use hysid::options::auto::MOST_MEMBERS;
-use hysid::options::chosen::{ChosenOptions, NEURONS, RateChoice, STARTS};
-use hysid::options::classical::Sign;
-use hysid::options::network::PENALTIES;
-use hysid::options::network::POPULATIONS;
-use hysid::options::network::{FitOptions, Trainer};
+use hysid::options::chosen::RateChoice;
+use hysid::options::network::SEED;
 use hysid::plant::Specimen;
 
 use crate::reproduction::Experiment;
+pub use model_options::{ModelOptions, flag};
 
 /// Identify hysteresis from measured input and output, simulate it and judge the model.
 #[derive(Debug, Parser)]
@@ -148,8 +146,20 @@ fn rate(text: &str) -> Result<RateOption, String> {
     })
 }
 
+const FIT_EXAMPLES: &str = "\
+Examples:
+  hysid fit data.csv                            model data.json and report data.html
+  hysid fit data.csv --members 1                one small model in place of an ensemble
+  hysid fit data.csv --model bouc-wen           one named model
+  hysid fit a.csv b.csv --input i --output flux -o core.json
+  hysid fit --help                              all options; docs/options.md lists them with their ranges";
+
+/// The heading of options of a run, which do not change the model.
+const RUN: &str = "Run";
+
 /// Arguments of `fit`.
 #[derive(Debug, Args)]
+#[command(after_help = FIT_EXAMPLES)]
 pub struct Fit {
     /// Tables of measured data: CSV with a header line
     #[arg(value_name = "TRAIN.csv", required = true)]
@@ -165,29 +175,26 @@ pub struct Fit {
     pub columns: ColumnOptions,
     /// The model and its training.
     #[command(flatten)]
-    pub training: TrainingOptions,
-    /// What can be chosen of models that are no networks.
-    #[command(flatten)]
-    pub rival: RivalOptions,
+    pub model: ModelOptions,
     /// Stop the search after this time and keep the best model so far; reading and writing files is not counted
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,
     /// Store the state of the fit in this file, every few seconds and at the end; for a single network, such as
     /// --model xpnn+
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = RUN, hide_short_help = true)]
     pub checkpoint: Option<PathBuf>,
     /// Go on where this checkpoint left off, with the options it was made with; give the same tables and
     /// columns. It is kept up to date unless --checkpoint names another file
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["TrainingOptions", "RivalOptions"])]
+    #[arg(long, value_name = "FILE", help_heading = RUN, hide_short_help = true, conflicts_with_all = model_options::names())]
     pub resume: Option<PathBuf>,
     /// Threads to use; the model does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
     /// Write no report
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }
 
@@ -206,169 +213,16 @@ pub struct Validate {
     pub columns: ColumnOptions,
     /// The model and its training.
     #[command(flatten)]
-    pub training: TrainingOptions,
-    /// What can be chosen of models that are no networks.
-    #[command(flatten)]
-    pub rival: RivalOptions,
+    pub model: ModelOptions,
     /// Time for each fold, after which its best model so far is judged
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,
     /// Threads to use; the result does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
-}
-
-/// How a model is trained.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Model and training")]
-pub struct TrainingOptions {
-    /// auto: cross-validates all models and combines the best; or a network (pnn, gpnn, preisach-nn,
-    /// xpnn, also epnn, or xpnn+), or another model: see `hysid compare`
-    #[arg(long, value_name = "MODEL", default_value = "auto", value_parser = model)]
-    pub model: ModelName,
-    /// Maximum ensemble size; 1 gives a single small model. With a named model, the number of random
-    /// starts that are combined [default: 32 for auto, otherwise 1]
-    #[arg(long, value_name = "N", value_parser = members)]
-    pub members: Option<usize>,
-    /// Stop neurons of a network [default: 10]
-    #[arg(long, value_name = "N", value_parser = neurons)]
-    pub stops: Option<usize>,
-    /// Tanh neurons, for models that have them [default: 10; neuro-madelung 8, random-stops none]
-    #[arg(long, value_name = "N", value_parser = neurons)]
-    pub hidden: Option<usize>,
-    /// Relaxation neurons of each input, for xpnn+ with time stamps; 0 for none [default: 4]
-    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
-    pub relaxation: Option<usize>,
-    /// Stops do not deteriorate, whatever the family
-    #[arg(long)]
-    pub no_deterioration: bool,
-    /// Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as
-    /// 0.1; 0 for off [default: chosen by cross-validation for auto, otherwise off]
-    #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub companding: Option<f64>,
-    /// The same for the rate, as a share of the rates that are common [default: as above]
-    #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub rate_companding: Option<f64>,
-    /// Add the running peak and the travelled path of the input as inputs, for xpnn+ and random-stops
-    #[arg(long)]
-    pub history: bool,
-    /// Rows at the beginning of each record that drive the memory and are not trained on, where records do
-    /// not begin in the virgin state [default: chosen by cross-validation for auto, otherwise 0]
-    #[arg(long, value_name = "ROWS", value_parser = whole::<usize>)]
-    pub warm_up: Option<usize>,
-    /// The trainer: levenberg-marquardt, or the paper's hybrid of a genetic algorithm and the sub-gradient
-    /// method with space dilatation, or either alone
-    #[arg(long, value_name = "TRAINER", default_value = "levenberg-marquardt", value_parser = trainer())]
-    pub training: Trainer,
-    /// Random networks or populations to start from [default: 8, or 1 for other trainers than
-    /// levenberg-marquardt]
-    #[arg(long, value_name = "N", value_parser = starts)]
-    pub starts: Option<usize>,
-    /// Epochs of each start: iterations or generations, in a hybrid half of each; the best of several
-    /// starts get as many again on all data [default: 40 for levenberg-marquardt, otherwise 2000]
-    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
-    pub epochs: Option<usize>,
-    /// Individuals of the genetic algorithm [default: 50]
-    #[arg(long, value_name = "N", value_parser = population)]
-    pub population: Option<usize>,
-    /// Epochs without noticeable improvement after which genetic algorithm or sub-gradient method end; 0
-    /// for never [default: 50]
-    #[arg(long, value_name = "N", value_parser = whole::<usize>)]
-    pub stall: Option<usize>,
-    /// Seed of the random starts
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed, value_parser = whole::<u64>)]
-    pub seed: u64,
-    /// Share of the data held out to validate a network on [default: the folds of a cross-validation]
-    #[arg(long, value_name = "FRACTION", value_parser = fraction)]
-    pub validation: Option<f64>,
-    /// Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in the
-    /// paper [default: 1e-6, nearly 0 where that lowers the cross-validation error; chosen by
-    /// cross-validation for auto]
-    #[arg(long, value_name = "PENALTY", value_parser = penalty)]
-    pub ridge: Option<f64>,
-    /// Penalty on the squared weights of stops and tanh neurons [default: 1e-7, otherwise as --ridge]
-    #[arg(long, value_name = "PENALTY", value_parser = penalty)]
-    pub decay: Option<f64>,
-}
-
-/// What can be chosen of the models that are no networks.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Models that are no networks")]
-pub struct RivalOptions {
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops
-    #[arg(long, value_name = "N", value_parser = neurons)]
-    pub operators: Option<usize>,
-    /// Thresholds of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii in the unit of the input, such as 0.1,0.2,0.5
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = threshold, allow_hyphen_values = true)]
-    pub thresholds: Option<Vec<f64>>,
-    /// Sign of the weights of plays or cells: any, non-negative or non-positive [default: cross-validated]
-    #[arg(long, value_name = "SIGN", value_parser = sign())]
-    pub sign: Option<Sign>,
-    /// Dead zones on each side of modified-prandtl-ishlinskii [default: 6]
-    #[arg(long, value_name = "N", value_parser = neurons)]
-    pub dead_zones: Option<usize>,
-    /// A weight for each play in place of an exponential law: true or false
-    #[arg(long, value_name = "BOOL")]
-    pub free_weights: Option<bool>,
-    /// Thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate
-    #[arg(long)]
-    pub logarithmic_thresholds: bool,
-    /// bouc-wen with the degradation and pinching of Baber and Noori
-    #[arg(long)]
-    pub degradation: bool,
-    /// jiles-atherton in its differential form of 1992
-    #[arg(long)]
-    pub differential_form: bool,
-}
-
-impl TrainingOptions {
-    /// All that was asked for, by the library's names.
-    pub fn chosen(&self, rival: &RivalOptions) -> ChosenOptions {
-        ChosenOptions {
-            model: Some(self.model),
-            stops: self.stops,
-            hidden: self.hidden,
-            members: self.members,
-            relaxation: self.relaxation,
-            no_deterioration: self.no_deterioration.then_some(true),
-            companding: self.companding,
-            rate_companding: self.rate_companding,
-            history: self.history.then_some(true),
-            warm_up: self.warm_up,
-            training: Some(self.training),
-            starts: self.starts,
-            epochs: self.epochs,
-            population: self.population,
-            stall: self.stall,
-            seed: Some(self.seed),
-            validation: self.validation,
-            ridge: self.ridge,
-            decay: self.decay,
-            operators: rival.operators,
-            thresholds: rival.thresholds.clone(),
-            sign: rival.sign,
-            dead_zones: rival.dead_zones,
-            free_weights: rival.free_weights,
-            logarithmic_thresholds: Some(rival.logarithmic_thresholds),
-            degradation: Some(rival.degradation),
-            differential_form: Some(rival.differential_form),
-        }
-    }
-}
-
-fn sign() -> impl TypedValueParser<Value = Sign> {
-    PossibleValuesParser::new(["any", "non-negative", "non-positive"]).map(|name| match name.as_str() {
-        "non-negative" => Sign::NonNegative,
-        "non-positive" => Sign::NonPositive,
-        _ => Sign::Any,
-    })
-}
-
-fn trainer() -> impl TypedValueParser<Value = Trainer> {
-    PossibleValuesParser::new(Trainer::ALL.map(Trainer::name)).try_map(|name| name.parse::<Trainer>())
 }
 
 fn model(name: &str) -> Result<ModelName, String> {
@@ -388,44 +242,13 @@ fn whole<N: FromStr>(text: &str) -> Result<N, String> {
     text.parse().map_err(|_| advice.into())
 }
 
-fn share(text: &str) -> Result<f64, String> {
-    let share = text.parse().ok().filter(|share: &f64| *share == 0.0 || (1e-6..=1e3).contains(share));
-    share.ok_or_else(|| "choose 0 for never, or 1e-6 to 1e3".into())
-}
-
-fn threshold(text: &str) -> Result<f64, String> {
-    let threshold = text.parse().ok().filter(|threshold: &f64| threshold.is_finite() && *threshold > 0.0);
-    threshold.ok_or_else(|| "thresholds are numbers above 0, such as 0.1,0.2,0.5".into())
-}
-
-fn members(text: &str) -> Result<usize, String> {
-    number_within(text, &(1..=MOST_MEMBERS))
-}
-
 fn folds(text: &str) -> Result<usize, String> {
     number_within(text, &(2..=1000))
-}
-
-fn neurons(text: &str) -> Result<usize, String> {
-    number_within(text, &NEURONS)
-}
-
-fn population(text: &str) -> Result<usize, String> {
-    number_within(text, &POPULATIONS)
-}
-
-fn starts(text: &str) -> Result<usize, String> {
-    number_within(text, &STARTS)
 }
 
 fn fraction(text: &str) -> Result<f64, String> {
     let fraction = text.parse().ok().filter(|&fraction: &f64| fraction > 0.0 && fraction < 1.0);
     fraction.ok_or_else(|| "a number between 0 and 1 is needed".into())
-}
-
-fn penalty(text: &str) -> Result<f64, String> {
-    let penalty = text.parse().ok().filter(|penalty| PENALTIES.contains(penalty));
-    penalty.ok_or_else(|| format!("a number from {} to {:e} is needed", PENALTIES.start(), PENALTIES.end()))
 }
 
 fn probability(text: &str) -> Result<f64, String> {
@@ -514,7 +337,7 @@ pub struct Compare {
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Seed of all randomness
-    #[arg(long, value_name = "N", default_value_t = FitOptions::default().seed, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>)]
     pub seed: u64,
     /// Models fitted at a time, each on one thread [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -643,17 +466,5 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn options_have_the_library_s_names() {
-        let names = |command: clap::Command| -> Vec<String> {
-            let long = |option: &clap::Arg| option.get_long().map(|long| long.replace('-', "_"));
-            command.get_arguments().filter_map(long).collect()
-        };
-        let command = TrainingOptions::augment_args(clap::Command::new("fit"));
-        let mut names = names(RivalOptions::augment_args(command));
-        names.sort();
-        assert_eq!(names, ChosenOptions::names());
     }
 }

@@ -15,6 +15,9 @@ pub enum Error {
     /// A record cannot be used as it is.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// An option of a fit that cannot be used.
+    #[error(transparent)]
+    FitOption(#[from] OptionError),
     /// An architecture, parameter or option outside its meaning.
     #[error("{}", one_line(.0))]
     Option(String),
@@ -173,6 +176,57 @@ impl fmt::Display for DataError {
 }
 
 impl std::error::Error for DataError {}
+
+/// An option of a fit that cannot be used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OptionError {
+    /// The name of the option, in words joined by underscores.
+    pub option: String,
+    /// What is wrong with it.
+    pub problem: OptionProblem,
+}
+
+/// What is wrong with an option of a fit.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum OptionProblem {
+    /// There is no such option; these are the names that there are.
+    Unknown(Vec<&'static str>),
+    /// It cannot have this value.
+    Value {
+        /// The value, as JSON.
+        value: String,
+        /// What is needed, in words.
+        needed: String,
+    },
+}
+
+impl OptionError {
+    /// An option that cannot have this value.
+    pub fn value(option: impl Into<String>, value: impl ToString, needed: impl Into<String>) -> Self {
+        let problem = OptionProblem::Value { value: value.to_string(), needed: needed.into() };
+        Self { option: option.into(), problem }
+    }
+
+    /// A name that is none of the options.
+    pub fn unknown(option: impl Into<String>, known: Vec<&'static str>) -> Self {
+        Self { option: option.into(), problem: OptionProblem::Unknown(known) }
+    }
+}
+
+impl fmt::Display for OptionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let option = one_line(&self.option);
+        match &self.problem {
+            OptionProblem::Unknown(known) => {
+                write!(f, "there is no option `{option}`: the options are {}", known.join(", "))
+            }
+            OptionProblem::Value { value, needed } => write!(f, "{option} {}: {needed}", one_line(value)),
+        }
+    }
+}
+
+impl std::error::Error for OptionError {}
 
 /// The text with visible signs in the place of control characters, which names in files may have.
 fn one_line(text: &str) -> Cow<'_, str> {

@@ -5,7 +5,9 @@
 //! the same ways.
 
 pub mod bouc_wen;
+pub mod facts;
 pub mod generalized_prandtl_ishlinskii;
+pub mod interval;
 pub mod jiles_atherton;
 pub mod masing;
 pub mod modified_prandtl_ishlinskii;
@@ -13,6 +15,7 @@ pub mod neuro_madelung;
 pub mod play_weights;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
+pub mod properties;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
 pub mod thresholds;
@@ -21,6 +24,9 @@ pub mod turning_point_stack;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::Facts;
+use crate::law::interval::Interval;
+use crate::property::Property;
 
 /// What a law is told of one more sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,10 +47,13 @@ impl Sample {
     }
 }
 
-/// What every classical model can do.
-pub trait Law {
+/// A classical model, with all that is known of it: its equations, and what follows from them.
+pub trait Law: Sized {
     /// What it knows of the past.
     type State: Clone + std::fmt::Debug;
+
+    /// What is true of it whatever its parameters.
+    const FACTS: Facts;
 
     /// The state before the first sample of a record.
     fn virgin(&self) -> Self::State;
@@ -54,6 +63,49 @@ pub trait Law {
 
     /// Its parameters, in the field's symbols.
     fn parameters(&self) -> Vec<Parameter>;
+
+    /// The law itself if its parameters are what they may be. A law that can only be made of such parameters has
+    /// nothing to check.
+    ///
+    /// # Errors
+    /// A parameter that is not finite or out of bounds, or parts that do not belong together.
+    fn validated(self) -> Result<Self> {
+        Ok(self)
+    }
+
+    /// True if the output depends on the rate of the input.
+    fn sees_rate(&self) -> bool {
+        false
+    }
+
+    /// True if a move of the input in one direction gives the same in one sample as in many.
+    fn is_step_free(&self) -> bool {
+        !self.sees_rate()
+    }
+
+    /// Properties of its memory that the equations decide, whether it has each; where a property is about the output
+    /// turned about 0, only with an input that is measured from 0. A property of memory is that at a vanishing rate.
+    fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
+
+    /// Outputs that are possible from the virgin state on, for inputs and rates within these: theory.md (10.42).
+    fn output_bound(&self, x: Interval, rate: Interval) -> Interval;
+
+    /// Slope `dy/dx` of the output where the input moves on from `state` at `x`, upwards for a positive direction
+    /// and downwards for a negative one; at a vanishing rate.
+    ///
+    /// By a difference over a millionth of the largest parameter that has the unit of the input: exact to rounding
+    /// for laws of pieces that are straight, but next to a kink.
+    fn tangent(&self, state: &Self::State, x: f64, direction: f64) -> f64 {
+        let has_unit_of_input = |parameter: &Parameter| parameter.unit == Dimension::INPUT;
+        let scales =
+            self.parameters().into_iter().filter(has_unit_of_input).map(|parameter| parameter.value.abs());
+        let scale = scales.fold(0.0, f64::max);
+        let by = direction.signum() * 1e-6 * if scale > 0.0 { scale } else { x.abs().max(1.0) };
+        let mut state = state.clone();
+        let mut at = |x: f64| self.step(&mut state, Sample { x, rate: 0.0, step: 0.0 });
+        let (here, there) = (at(x), at(x + by));
+        (there - here) / by
+    }
 }
 
 /// A parameter of a law.
@@ -142,25 +194,23 @@ impl Dimension {
     }
 }
 
-impl Classical {
-    /// The law, if its parameters are what they may be. Laws that are linear in their weights are checked
-    /// when they are read.
-    ///
-    /// # Errors
-    /// A parameter that is not finite or out of bounds.
-    pub fn validated(self) -> Result<Self> {
-        Ok(match self {
-            Self::GeneralizedPrandtlIshlinskii(law) => law.validated()?.into(),
-            Self::RateDependentPrandtlIshlinskii(law) => law.validated()?.into(),
-            Self::NeuroMadelung(law) => law.validated()?.into(),
-            Self::BoucWen(law) => law.validated()?.into(),
-            Self::JilesAtherton(law) => law.validated()?.into(),
-            checked @ (Self::Masing(_)
-            | Self::PrandtlIshlinskii(_)
-            | Self::ModifiedPrandtlIshlinskii(_)
-            | Self::Preisach(_)) => checked,
-        })
-    }
+/// Methods of any law that are those of the law that it is.
+macro_rules! each_law {
+    ($($law:ident)*:) => {};
+    ($($law:ident)*: $(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) -> $result:ty; $($more:tt)*) => {
+        $(#[$doc])*
+        pub fn $name(&self $(, $argument: $of)*) -> $result {
+            each_law!(@match self, $name($($argument),*), $($law)*)
+        }
+
+        each_law! { $($law)*: $($more)* }
+    };
+    (@match $self:ident, $name:ident $arguments:tt, $($law:ident)*) => {
+        match $self {
+            $(Self::$law(law) => each_law!(@call law, $name $arguments),)*
+        }
+    };
+    (@call $law:ident, $name:ident ($($argument:ident),*)) => { $law.$name($($argument),*) };
 }
 
 /// Makes of the laws one type that is any of them.
@@ -179,26 +229,64 @@ macro_rules! any_of {
             $(#[doc = concat!("Of [`", stringify!($law), "`].")] $law(<$law as Law>::State),)*
         }
 
-        impl Law for Classical {
-            type State = ClassicalState;
+        impl Classical {
+            /// What is true of the law whatever its parameters.
+            pub fn facts(&self) -> &'static Facts {
+                match self {
+                    $(Self::$law(_) => &<$law as Law>::FACTS,)*
+                }
+            }
 
-            fn virgin(&self) -> ClassicalState {
+            /// As [`Law::virgin`].
+            pub fn virgin(&self) -> ClassicalState {
                 match self {
                     $(Self::$law(law) => ClassicalState::$law(law.virgin()),)*
                 }
             }
 
-            fn step(&self, state: &mut ClassicalState, sample: Sample) -> f64 {
+            /// As [`Law::step`].
+            ///
+            /// # Panics
+            /// A state of another law.
+            pub fn step(&self, state: &mut ClassicalState, sample: Sample) -> f64 {
                 match (self, state) {
                     $((Self::$law(law), ClassicalState::$law(state)) => law.step(state, sample),)*
                     (law, state) => panic!("{state:?} is no state of {law:?}"),
                 }
             }
 
-            fn parameters(&self) -> Vec<Parameter> {
-                match self {
-                    $(Self::$law(law) => law.parameters(),)*
+            /// As [`Law::tangent`].
+            ///
+            /// # Panics
+            /// A state of another law.
+            pub fn tangent(&self, state: &ClassicalState, x: f64, direction: f64) -> f64 {
+                match (self, state) {
+                    $((Self::$law(law), ClassicalState::$law(state)) => law.tangent(state, x, direction),)*
+                    (law, state) => panic!("{state:?} is no state of {law:?}"),
                 }
+            }
+
+            /// As [`Law::validated`].
+            ///
+            /// # Errors
+            /// As [`Law::validated`].
+            pub fn validated(self) -> Result<Self> {
+                Ok(match self {
+                    $(Self::$law(law) => Self::$law(law.validated()?),)*
+                })
+            }
+
+            each_law! { $($law)*:
+                /// As [`Law::parameters`].
+                parameters() -> Vec<Parameter>;
+                /// As [`Law::sees_rate`].
+                sees_rate() -> bool;
+                /// As [`Law::is_step_free`].
+                is_step_free() -> bool;
+                /// As [`Law::memory_properties`].
+                memory_properties(about_origin: bool) -> Vec<(Property, bool)>;
+                /// As [`Law::output_bound`].
+                output_bound(x: Interval, rate: Interval) -> Interval;
             }
         }
 
@@ -241,14 +329,23 @@ use prandtl_ishlinskii::PrandtlIshlinskii;
 use preisach::Preisach;
 use rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
 
-any_of!(
-    Masing,
-    PrandtlIshlinskii,
-    ModifiedPrandtlIshlinskii,
-    GeneralizedPrandtlIshlinskii,
-    RateDependentPrandtlIshlinskii,
-    Preisach,
-    NeuroMadelung,
-    BoucWen,
-    JilesAtherton,
-);
+/// Calls a macro with every law: a new one is its file and a word here.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! for_each_law {
+    ($macro:ident) => {
+        $macro! {
+            Masing,
+            PrandtlIshlinskii,
+            ModifiedPrandtlIshlinskii,
+            GeneralizedPrandtlIshlinskii,
+            RateDependentPrandtlIshlinskii,
+            Preisach,
+            NeuroMadelung,
+            BoucWen,
+            JilesAtherton,
+        }
+    };
+}
+
+for_each_law!(any_of);

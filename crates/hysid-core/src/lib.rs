@@ -12,6 +12,7 @@ pub mod model;
 pub mod network;
 pub mod operator;
 pub mod options;
+pub mod property;
 pub mod random;
 pub mod significant;
 pub mod simd;

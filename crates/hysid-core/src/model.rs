@@ -22,7 +22,7 @@ use crate::data::rate::RateMethod;
 use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
-use crate::law::{Classical, Law};
+use crate::law::Classical;
 use crate::model::history::Run;
 use crate::model::preprocessing::Preprocessing;
 use crate::model::selection::Selection;

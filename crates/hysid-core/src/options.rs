@@ -9,6 +9,7 @@ pub mod model_name;
 pub mod network;
 pub mod request;
 pub mod shaping;
+pub mod table;
 pub mod variants;
 
 pub use model_name::ModelName;

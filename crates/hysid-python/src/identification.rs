@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 use hysid::fit;
 use hysid::fit::cross_validate;
 use hysid::fit::network::{Observer, Progress};
-use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::chosen::{ChosenOptions, Ignored, RateChoice};
+use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
@@ -64,9 +65,9 @@ impl Request {
 
     /// Options that the model has no use for, and data that it is not made for, in words.
     fn warnings(&self, data: &Dataset) -> Vec<String> {
-        let trained_by = self.chosen.trained_by();
-        let useless = |option| format!("{trained_by} ignores {option}");
-        let mut warnings: Vec<String> = self.chosen.useless().into_iter().map(useless).collect();
+        let ignored = self.chosen.ignored().into_iter();
+        let mut warnings: Vec<String> =
+            ignored.map(|Ignored { option, by }| format!("{by} ignores {option}")).collect();
         warnings.extend(self.request.cautions(&data.set));
         warnings
     }
@@ -80,8 +81,14 @@ pub fn model_names() -> Vec<&'static str> {
 
 /// The names of all options of a model and its training.
 #[pyfunction]
-pub fn option_names() -> Vec<String> {
-    ChosenOptions::names()
+pub fn option_names() -> Vec<&'static str> {
+    OPTIONS.iter().map(|option| option.name).collect()
+}
+
+/// Name, meaning and default of every option of a model and its training.
+#[pyfunction]
+pub fn option_table() -> Vec<(&'static str, &'static str, &'static str)> {
+    OPTIONS.iter().map(|option| (option.name, option.meaning, option.default)).collect()
 }
 
 /// What a progress callback is told: share of the work done, error on the training rows in percent of std,

@@ -135,6 +135,12 @@ def test_options_have_the_program_s_names(program, tmp_path):
     assert offered - files == keywords - {"x", "y", "time", "records", "progress"}
 
 
+def test_options_are_described_as_in_the_table():
+    described = " ".join(inspect.getdoc(hysid.fit).split())
+    for name, meaning, default in _hysid.option_table():
+        assert re.search(rf" {name} : [a-z ]+, optional {re.escape(f'{meaning}. Default: {default}.')}", described), name
+
+
 def test_the_estimator_has_the_same_options():
     from hysid import HysteresisRegressor
 
@@ -146,7 +152,7 @@ def test_the_estimator_has_the_same_options():
     "keywords",
     [{"model": "masing", "stops": 3}, {"model": "pnn", "population": 20, "epochs": 2, "starts": 1}],
 )
-def test_useless_options_are_warned_of_in_the_same_words(keywords, program, tmp_path):
+def test_ignored_options_are_warned_of_in_the_same_words(keywords, program, tmp_path):
     train, _ = hysid.specimen("terfenol-rod").data()
     train.frame().to_csv(tmp_path / "train.csv", index=False)
     said = program("fit", "train.csv", *options(keywords), folder=tmp_path).stderr

@@ -11,13 +11,13 @@ use crate::error::Result;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
+use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::preprocessing::Seen;
 use crate::model::{Body, Found, Model};
 use crate::options::Request;
 use crate::options::classical::{ClassicalOptions, Rival};
 use crate::options::network::Method;
-use crate::options::shaping::Origin;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
@@ -61,7 +61,7 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
 
 fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
-    let seen = Seen::of(data, &options.shaping, options.rate, options.model.origin())?;
+    let seen = Seen::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
     let is_to_stop = || observer.is_to_stop();

@@ -45,7 +45,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let data = read(train)?;
     let unseen = read(test)?;
     let typed = fit_as_typed(train);
-    let request = typed.training.chosen(&typed.rival).request(None, false);
+    let request = typed.model.0.request(None, false);
     let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     identified.save(&model)?;

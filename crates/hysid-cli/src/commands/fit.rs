@@ -9,14 +9,14 @@ use hysid::fit::network::Checkpoint;
 use hysid::model::Model;
 use hysid::model::selection::Selection;
 use hysid::network::Architecture;
-use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::chosen::{ChosenOptions, Ignored, RateChoice};
 use hysid::options::network::FitOptions;
 use hysid::options::{ModelName, Request};
 use hysid::termination::Termination;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
-use crate::arguments::{Fit, RateOption};
+use crate::arguments::{Fit, RateOption, flag};
 use crate::checkpoint::{self, Keeper};
 use crate::columns::Roles;
 use crate::data::{Data, read_tables};
@@ -38,10 +38,10 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
     check_outputs(&outputs, &inputs)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let chosen = arguments.training.chosen(&arguments.rival);
+    let chosen = &arguments.model.0;
     let request = match &begun {
         Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
-        None => request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?,
+        None => request(chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?,
     };
     if arguments.checkpoint.is_some() {
         check_checkpoints(&request)?;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
     let data = Data::new(tables, roles)?;
-    warn_of_useless(&chosen);
+    warn_of_ignored(chosen);
     let work = Work {
         request: &request,
         begun,
@@ -144,10 +144,10 @@ pub fn request(chosen: &ChosenOptions, rate: &RateOption, roles: &Roles) -> Resu
     Ok(chosen.request(rate_method(rate, roles, chosen.model())?, is_decided))
 }
 
-/// Warns of options that the model makes no use of.
-pub fn warn_of_useless(chosen: &ChosenOptions) {
-    for option in chosen.useless() {
-        warning(format_args!("{} ignores --{}", chosen.trained_by(), option.replace('_', "-")));
+/// Warns of options that the model ignores.
+pub fn warn_of_ignored(chosen: &ChosenOptions) {
+    for Ignored { option, by } in chosen.ignored() {
+        warning(format_args!("{by} ignores --{}", flag(option)));
     }
 }
 

@@ -12,7 +12,7 @@ use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
 use crate::Outcome;
 use crate::arguments::Validate;
 use crate::columns::Roles;
-use crate::commands::fit::{request, warn_of_useless};
+use crate::commands::fit::{request, warn_of_ignored};
 use crate::data::{Data, read_tables};
 use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
@@ -38,10 +38,10 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     let tables = read_tables(&arguments.data)?;
     let file = tables[0].file.clone();
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let chosen = arguments.training.chosen(&arguments.rival);
-    let request = request(&chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
+    let chosen = &arguments.model.0;
+    let request = request(chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
     let data = Data::new(tables, roles)?;
-    warn_of_useless(&chosen);
+    warn_of_ignored(chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;
     say_beforehand(&data, &request, "stopping; the folds that are done are told")?;

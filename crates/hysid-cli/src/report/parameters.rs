@@ -1,7 +1,6 @@
 //! The parameters of a classical law, in the field's symbols and the user's units.
 
 use hysid::data::unit::of_column;
-use hysid::law::Law;
 use hysid::model::Body;
 
 use super::{Report, seen_label};

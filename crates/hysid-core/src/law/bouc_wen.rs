@@ -18,7 +18,11 @@ mod degradation;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 pub use degradation::Degradation;
 
 /// Longest part of the input moved in one step of Runge and Kutta, in yield displacements, where the
@@ -105,20 +109,6 @@ impl BoucWen {
             degradation: None,
         };
         law.validated()
-    }
-
-    /// The law itself if its parameters are within their bounds.
-    ///
-    /// # Errors
-    /// A parameter that is not.
-    pub fn validated(self) -> Result<Self> {
-        for parameter in self.parameters() {
-            parameter.check("Bouc-Wen")?;
-        }
-        if self.yield_displacement <= 0.0 {
-            return Err(Error::Option("Bouc-Wen: the yield displacement must be positive".into()));
-        }
-        Ok(self)
     }
 
     /// `k`: the first stiffness of all.
@@ -248,6 +238,16 @@ impl BoucWen {
 impl Law for BoucWen {
     type State = BoucWenState;
 
+    const FACTS: Facts = Facts {
+        name: "bouc-wen",
+        rate: Rate::Optional,
+        origin: Origin::OfData,
+        identification: Identification::Search,
+        options: &["degradation", "starts", "epochs", "rate_companding"],
+        variant: Some("degradation"),
+        log_error_inside: 0.15,
+    };
+
     fn virgin(&self) -> BoucWenState {
         BoucWenState::default()
     }
@@ -282,5 +282,34 @@ impl Law for BoucWen {
         ];
         all.extend(self.degradation.iter().flat_map(Degradation::parameters));
         all
+    }
+
+    fn validated(self) -> Result<Self> {
+        for parameter in self.parameters() {
+            parameter.check("Bouc-Wen")?;
+        }
+        if self.yield_displacement <= 0.0 {
+            return Err(Error::Option("Bouc-Wen: the yield displacement must be positive".into()));
+        }
+        Ok(self)
+    }
+
+    fn sees_rate(&self) -> bool {
+        self.damping != 0.0
+    }
+
+    fn is_step_free(&self) -> bool {
+        self.n == 1.0 && self.degradation.is_none() && self.damping == 0.0
+    }
+
+    fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
+        let deterioration = self.degradation.is_none().then_some((Property::Deterioration, false));
+        deterioration.into_iter().chain(about_origin.then_some(ODD)).collect()
+    }
+
+    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
+        let yielded = (self.hysteretic_stiffness * self.yield_displacement).abs();
+        let spring = x.times(self.elastic_stiffness).plus(rate.times(self.damping));
+        Interval::about(self.offset, yielded).plus(spring)
     }
 }

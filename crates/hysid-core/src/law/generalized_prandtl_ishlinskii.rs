@@ -15,8 +15,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
+use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// Largest magnitude of what an envelope is made of: sums of weighted plays stay finite.
 const LARGEST: f64 = 1e100;
@@ -95,24 +99,21 @@ pub struct GeneralizedPrandtlIshlinskii {
     pub weights: PlayWeights,
 }
 
-impl GeneralizedPrandtlIshlinskii {
-    /// The law itself if its parameters are within their bounds.
-    ///
-    /// # Errors
-    /// A parameter that is not.
-    pub fn validated(self) -> Result<Self> {
-        const NAME: &str = "generalized Prandtl-Ishlinskii";
-        for parameter in self.parameters() {
-            parameter.check(NAME)?;
-        }
-        self.weights.check(NAME, self.spacing, 0)?;
-        Ok(self)
-    }
-}
+impl GeneralizedPrandtlIshlinskii {}
 
 impl Law for GeneralizedPrandtlIshlinskii {
     /// `S` of every play.
     type State = Vec<f64>;
+
+    const FACTS: Facts = Facts {
+        name: "generalized-prandtl-ishlinskii",
+        rate: Rate::Ignored,
+        origin: Origin::OfData,
+        identification: Identification::Search,
+        options: &["operators", "free_weights", "starts", "epochs"],
+        variant: None,
+        log_error_inside: 0.15,
+    };
 
     fn virgin(&self) -> Vec<f64> {
         vec![self.initial; self.weights.plays()]
@@ -153,5 +154,29 @@ impl Law for GeneralizedPrandtlIshlinskii {
         ));
         all.extend(self.weights.parameters("p", 0, Dimension::OUTPUT, Dimension::NONE));
         all
+    }
+
+    fn validated(self) -> Result<Self> {
+        const NAME: &str = "generalized Prandtl-Ishlinskii";
+        for parameter in self.parameters() {
+            parameter.check(NAME)?;
+        }
+        self.weights.check(NAME, self.spacing, 0)?;
+        Ok(self)
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        [WIPES_OUT.as_slice(), &[CONGRUENT]].concat()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        let left = x.rising(|x| self.left.value(x)).1;
+        let right = x.rising(|x| self.right.value(x)).0;
+        let play = |(index, weight): (usize, f64)| {
+            let r = self.spacing * index as f64;
+            Interval(self.initial.min(right + r), self.initial.max(left - r)).times(weight)
+        };
+        let weights = self.weights.values(self.spacing, 0);
+        Interval::sum(weights.into_iter().enumerate().map(play)).plus(Interval::point(self.offset))
     }
 }

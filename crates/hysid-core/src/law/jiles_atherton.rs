@@ -16,7 +16,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// Longest part of the field moved in one step of Runge and Kutta, as a share of the smaller of `a` and
 /// `k`.
@@ -79,20 +83,6 @@ pub struct JilesAthertonState {
 }
 
 impl JilesAtherton {
-    /// The law itself if its parameters are within their bounds.
-    ///
-    /// # Errors
-    /// A parameter that is not.
-    pub fn validated(self) -> Result<Self> {
-        for parameter in self.parameters() {
-            parameter.check("Jiles-Atherton")?;
-        }
-        if !(self.a > 0.0 && self.k > 0.0) {
-            return Err(Error::Option("Jiles-Atherton: a and k must be positive".into()));
-        }
-        Ok(self)
-    }
-
     /// `α`, in the unit of the input for that of the output; infinite or NaN without saturation.
     pub fn alpha(&self) -> f64 {
         self.coupling / self.saturation
@@ -168,6 +158,16 @@ fn langevin(x: f64) -> (f64, f64) {
 impl Law for JilesAtherton {
     type State = JilesAthertonState;
 
+    const FACTS: Facts = Facts {
+        name: "jiles-atherton",
+        rate: Rate::Ignored,
+        origin: Origin::Zero,
+        identification: Identification::Search,
+        options: &["differential_form", "starts", "epochs"],
+        variant: Some("differential_form"),
+        log_error_inside: 0.15,
+    };
+
     fn virgin(&self) -> JilesAthertonState {
         JilesAthertonState::default()
     }
@@ -196,5 +196,27 @@ impl Law for JilesAtherton {
             ),
             Parameter::new("c", "reversible share", self.c, C_BOUNDS, Dimension::NONE),
         ]
+    }
+
+    fn validated(self) -> Result<Self> {
+        for parameter in self.parameters() {
+            parameter.check("Jiles-Atherton")?;
+        }
+        if !(self.a > 0.0 && self.k > 0.0) {
+            return Err(Error::Option("Jiles-Atherton: a and k must be positive".into()));
+        }
+        Ok(self)
+    }
+
+    fn is_step_free(&self) -> bool {
+        false
+    }
+
+    fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
+        [Some((Property::Deterioration, false)), about_origin.then_some(ODD)].into_iter().flatten().collect()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        Interval::about(self.offset, self.saturation.abs()).plus(x.times(self.permeability))
     }
 }

@@ -15,9 +15,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// A model by Masing's rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -102,6 +106,16 @@ impl Law for Masing {
     /// Turning points with the output there, the constant left out.
     type State = TurningPointStack<f64>;
 
+    const FACTS: Facts = Facts {
+        name: "masing",
+        rate: Rate::Ignored,
+        origin: Origin::OfData,
+        identification: Identification::LeastSquares,
+        options: &["operators", "thresholds", "sign"],
+        variant: None,
+        log_error_inside: 0.85,
+    };
+
     fn virgin(&self) -> Self::State {
         TurningPointStack::default()
     }
@@ -143,5 +157,17 @@ impl Law for Masing {
             ));
         }
         all
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        let parts = self.parts();
+        let stops = parts.thresholds.iter().zip(parts.slopes.windows(2));
+        let stops = stops.map(|(&r, slopes)| x.stop(r).times(slopes[0] - slopes[1]));
+        let last = parts.slopes.last().copied().unwrap_or(0.0);
+        Interval::sum(stops).plus(x.times(last)).plus(Interval::point(parts.constant))
     }
 }

@@ -13,9 +13,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::properties::WIPES_OUT;
 use crate::law::thresholds::check_weights;
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// A modified Prandtl-Ishlinskii model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -148,6 +152,16 @@ impl Law for ModifiedPrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
 
+    const FACTS: Facts = Facts {
+        name: "modified-prandtl-ishlinskii",
+        rate: Rate::Ignored,
+        origin: Origin::OfData,
+        identification: Identification::LeastSquares,
+        options: &["operators", "thresholds", "sign", "dead_zones"],
+        variant: None,
+        log_error_inside: 1.05,
+    };
+
     fn virgin(&self) -> Vec<f64> {
         self.hysteresis.virgin()
     }
@@ -169,5 +183,19 @@ impl Law for ModifiedPrandtlIshlinskii {
             all.push(parameter(format!("w_S{}", j + 1), "weight of a dead zone", w, Dimension::NONE));
         }
         all
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        WIPES_OUT.to_vec()
+    }
+
+    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
+        let plays = self.hysteresis().output_bound(x, rate);
+        // Far out the polygon is a line, which goes to infinity.
+        if plays.0.is_finite() && plays.1.is_finite() {
+            plays.rising(|z| self.superposition().value(z))
+        } else {
+            Interval::ALL
+        }
     }
 }

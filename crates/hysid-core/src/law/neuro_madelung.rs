@@ -18,8 +18,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// The output may leave the range that was trained on by so many of these ranges. A chain of wrong
 /// branches, each beginning at the end of the one before, can otherwise grow beyond all bounds; a
@@ -28,6 +31,9 @@ const BEYOND: f64 = 1.0;
 
 /// Scaled inputs of the network are limited to this: far outside of the data it is saturated anyway.
 const LARGEST_INPUT: f64 = 1e6;
+
+/// Most tanh neurons that can be asked for: the search takes the square of their number in memory.
+pub const MOST_HIDDEN: usize = 100;
 
 /// A neuro-Madelung model in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,34 +107,6 @@ pub fn argument(neuron: &[f64], inputs: &[f64]) -> f64 {
 }
 
 impl NeuroMadelung {
-    /// The law itself if its parameters are within their bounds.
-    ///
-    /// # Errors
-    /// Scales that are not positive, a network of another shape, or a weight that is not finite.
-    pub fn validated(self) -> Result<Self> {
-        let refuse = |what: &str| Err(Error::Option(format!("neuro-Madelung: {what}")));
-        let positive = |scale: f64| scale > 0.0 && scale <= LARGEST_VALUE;
-        if !(positive(self.input_scale)
-            && positive(self.output_scale)
-            && self.rate_scale.is_none_or(positive))
-        {
-            return refuse("a scale is not positive");
-        }
-        let (low, high) = self.output_range;
-        let is_range = low <= high && low.abs() <= LARGEST_VALUE && high.abs() <= LARGEST_VALUE;
-        if !is_range || self.output_mean.is_nan() || self.output_mean.abs() > LARGEST_VALUE {
-            return refuse("the range of the output is none");
-        }
-        let neurons = self.output.len().saturating_sub(1);
-        if neurons == 0 || self.hidden.len() != neurons * (1 + self.inputs()) {
-            return refuse("the network has another shape than its inputs and neurons ask for");
-        }
-        for parameter in self.parameters() {
-            parameter.check("neuro-Madelung")?;
-        }
-        Ok(self)
-    }
-
     /// Inputs of the network.
     pub fn inputs(&self) -> usize {
         3 + usize::from(self.rate_scale.is_some())
@@ -152,6 +130,16 @@ impl NeuroMadelung {
 impl Law for NeuroMadelung {
     /// Turning points, scaled.
     type State = TurningPointStack<f64>;
+
+    const FACTS: Facts = Facts {
+        name: "neuro-madelung",
+        rate: Rate::Optional,
+        origin: Origin::OfData,
+        identification: Identification::Search,
+        options: &["hidden", "starts", "epochs", "rate_companding"],
+        variant: None,
+        log_error_inside: 1.25,
+    };
 
     fn virgin(&self) -> TurningPointStack<f64> {
         TurningPointStack::default()
@@ -184,6 +172,44 @@ impl Law for NeuroMadelung {
         });
         let virgin = Parameter::new("y_0", "virgin output, scaled", self.virgin_output, any, Dimension::NONE);
         hidden.chain(output).chain([virgin]).collect()
+    }
+
+    fn validated(self) -> Result<Self> {
+        let refuse = |what: &str| Err(Error::Option(format!("neuro-Madelung: {what}")));
+        let positive = |scale: f64| scale > 0.0 && scale <= LARGEST_VALUE;
+        if !(positive(self.input_scale)
+            && positive(self.output_scale)
+            && self.rate_scale.is_none_or(positive))
+        {
+            return refuse("a scale is not positive");
+        }
+        let (low, high) = self.output_range;
+        let is_range = low <= high && low.abs() <= LARGEST_VALUE && high.abs() <= LARGEST_VALUE;
+        if !is_range || self.output_mean.is_nan() || self.output_mean.abs() > LARGEST_VALUE {
+            return refuse("the range of the output is none");
+        }
+        let neurons = self.output.len().saturating_sub(1);
+        if neurons == 0 || self.hidden.len() != neurons * (1 + self.inputs()) {
+            return refuse("the network has another shape than its inputs and neurons ask for");
+        }
+        for parameter in self.parameters() {
+            parameter.check("neuro-Madelung")?;
+        }
+        Ok(self)
+    }
+
+    fn sees_rate(&self) -> bool {
+        self.rate_scale.is_some()
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        vec![(Property::WipingOut, true)]
+    }
+
+    fn output_bound(&self, _: Interval, _: Interval) -> Interval {
+        // theory.md (8.20): its own limit.
+        let (low, high) = self.output_range;
+        Interval(low - (high - low), high + (high - low))
     }
 }
 

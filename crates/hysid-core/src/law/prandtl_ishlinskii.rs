@@ -12,9 +12,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::operator::play;
+use crate::property::Property;
 
 /// A Prandtl-Ishlinskii model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,6 +100,16 @@ impl Law for PrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
 
+    const FACTS: Facts = Facts {
+        name: "prandtl-ishlinskii",
+        rate: Rate::Ignored,
+        origin: Origin::OfData,
+        identification: Identification::LeastSquares,
+        options: &["operators", "thresholds", "sign"],
+        variant: None,
+        log_error_inside: 0.85,
+    };
+
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]
     }
@@ -119,6 +133,19 @@ impl Law for PrandtlIshlinskii {
             all.push(parameter(format!("w_{}", i + 1), "weight of a play", w, any, Dimension::SLOPE));
         }
         all
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        // As plays and as stops; what both allow.
+        let each = || self.thresholds.iter().zip(&self.weights);
+        let plays = Interval::sum(each().map(|(&r, &w)| x.play(r).times(w))).plus(x.times(self.linear));
+        let stops = Interval::sum(each().map(|(&r, &w)| x.stop(r).times(-w)));
+        let slope = self.linear + self.weights.iter().sum::<f64>();
+        plays.common(stops.plus(x.times(slope))).plus(Interval::point(self.constant))
     }
 }
 

@@ -17,9 +17,13 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
 use crate::law::turning_point_stack::{Branch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 use everett::Everett;
 use plane::Plane;
 
@@ -136,6 +140,16 @@ impl Law for Preisach {
     /// Dominant extrema, each with the output there, reversible part left out.
     type State = TurningPointStack<f64>;
 
+    const FACTS: Facts = Facts {
+        name: "preisach",
+        rate: Rate::Ignored,
+        origin: Origin::OfData,
+        identification: Identification::LeastSquares,
+        options: &["operators", "sign"],
+        variant: None,
+        log_error_inside: 0.85,
+    };
+
     fn virgin(&self) -> Self::State {
         TurningPointStack::default()
     }
@@ -172,5 +186,15 @@ impl Law for Preisach {
             all.push(parameter(format!("w_{i},{j}"), "weight of a cell's relays", w, Dimension::OUTPUT));
         }
         all
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        [WIPES_OUT.as_slice(), &[CONGRUENT]].concat()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        let weights = self.weights();
+        let relays: f64 = weights.reversible.iter().chain(&weights.cells).map(|w| w.abs()).sum();
+        Interval::about(weights.constant, relays).plus(x.times(weights.slope))
     }
 }

@@ -14,8 +14,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
+use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
 
 /// How the thresholds grow with the rate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -87,19 +91,6 @@ pub struct RateDependentPrandtlIshlinskii {
 }
 
 impl RateDependentPrandtlIshlinskii {
-    /// The law itself if its parameters are within their bounds.
-    ///
-    /// # Errors
-    /// A parameter that is not.
-    pub fn validated(self) -> Result<Self> {
-        const NAME: &str = "rate-dependent Prandtl-Ishlinskii";
-        for parameter in self.parameters() {
-            parameter.check(NAME)?;
-        }
-        self.weights.check(NAME, self.spacing, 1)?;
-        Ok(self)
-    }
-
     /// Moves the plays to the next input.
     pub fn advance(&self, plays: &mut [f64], sample: Sample) {
         let (added, factor) = self.thresholds.growth(sample.rate);
@@ -113,6 +104,23 @@ impl RateDependentPrandtlIshlinskii {
 impl Law for RateDependentPrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
+
+    const FACTS: Facts = Facts {
+        name: "rate-dependent-prandtl-ishlinskii",
+        rate: Rate::Needed,
+        origin: Origin::OfData,
+        identification: Identification::Search,
+        options: &[
+            "operators",
+            "free_weights",
+            "logarithmic_thresholds",
+            "starts",
+            "epochs",
+            "rate_companding",
+        ],
+        variant: Some("logarithmic_thresholds"),
+        log_error_inside: 0.15,
+    };
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.weights.plays()]
@@ -142,5 +150,28 @@ impl Law for RateDependentPrandtlIshlinskii {
         all.extend(self.thresholds.parameters());
         all.extend(self.weights.parameters("a", 1, Dimension::SLOPE, Dimension::INPUT));
         all
+    }
+
+    fn validated(self) -> Result<Self> {
+        const NAME: &str = "rate-dependent Prandtl-Ishlinskii";
+        for parameter in self.parameters() {
+            parameter.check(NAME)?;
+        }
+        self.weights.check(NAME, self.spacing, 1)?;
+        Ok(self)
+    }
+
+    fn sees_rate(&self) -> bool {
+        true
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        [WIPES_OUT.as_slice(), &[CONGRUENT, MASING, ODD]].concat()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        // Whatever the rate, thresholds are not negative.
+        let plays = self.weights.values(self.spacing, 1).into_iter().map(|weight| x.play(0.0).times(weight));
+        Interval::sum(plays).plus(x.times(self.spring)).plus(Interval::point(self.offset))
     }
 }

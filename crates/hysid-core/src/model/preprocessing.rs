@@ -19,9 +19,9 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Excitation, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::Origin;
 use crate::network::scaling::SCALES;
 use crate::options::shaping::HISTORY_INPUTS;
-use crate::options::shaping::Origin;
 use crate::options::shaping::Shaping;
 
 /// How a model sees its input, in the user's units.

@@ -6,7 +6,7 @@
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
-use crate::law::{Classical, ClassicalState, Law, Sample};
+use crate::law::{Classical, ClassicalState, Sample};
 use crate::model::band::disagreement;
 use crate::model::ensemble::{Council, Excursion};
 use crate::model::preprocessing::{Past, Preprocessing};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
-use crate::law::{ClassicalState, Law, Sample};
+use crate::law::{ClassicalState, Sample};
 use crate::model::ensemble::{Council, Excursion};
 use crate::model::preprocessing::{Past, limited};
 use crate::model::{Body, Model};

@@ -51,6 +51,16 @@ impl Family {
         matches!(self, Family::Gpnn | Family::Xpnn | Family::XpnnPlus)
     }
 
+    /// True if the family has a layer of tanh neurons.
+    pub fn has_tanh_layer(self) -> bool {
+        !matches!(self, Family::Pnn | Family::Gpnn)
+    }
+
+    /// True if the family has relaxation neurons where there is time.
+    pub fn relaxes(self) -> bool {
+        self == Family::XpnnPlus
+    }
+
     /// True if the family takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         self == Family::XpnnPlus

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::rate::RateMethod;
 use crate::options::Request;
+use crate::options::network::SEED;
 
 /// The name of the automatic model.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -79,7 +80,7 @@ impl Default for AutoOptions {
             warm_up: None,
             ridge: None,
             decay: None,
-            seed: 1,
+            seed: SEED,
         }
     }
 }

@@ -1,93 +1,56 @@
 //! The options of a fit by their names, all of them optional: what the command line and the Python package
 //! have in common.
 
-use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
 use crate::data::rate::RateMethod;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
+use crate::law::neuro_madelung::MOST_HIDDEN;
 use crate::network::{Family, Sizes};
-use crate::options::auto::{AutoOptions, MOST_MEMBERS};
-use crate::options::classical::Sign;
-use crate::options::classical::{ClassicalOptions, Rival};
-use crate::options::network::POPULATIONS;
+use crate::options::auto::AutoOptions;
+use crate::options::classical::{ClassicalOptions, Rival, Sign};
 use crate::options::network::{FitOptions, Trainer};
-use crate::options::network::{MOST_EPOCHS, PENALTIES};
 use crate::options::shaping::Shaping;
+use crate::options::table::{FitOption, OPTIONS, Values, check};
 use crate::options::{ModelName, Request};
 
-/// Numbers of neurons or operators that can be asked for.
-pub const NEURONS: RangeInclusive<usize> = 1..=1000;
-
-/// Numbers of starts that can be asked for.
-pub const STARTS: RangeInclusive<usize> = 1..=10_000;
-
-/// What was asked for; `None` is the default of the model or its trainer. An option that a model has no use
-/// for is left alone, and told by [`ChosenOptions::useless`].
+/// What was asked for; `None` is the default of the model or its trainer. What each option means is in its row of
+/// [`OPTIONS`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[allow(missing_docs, reason = "each field is the option of its name")]
 pub struct ChosenOptions {
-    /// Which model; `auto` if not said.
     #[serde(deserialize_with = "named")]
     pub model: Option<ModelName>,
-    /// Models that answer together, at most; 1 for a single one. Of a model that is named, so many starts
-    /// answer together.
     pub members: Option<usize>,
-    /// Stop neurons of a network.
     pub stops: Option<usize>,
-    /// Tanh neurons, for models that have them.
     pub hidden: Option<usize>,
-    /// Relaxation neurons of each input, for `xpnn+` with time stamps.
     pub relaxation: Option<usize>,
-    /// Stops do not deteriorate, whatever the family.
     pub no_deterioration: Option<bool>,
-    /// Spreads the first input about zero: the scale of the spreading, as a share of its largest magnitude.
-    pub companding: Option<f64>,
-    /// The same for the rate.
-    pub rate_companding: Option<f64>,
-    /// The largest magnitude and the path of the input so far are inputs too, for `xpnn+` and
-    /// `random-stops`.
     pub history: Option<bool>,
-    /// Rows at the beginning of each record that drive the memory and are not trained on.
+    pub companding: Option<f64>,
+    pub rate_companding: Option<f64>,
     pub warm_up: Option<usize>,
-    /// How a network is trained.
     #[serde(deserialize_with = "named")]
     pub training: Option<Trainer>,
-    /// Random networks or populations to start from.
     pub starts: Option<usize>,
-    /// Epochs of each start.
     pub epochs: Option<usize>,
-    /// Individuals of the genetic algorithm.
     pub population: Option<usize>,
-    /// Epochs without noticeable improvement after which genetic algorithm or sub-gradient method end.
     pub stall: Option<usize>,
-    /// Seed of all randomness.
     pub seed: Option<u64>,
-    /// Share of the data held out to validate a network on, in the place of the folds of a cross-validation.
     pub validation: Option<f64>,
-    /// Penalty on the output weights of a network.
     pub ridge: Option<f64>,
-    /// Penalty on the weights of stops and tanh neurons.
     pub decay: Option<f64>,
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops.
     pub operators: Option<usize>,
-    /// Thresholds of plays in the unit of the input.
     pub thresholds: Option<Vec<f64>>,
-    /// Sign of the weights of plays or cells.
     pub sign: Option<Sign>,
-    /// Dead zones on each side of a modified Prandtl-Ishlinskii model.
     pub dead_zones: Option<usize>,
-    /// A weight for each play in place of an exponential law.
     pub free_weights: Option<bool>,
-    /// Thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the rate.
     pub logarithmic_thresholds: Option<bool>,
-    /// Bouc-Wen with the degradation and pinching of Baber and Noori.
     pub degradation: Option<bool>,
-    /// Jiles-Atherton in its differential form of 1992.
     pub differential_form: Option<bool>,
 }
 
@@ -95,63 +58,24 @@ impl ChosenOptions {
     /// The options that a map of names and values asks for; `null` is the default.
     ///
     /// # Errors
-    /// A name that is no option, or a value outside an option's meaning: the text names the option.
-    pub fn of(named: Map<String, Value>) -> Result<Self> {
-        let names = Self::names();
-        for (name, value) in &named {
-            if !names.contains(name) {
-                let names = names.join(", ");
-                return Err(Error::Option(format!("there is no option `{name}`: the options are {names}")));
-            }
-            let alone = Map::from_iter([(name.clone(), value.clone())]);
-            read::<Self>(alone).map_err(|problem| Error::Option(format!("{name}: {problem}")))?;
-        }
-        let options: Self = read(named).map_err(Error::Option)?;
+    /// A name that is no option, a value that the option cannot have, or one that this model cannot have.
+    pub fn of(mut named: Map<String, Value>) -> Result<Self> {
+        named.retain(|_, value| !value.is_null());
+        check(named.iter().map(|(name, value)| (name.as_str(), value.clone())))?;
+        let options: Self = serde_json::from_value(Value::Object(named))
+            .map_err(|error| OptionError::value("options", Value::Null, error.to_string()))?;
         options.check()?;
         Ok(options)
     }
 
-    /// The names of all options, in alphabetical order.
-    pub fn names() -> Vec<String> {
-        match serde_json::to_value(Self::default()) {
-            Ok(Value::Object(fields)) => fields.keys().cloned().collect(),
-            _ => unreachable!("the options are a map"),
-        }
-    }
-
-    /// Refuses numbers outside the ranges that the command line has.
+    /// Refuses what the model that was named cannot have.
     fn check(&self) -> Result<()> {
-        let counts = [
-            ("members", self.members, 1..=MOST_MEMBERS),
-            ("stops", self.stops, NEURONS),
-            ("hidden", self.hidden, NEURONS),
-            ("operators", self.operators, NEURONS),
-            ("dead_zones", self.dead_zones, NEURONS),
-            ("starts", self.starts, STARTS),
-            ("epochs", self.epochs, 0..=MOST_EPOCHS),
-            ("population", self.population, POPULATIONS),
-        ];
-        for (name, count, range) in counts {
-            if let Some(count) = count.filter(|count| !range.contains(count)) {
-                let (low, high) = range.into_inner();
-                return Err(Error::Option(format!("{name} {count}: choose {low} to {high}")));
+        match (self.model(), self.hidden) {
+            (ModelName::Rival(Rival::NeuroMadelung), Some(hidden)) if hidden > MOST_HIDDEN => {
+                let needed = format!("neuro-madelung has at most {MOST_HIDDEN} tanh neurons");
+                Err(OptionError::value("hidden", hidden, needed).into())
             }
-        }
-        match self.validation {
-            Some(share) if !(share > 0.0 && share < 1.0) => {
-                Err(Error::Option(format!("validation {share}: a number between 0 and 1 is needed")))
-            }
-            _ => {
-                [("ridge", self.ridge), ("decay", self.decay)].into_iter().try_for_each(|(name, penalty)| {
-                    match penalty {
-                        Some(penalty) if !PENALTIES.contains(&penalty) => {
-                            let (low, high) = (PENALTIES.start(), PENALTIES.end());
-                            Err(Error::Option(format!("{name} {penalty}: choose {low} to {high}")))
-                        }
-                        _ => Ok(()),
-                    }
-                })
-            }
+            _ => Ok(()),
         }
     }
 
@@ -163,10 +87,11 @@ impl ChosenOptions {
     /// The library's request, with the rate decided; `always_rate` if the user has, and wants no model
     /// without it.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> Request {
+        let used = self.used();
         let alone = match self.model() {
-            ModelName::Network(family) => Request::Network(self.of_network(family, rate)),
-            ModelName::Rival(rival) => Request::Classical(self.of_rival(rival, rate)),
-            ModelName::Auto(_) => return Request::Auto(self.of_auto(rate, always_rate, None)),
+            ModelName::Network(family) => Request::Network(used.of_network(family, rate)),
+            ModelName::Rival(rival) => Request::Classical(used.of_rival(rival, rate)),
+            ModelName::Auto(_) => return Request::Auto(used.of_auto(rate, always_rate, None)),
         };
         match (self.members, alone) {
             (None | Some(0 | 1), alone) => alone,
@@ -174,9 +99,19 @@ impl ChosenOptions {
                 if let Request::Network(options) = &mut alone {
                     options.starts = 1;
                 }
-                Request::Auto(self.of_auto(rate, always_rate, Some(Box::new(alone))))
+                Request::Auto(used.of_auto(rate, always_rate, Some(Box::new(alone))))
             }
         }
+    }
+
+    /// The same without the options that the model or its trainer ignores.
+    fn used(&self) -> Self {
+        let ignored = self.ignored();
+        let Ok(Value::Object(mut named)) = serde_json::to_value(self) else {
+            unreachable!("the options are a map")
+        };
+        named.retain(|name, _| !ignored.iter().any(|ignored| ignored.option == name));
+        serde_json::from_value(Value::Object(named)).expect("the options with fewer fields")
     }
 
     fn of_auto(
@@ -270,87 +205,34 @@ impl ChosenOptions {
         self.training.unwrap_or_default()
     }
 
-    /// The trainer of a network, or the model that is fitted in its own way.
-    pub fn trained_by(&self) -> &'static str {
-        match self.model() {
-            ModelName::Network(_) => self.trainer().name(),
-            ModelName::Rival(rival) => rival.name(),
-            ModelName::Auto(_) => ModelName::AUTO.name(),
-        }
-    }
-
-    /// Names of options that were asked for and that the model or its trainer has no use for.
-    pub fn useless(&self) -> Vec<&'static str> {
-        let model = self.model();
-        if model == ModelName::AUTO {
-            return self.useless_for_auto();
-        }
-        let is_rival = matches!(model, ModelName::Rival(_));
-        let is = |rival: Rival| model == ModelName::Rival(rival);
-        let asked = |flag: Option<bool>| flag == Some(true);
-        let given_thresholds =
-            is(Rival::Masing) || is(Rival::PrandtlIshlinskii) || is(Rival::ModifiedPrandtlIshlinskii);
-        let exponential =
-            is(Rival::GeneralizedPrandtlIshlinskii) || is(Rival::RateDependentPrandtlIshlinskii);
-        let has = self.trainer();
-        let searched = match model {
-            ModelName::Network(_) => true,
-            ModelName::Rival(rival) => rival.is_searched(),
-            ModelName::Auto(_) => true,
+    /// Options that were asked for and that the model, or the trainer of a network, ignores.
+    pub fn ignored(&self) -> Vec<Ignored> {
+        let Ok(Value::Object(named)) = serde_json::to_value(self) else {
+            unreachable!("the options are a map")
         };
-        let has_operators =
-            is_rival && !is(Rival::NeuroMadelung) && !is(Rival::BoucWen) && !is(Rival::JilesAtherton);
-        let useless = [
-            ("history", asked(self.history) && !model.takes_further_inputs()),
-            ("rate_companding", self.rate_companding.is_some() && !model.uses_rate()),
-            ("population", self.population.is_some() && (is_rival || !has.is_genetic())),
-            ("stall", self.stall.is_some() && (is_rival || has == Trainer::LevenbergMarquardt)),
-            ("training", is_rival && has != Trainer::default()),
-            ("ridge", self.ridge.is_some() && is_rival),
-            ("decay", self.decay.is_some() && is_rival),
-            ("stops", self.stops.is_some() && is_rival),
-            ("no_deterioration", asked(self.no_deterioration) && is_rival),
-            ("starts", self.starts.is_some() && !searched),
-            ("epochs", self.epochs.is_some() && !searched),
-            (
-                "hidden",
-                self.hidden.is_some() && is_rival && !is(Rival::NeuroMadelung) && !is(Rival::RandomStops),
-            ),
-            ("operators", self.operators.is_some() && !has_operators),
-            ("thresholds", self.thresholds.is_some() && !given_thresholds),
-            ("sign", self.sign.is_some() && !is(Rival::Preisach) && !given_thresholds),
-            ("dead_zones", self.dead_zones.is_some() && !is(Rival::ModifiedPrandtlIshlinskii)),
-            ("free_weights", self.free_weights.is_some() && !exponential),
-            (
-                "logarithmic_thresholds",
-                asked(self.logarithmic_thresholds) && !is(Rival::RateDependentPrandtlIshlinskii),
-            ),
-            ("degradation", asked(self.degradation) && !is(Rival::BoucWen)),
-            ("differential_form", asked(self.differential_form) && !is(Rival::JilesAtherton)),
-        ];
-        useless.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
+        // A flag that is not set asks for nothing.
+        let is_asked = |option: &FitOption| match named.get(option.name) {
+            None | Some(Value::Null) => false,
+            Some(Value::Bool(false)) => matches!(option.values, Values::Truth),
+            Some(_) => true,
+        };
+        let (model, trainer) = (self.model(), self.trainer());
+        let ignored = OPTIONS.iter().filter(|option| is_asked(option) && !option.is_used_by(model, trainer));
+        let by_whom = |option: &'static FitOption| {
+            let by = if option.users().contains(&model) { trainer.name() } else { model.name() };
+            Ignored { option: option.name, by }
+        };
+        ignored.map(by_whom).collect()
     }
 }
 
-impl ChosenOptions {
-    /// The candidates decide what is not said here, and there is no use for the rest.
-    fn useless_for_auto(&self) -> Vec<&'static str> {
-        let useless = [
-            ("rate_companding", self.rate_companding.is_some()),
-            ("training", self.training.is_some_and(|trainer| trainer != Trainer::default())),
-            ("population", self.population.is_some()),
-            ("stall", self.stall.is_some()),
-            ("validation", self.validation.is_some()),
-            ("thresholds", self.thresholds.is_some()),
-            ("sign", self.sign.is_some()),
-            ("dead_zones", self.dead_zones.is_some()),
-            ("free_weights", self.free_weights.is_some()),
-            ("logarithmic_thresholds", self.logarithmic_thresholds == Some(true)),
-            ("degradation", self.degradation == Some(true)),
-            ("differential_form", self.differential_form == Some(true)),
-        ];
-        useless.into_iter().filter(|(_, useless)| *useless).map(|(option, _)| option).collect()
-    }
+/// An option that was asked for and changes nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ignored {
+    /// Its name, in words joined by underscores.
+    pub option: &'static str,
+    /// The model, or the trainer, that ignores it.
+    pub by: &'static str,
 }
 
 /// What is asked of the rate of the first input.
@@ -388,10 +270,6 @@ impl FromStr for RateChoice {
     }
 }
 
-fn read<T: DeserializeOwned>(map: Map<String, Value>) -> std::result::Result<T, String> {
-    serde_json::from_value(Value::Object(map)).map_err(|error| error.to_string())
-}
-
 /// A value by its name, with the error that the command line has for an unknown one.
 fn named<'de, D, T>(deserializer: D) -> std::result::Result<Option<T>, D::Error>
 where
@@ -418,7 +296,7 @@ mod tests {
         let rate = Some(RateMethod::Central);
         let request = chosen(json!({})).unwrap().request(rate, false);
         assert_eq!(request, Request::Auto(AutoOptions { rate, ..AutoOptions::default() }));
-        for rival in Rival::ALL {
+        for &rival in Rival::ALL {
             let request = chosen(json!({ "model": rival.name() })).unwrap().request(None, false);
             assert_eq!(request, Request::Classical(ClassicalOptions::of(rival)));
         }
@@ -426,12 +304,12 @@ mod tests {
 
     #[test]
     fn every_option_reaches_the_request() {
-        let network = json!({ "model": "epnn", "stops": 3, "hidden": 4, "relaxation": 0, "no_deterioration": true,
+        let network = json!({ "model": "epnn", "stops": 3, "hidden": 4, "no_deterioration": true,
             "training": "hybrid", "starts": 2, "epochs": 7, "population": 9, "stall": 0, "seed": 5, "validation": 0.5, "ridge": 1e-9 });
         let Request::Network(options) = chosen(network).unwrap().request(None, false) else { panic!() };
         let expected = FitOptions {
             model: Family::Xpnn,
-            sizes: Sizes { stops: 3, hidden: 4, relaxation: 0 },
+            sizes: Sizes { stops: 3, hidden: 4, ..Sizes::default() },
             no_deterioration: true,
             starts: 2,
             epochs: 7,
@@ -443,41 +321,55 @@ mod tests {
             ..FitOptions::of(Trainer::Hybrid)
         };
         assert_eq!(options, expected);
-        let rival = json!({ "model": "masing", "operators": 6, "thresholds": [0.5, 1.0], "sign": "non-positive",
-            "dead_zones": 2, "free_weights": false, "logarithmic_thresholds": true, "degradation": true,
-            "differential_form": true, "hidden": 4, "starts": 2, "epochs": 3, "seed": 5 });
-        let Request::Classical(options) = chosen(rival).unwrap().request(None, false) else { panic!() };
+        let law = |options| match chosen(options).unwrap().request(None, false) {
+            Request::Classical(options) => options,
+            other => panic!("{other:?}"),
+        };
+        let given = json!({ "model": "modified-prandtl-ishlinskii", "operators": 6, "thresholds": [0.5, 1.0],
+            "sign": "non-positive", "dead_zones": 2, "seed": 5 });
         let expected = ClassicalOptions {
-            model: Rival::Masing,
             operators: Some(6),
             thresholds: Some(vec![0.5, 1.0]),
             sign: Some(Sign::NonPositive),
             dead_zones: Some(2),
-            free_weights: Some(false),
+            seed: 5,
+            ..ClassicalOptions::of(Rival::ModifiedPrandtlIshlinskii)
+        };
+        assert_eq!(law(given), expected);
+        let given = json!({ "model": "rate-dependent-prandtl-ishlinskii", "logarithmic_thresholds": true,
+            "free_weights": false, "starts": 2, "epochs": 3 });
+        let expected = ClassicalOptions {
             logarithmic_thresholds: true,
-            degradation: true,
-            differential_form: true,
-            hidden: Some(4),
-            deterioration: None,
-            rate: None,
-            shaping: Shaping::default(),
+            free_weights: Some(false),
             starts: Some(2),
             epochs: Some(3),
-            seed: 5,
+            ..ClassicalOptions::of(Rival::RateDependentPrandtlIshlinskii)
         };
-        assert_eq!(options, expected);
+        assert_eq!(law(given), expected);
+        assert!(law(json!({ "model": "bouc-wen", "degradation": true })).degradation);
+        assert!(law(json!({ "model": "jiles-atherton", "differential_form": true })).differential_form);
+        let random_stops = law(json!({ "model": "random-stops", "hidden": 4, "no_deterioration": true }));
+        assert_eq!((random_stops.hidden, random_stops.deterioration), (Some(4), Some(false)));
     }
 
     #[test]
     fn what_is_wrong_is_named() {
         for (options, words) in [
-            (json!({ "stop": 3 }), "there is no option `stop`: the options are companding, dead_zones,"),
-            (json!({ "stops": 0 }), "stops 0: choose 1 to 1000"),
-            (json!({ "stops": "many" }), "stops: invalid type: string \"many\""),
-            (json!({ "model": "neuro-madelung", "epochs": u64::MAX }), "choose 0 to 1000000"),
-            (json!({ "model": "xpn" }), "model: model `xpn` is unknown: choose one of auto, pnn, gpnn"),
-            (json!({ "training": "lm" }), "training `lm` is unknown"),
-            (json!({ "validation": 1.0 }), "validation 1: a number between 0 and 1 is needed"),
+            (json!({ "stop": 3 }), "there is no option `stop`: the options are model, members,"),
+            (json!({ "stops": 0 }), "stops 0: choose a whole number from 1 to 1000"),
+            (json!({ "stops": "many" }), "stops \"many\": choose a whole number from 1 to 1000"),
+            (
+                json!({ "model": "neuro-madelung", "epochs": u64::MAX }),
+                "choose a whole number from 0 to 1000000",
+            ),
+            (
+                json!({ "model": "neuro-madelung", "hidden": 500 }),
+                "neuro-madelung has at most 100 tanh neurons",
+            ),
+            (json!({ "model": "xpn" }), "model \"xpn\": choose one of auto, pnn, gpnn"),
+            (json!({ "training": "lm" }), "training \"lm\": choose one of levenberg-marquardt,"),
+            (json!({ "validation": 1.0 }), "validation 1.0: a number between 0 and 1 is needed"),
+            (json!({ "thresholds": 0.5 }), "thresholds 0.5: numbers above 0 are needed"),
         ] {
             let error = chosen(options).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
@@ -485,14 +377,52 @@ mod tests {
     }
 
     #[test]
-    fn useless_options_are_told() {
-        let useless = |options| chosen(options).unwrap().useless();
-        assert_eq!(useless(json!({ "population": 50, "stops": 3 })), ["population"]);
-        assert_eq!(useless(json!({ "model": "masing", "stops": 3, "starts": 2 })), ["stops", "starts"]);
+    fn ignored_options_are_named_and_change_nothing() {
+        let names = |asked: &ChosenOptions| -> Vec<&str> {
+            asked.ignored().into_iter().map(|ignored| ignored.option).collect()
+        };
+        let ignored = |options| names(&chosen(options).unwrap());
+        assert_eq!(ignored(json!({ "population": 50, "stops": 3 })), ["population"]);
+        assert_eq!(ignored(json!({ "model": "masing", "stops": 3, "starts": 2 })), ["stops", "starts"]);
         assert!(
-            useless(json!({ "model": "xpnn", "training": "hybrid", "population": 50, "degradation": false }))
+            ignored(json!({ "model": "xpnn", "training": "hybrid", "population": 50, "degradation": false }))
                 .is_empty()
         );
+        for (model, option, value) in [
+            ("pnn", "history", json!(true)),
+            ("xpnn", "history", json!(true)),
+            ("masing", "history", json!(true)),
+            ("bouc-wen", "history", json!(true)),
+            ("pnn", "hidden", json!(7)),
+            ("pnn", "relaxation", json!(9)),
+            ("preisach-nn", "no_deterioration", json!(true)),
+            ("preisach", "validation", json!(0.5)),
+        ] {
+            let asked = chosen(json!({ "model": model, option: value })).unwrap();
+            assert_eq!(names(&asked), [option], "{model}");
+            let plain = chosen(json!({ "model": model })).unwrap();
+            assert_eq!(asked.request(None, false), plain.request(None, false), "{model} {option}");
+        }
+        assert!(ignored(json!({ "model": "random-stops", "no_deterioration": true })).is_empty());
+        let by_whom = |options| chosen(options).unwrap().ignored()[0].by;
+        assert_eq!(by_whom(json!({ "model": "xpnn", "population": 50 })), "levenberg-marquardt");
+        assert_eq!(by_whom(json!({ "model": "pnn", "history": true })), "pnn");
+    }
+
+    #[test]
+    fn every_option_is_a_row_of_the_table_and_is_used_by_some_model() {
+        let Ok(Value::Object(fields)) = serde_json::to_value(ChosenOptions::default()) else { panic!() };
+        let names: Vec<&str> = OPTIONS.iter().map(|option| option.name).collect();
+        assert_eq!(fields.keys().len(), names.len());
+        for option in &OPTIONS {
+            assert!(fields.contains_key(option.name), "{}", option.name);
+            assert!(!option.users().is_empty(), "{}", option.name);
+        }
+        for &rival in Rival::ALL {
+            for option in rival.facts().options {
+                assert!(names.contains(option), "{} lists `{option}`", rival.name());
+            }
+        }
     }
 
     #[test]

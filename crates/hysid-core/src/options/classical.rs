@@ -3,103 +3,84 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::rate::RateMethod;
-use crate::options::shaping::{Origin, Shaping};
+use crate::for_each_law;
+use crate::law::Law;
+use crate::law::bouc_wen::BoucWen;
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
+use crate::law::jiles_atherton::JilesAtherton;
+use crate::law::masing::Masing;
+use crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
+use crate::law::neuro_madelung::NeuroMadelung;
+use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::preisach::Preisach;
+use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
+use crate::options::network::SEED;
+use crate::options::shaping::Shaping;
 
-/// The models that are no networks of the family.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rival {
-    /// [`Masing`](crate::law::masing::Masing).
-    Masing,
-    /// [`PrandtlIshlinskii`](crate::law::prandtl_ishlinskii::PrandtlIshlinskii).
-    PrandtlIshlinskii,
-    /// [`ModifiedPrandtlIshlinskii`](crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii).
-    ModifiedPrandtlIshlinskii,
-    /// [`GeneralizedPrandtlIshlinskii`](crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii).
-    GeneralizedPrandtlIshlinskii,
-    /// [`RateDependentPrandtlIshlinskii`](crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii).
-    RateDependentPrandtlIshlinskii,
-    /// [`Preisach`](crate::law::preisach::Preisach).
-    Preisach,
-    /// [`NeuroMadelung`](crate::law::neuro_madelung::NeuroMadelung).
-    NeuroMadelung,
-    /// [`BoucWen`](crate::law::bouc_wen::BoucWen).
-    BoucWen,
-    /// [`JilesAtherton`](crate::law::jiles_atherton::JilesAtherton).
-    JilesAtherton,
-    /// Random deteriorating stops and a ridge: a network whose stops are not trained,
-    /// `hysid::fit::network::random_stops`.
-    RandomStops,
+/// What is true of random stops.
+const RANDOM_STOPS: Facts = Facts {
+    name: "random-stops",
+    rate: Rate::Optional,
+    origin: Origin::OfData,
+    identification: Identification::LeastSquares,
+    options: &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
+    variant: None,
+    log_error_inside: 1.25,
+};
+
+macro_rules! rival {
+    ($($law:ident),* $(,)?) => {
+        /// The models that are no networks of the family.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum Rival {
+            $(#[doc = concat!("[`", stringify!($law), "`](crate::law::Classical::", stringify!($law), ").")] $law,)*
+            /// Random deteriorating stops and a ridge: a network whose stops are not trained.
+            RandomStops,
+        }
+
+        impl Rival {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$law,)* Self::RandomStops];
+
+            /// What is true of it whatever its parameters.
+            pub fn facts(self) -> &'static Facts {
+                match self {
+                    $(Self::$law => &<$law as Law>::FACTS,)*
+                    Self::RandomStops => &RANDOM_STOPS,
+                }
+            }
+        }
+    };
 }
 
-impl Rival {
-    /// All of them.
-    pub const ALL: [Rival; 10] = [
-        Rival::Masing,
-        Rival::PrandtlIshlinskii,
-        Rival::ModifiedPrandtlIshlinskii,
-        Rival::GeneralizedPrandtlIshlinskii,
-        Rival::RateDependentPrandtlIshlinskii,
-        Rival::Preisach,
-        Rival::NeuroMadelung,
-        Rival::BoucWen,
-        Rival::JilesAtherton,
-        Rival::RandomStops,
-    ];
+for_each_law!(rival);
 
+impl Rival {
     /// The name on the command line and in model files.
     pub fn name(self) -> &'static str {
-        match self {
-            Rival::Masing => "masing",
-            Rival::PrandtlIshlinskii => "prandtl-ishlinskii",
-            Rival::ModifiedPrandtlIshlinskii => "modified-prandtl-ishlinskii",
-            Rival::GeneralizedPrandtlIshlinskii => "generalized-prandtl-ishlinskii",
-            Rival::RateDependentPrandtlIshlinskii => "rate-dependent-prandtl-ishlinskii",
-            Rival::Preisach => "preisach",
-            Rival::NeuroMadelung => "neuro-madelung",
-            Rival::BoucWen => "bouc-wen",
-            Rival::JilesAtherton => "jiles-atherton",
-            Rival::RandomStops => "random-stops",
-        }
+        self.facts().name
     }
 
     /// True if the model can make use of the rate of the input.
     pub fn uses_rate(self) -> bool {
-        matches!(
-            self,
-            Rival::RateDependentPrandtlIshlinskii
-                | Rival::NeuroMadelung
-                | Rival::BoucWen
-                | Rival::RandomStops
-        )
+        self.facts().rate != Rate::Ignored
     }
 
     /// True if there is no such model without a rate.
     pub fn needs_rate(self) -> bool {
-        self == Rival::RateDependentPrandtlIshlinskii
+        self.facts().rate == Rate::Needed
     }
 
     /// True if it takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
-        self == Rival::RandomStops
-    }
-
-    /// From where the input is measured. A field of 0 is part of the law of Jiles and Atherton; all other laws
-    /// are the same wherever the input is.
-    pub fn origin(self) -> Origin {
-        if self == Rival::JilesAtherton { Origin::Zero } else { Origin::OfData }
+        self == Self::RandomStops
     }
 
     /// True if it is found by a search from several starts; otherwise by linear least squares.
     pub fn is_searched(self) -> bool {
-        !matches!(
-            self,
-            Rival::Masing
-                | Rival::PrandtlIshlinskii
-                | Rival::ModifiedPrandtlIshlinskii
-                | Rival::Preisach
-                | Rival::RandomStops
-        )
+        self.facts().identification == Identification::Search
     }
 }
 
@@ -147,6 +128,16 @@ pub struct ClassicalOptions {
 }
 
 impl ClassicalOptions {
+    /// The option that adds a term to a law or takes another form of it.
+    pub fn variant(&mut self, option: &str) -> Option<&mut bool> {
+        match option {
+            "degradation" => Some(&mut self.degradation),
+            "differential_form" => Some(&mut self.differential_form),
+            "logarithmic_thresholds" => Some(&mut self.logarithmic_thresholds),
+            _ => None,
+        }
+    }
+
     /// The defaults of a model.
     pub fn of(model: Rival) -> Self {
         Self {
@@ -165,7 +156,7 @@ impl ClassicalOptions {
             shaping: Shaping::default(),
             starts: None,
             epochs: None,
-            seed: 1,
+            seed: SEED,
         }
     }
 }
@@ -186,4 +177,13 @@ pub enum Sign {
 impl Sign {
     /// All of them; the strictest last.
     pub const ALL: [Sign; 3] = [Sign::Any, Sign::NonNegative, Sign::NonPositive];
+
+    /// The name on the command line and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sign::Any => "any",
+            Sign::NonNegative => "non-negative",
+            Sign::NonPositive => "non-positive",
+        }
+    }
 }

@@ -27,7 +27,7 @@ impl ModelName {
 
     /// All models that there are, the networks first; [`ModelName::AUTO`] chooses among them.
     pub fn all() -> impl Iterator<Item = ModelName> {
-        Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.into_iter().map(Self::Rival))
+        Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.iter().copied().map(Self::Rival))
     }
 
     /// The name on the command line and in model files.

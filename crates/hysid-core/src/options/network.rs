@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
@@ -10,6 +11,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::network::{Architecture, Family, Sizes};
 use crate::options::shaping::{HISTORY_INPUTS, Shaping};
+use crate::options::table::check;
 
 /// How networks are trained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -177,7 +179,7 @@ impl FitOptions {
             epochs: training.default_epochs(),
             population: default_population(),
             stall: default_stall(),
-            seed: 1,
+            seed: SEED,
             validation: None,
             ridge: None,
             decay: None,
@@ -218,22 +220,12 @@ impl FitOptions {
 
     /// Refuses options outside their meaning.
     pub fn check(&self) -> Result<()> {
-        if let Some(share) = self.validation.filter(|share| !(*share > 0.0 && *share < 1.0)) {
-            return Err(Error::Option(format!("validation {share} is not between 0 and 1")));
-        }
-        if self.starts == 0 || self.starts > MOST_STARTS {
-            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
-        }
-        if self.epochs > MOST_EPOCHS {
-            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
-        }
-        if !POPULATIONS.contains(&self.population) {
-            let (fewest, most) = (POPULATIONS.start(), POPULATIONS.end());
-            return Err(Error::Option(format!(
-                "a population of {}: choose {fewest} to {most}",
-                self.population
-            )));
-        }
+        check([
+            ("starts", json!(self.starts)),
+            ("epochs", json!(self.epochs)),
+            ("population", json!(self.population)),
+        ])?;
+        check(self.validation.map(|share| ("validation", json!(share))))?;
         if self.thin < FEWEST_ROWS {
             return Err(Error::Option(format!("thin {}: at least {FEWEST_ROWS} rows are needed", self.thin)));
         }
@@ -241,6 +233,9 @@ impl FitOptions {
         self.penalties().check()
     }
 }
+
+/// The seed of every fit that was given none.
+pub const SEED: u64 = 1;
 
 /// Fewest and most individuals.
 pub const POPULATIONS: RangeInclusive<usize> = 4..=100_000;
@@ -275,11 +270,6 @@ pub const PENALTIES: RangeInclusive<f64> = 0.0..=1e6;
 
 impl Regularisation {
     pub(crate) fn check(&self) -> Result<()> {
-        for (name, value) in [("ridge", self.ridge), ("decay", self.decay)] {
-            if !PENALTIES.contains(&value) {
-                return Err(Error::Option(format!("{name} {value} is not between 0 and 1e6")));
-            }
-        }
-        Ok(())
+        check([("ridge", json!(self.ridge)), ("decay", json!(self.decay))])
     }
 }

@@ -1,8 +1,12 @@
 //! What a model sees of its input, as it is asked for.
 
-use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
-use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::error::Result;
+use crate::options::table::check;
 
 /// What is asked for, in shares of what the data show.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -28,6 +32,9 @@ fn is_zero(rows: &usize) -> bool {
     *rows == 0
 }
 
+/// Shares that spread something, and not everything.
+pub const SHARES: RangeInclusive<f64> = 1e-6..=1e3;
+
 /// Inputs that a summary of the past adds.
 pub const HISTORY_INPUTS: usize = 2;
 
@@ -39,21 +46,7 @@ impl Shaping {
 
     /// Refuses shares that spread nothing, or everything.
     pub(crate) fn check(&self) -> Result<()> {
-        for (name, share) in [("companding", self.companding), ("rate companding", self.rate_companding)] {
-            if share.is_some_and(|share| !(1e-6..=1e3).contains(&share)) {
-                let share = share.unwrap_or_default();
-                return Err(Error::Option(format!("{name} {share} is not between 1e-6 and 1e3")));
-            }
-        }
-        Ok(())
+        let shares = [("companding", self.companding), ("rate_companding", self.rate_companding)];
+        check(shares.into_iter().filter_map(|(name, share)| Some((name, json!(share?)))))
     }
-}
-
-/// From where the inputs of a model are measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
-    /// From 0, for laws in which 0 is more than a number.
-    Zero,
-    /// From 0 where the data go about it, else from where they begin or from their middle.
-    OfData,
 }

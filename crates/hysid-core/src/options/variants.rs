@@ -36,20 +36,13 @@ pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
 
 /// A law with and without the term, or the form, that it can have.
 fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
-    let either = |term: fn(&mut ClassicalOptions) -> &mut bool| {
-        let with = |is_there| {
-            let mut options = options.clone();
-            *term(&mut options) = is_there;
-            options
-        };
-        vec![with(false), with(true)]
+    let Some(variant) = options.model.facts().variant else { return vec![options.clone()] };
+    let with = |is_there| {
+        let mut options = options.clone();
+        *options.variant(variant).expect("a law names an option that there is") = is_there;
+        options
     };
-    match options.model {
-        Rival::BoucWen => either(|options| &mut options.degradation),
-        Rival::JilesAtherton => either(|options| &mut options.differential_form),
-        Rival::RateDependentPrandtlIshlinskii => either(|options| &mut options.logarithmic_thresholds),
-        _ => vec![options.clone()],
-    }
+    vec![with(false), with(true)]
 }
 
 #[cfg(test)]

@@ -7,11 +7,10 @@ use super::direct::ROUNDING;
 use super::neurons::{MATTERS, Neuron};
 use super::probe::{Probe, extent, path, times};
 use super::properties::PROTOCOL;
-use super::structure::{law_sees_rate, sees_time};
+use super::structure::sees_time;
 use super::weights::WeightDiagnosis;
 use crate::{Finding, Property, Verdict};
 use hysid_core::error::Result;
-use hysid_core::law::Classical;
 use hysid_core::model::Body;
 use hysid_core::significant::Significant;
 
@@ -159,16 +158,14 @@ fn step_is_free(body: &Body) -> bool {
     match body {
         Body::Ensemble(ensemble) => ensemble.members().iter().all(|member| step_is_free(member.body())),
         Body::Network { network, .. } => !sees_time(network.architecture()),
-        Body::Law(Classical::BoucWen(law)) => law.n == 1.0 && law.degradation.is_none() && law.damping == 0.0,
-        Body::Law(Classical::JilesAtherton(_)) => false,
-        Body::Law(law) => !law_sees_rate(law),
+        Body::Law(law) => law.is_step_free(),
     }
 }
 
 fn sees_rate_or_time(body: &Body) -> bool {
     match body {
         Body::Network { network, .. } => sees_time(network.architecture()),
-        Body::Law(law) => law_sees_rate(law),
+        Body::Law(law) => law.sees_rate(),
         Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| sees_rate_or_time(member.body())),
     }
 }

@@ -7,6 +7,7 @@ use super::direct::about_origin;
 use super::probe::Probe;
 use crate::{Finding, Property, Verdict};
 use hysid_core::law::Classical;
+use hysid_core::law::properties::{CONGRUENT, MASING, ODD, RATE_INDEPENDENT, WIPES_OUT};
 use hysid_core::model::{Body, Ensemble, Model};
 use hysid_core::network::Architecture;
 
@@ -65,15 +66,6 @@ fn of_ensemble(ensemble: &Ensemble, about_origin: bool) -> Vec<(Property, bool)>
     all
 }
 
-/// Return-point memory, and what follows from it.
-const WIPES_OUT: [(Property, bool); 3] =
-    [(Property::WipingOut, true), (Property::Deterioration, false), (Property::LoopClosure, true)];
-
-const CONGRUENT: (Property, bool) = (Property::Congruency, true);
-const MASING: (Property, bool) = (Property::Masing, true);
-const ODD: (Property, bool) = (Property::OddSymmetry, true);
-const RATE_INDEPENDENT: (Property, bool) = (Property::RateDependence, false);
-
 fn of_network(architecture: &Architecture, about_origin: bool) -> Vec<(Property, bool)> {
     let linear_readout = architecture.hidden == 0;
     let mut all = Vec::new();
@@ -99,54 +91,6 @@ pub(super) fn sees_time(architecture: &Architecture) -> bool {
 }
 
 fn of_law(law: &Classical, about_origin: bool) -> Vec<(Property, bool)> {
-    let mut all = Vec::new();
-    match law {
-        Classical::Masing(_) | Classical::PrandtlIshlinskii(_) => {
-            all.extend(WIPES_OUT);
-            all.extend([CONGRUENT, MASING, ODD]);
-        }
-        Classical::RateDependentPrandtlIshlinskii(_) => {
-            all.extend(WIPES_OUT);
-            all.extend([CONGRUENT, MASING, ODD]);
-        }
-        Classical::Preisach(_) | Classical::GeneralizedPrandtlIshlinskii(_) => {
-            all.extend(WIPES_OUT);
-            all.push(CONGRUENT);
-        }
-        Classical::ModifiedPrandtlIshlinskii(_) => all.extend(WIPES_OUT),
-        Classical::NeuroMadelung(_) => all.push((Property::WipingOut, true)),
-        Classical::BoucWen(law) => {
-            if law.degradation.is_none() {
-                all.push((Property::Deterioration, false));
-            }
-            if about_origin {
-                all.push(ODD);
-            }
-        }
-        Classical::JilesAtherton(_) => {
-            all.push((Property::Deterioration, false));
-            if about_origin {
-                all.push(ODD);
-            }
-        }
-    }
-    if !law_sees_rate(law) {
-        all.push(RATE_INDEPENDENT);
-    }
-    all
-}
-
-/// True if the rate is in the law's equations.
-pub(super) fn law_sees_rate(law: &Classical) -> bool {
-    match law {
-        Classical::RateDependentPrandtlIshlinskii(_) => true,
-        Classical::BoucWen(law) => law.damping != 0.0,
-        Classical::NeuroMadelung(law) => law.rate_scale.is_some(),
-        Classical::Masing(_)
-        | Classical::PrandtlIshlinskii(_)
-        | Classical::ModifiedPrandtlIshlinskii(_)
-        | Classical::GeneralizedPrandtlIshlinskii(_)
-        | Classical::Preisach(_)
-        | Classical::JilesAtherton(_) => false,
-    }
+    let rate = (!law.sees_rate()).then_some(RATE_INDEPENDENT);
+    law.memory_properties(about_origin).into_iter().chain(rate).collect()
 }

@@ -93,12 +93,12 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
-    Without a choice of `model`, models are cross-validated, and the best are combined in an ensemble: that is the
-    most accurate, and takes some ten seconds to a minute. One named model takes seconds.
+    Without a choice of `model`, Hysid cross-validates networks and classical models and combines the best in an
+    ensemble, which is the most accurate and takes some ten seconds to a minute. One named model takes seconds.
 
-    Every option has the name that it has on the command line of the program `hysid`; ``None`` is its default.
-    The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the fit, warns, and
-    returns the best model so far.
+    Options have the names that they have on the command line of the program `hysid`; ``None`` is the default. A model
+    that has no use for an option ignores it, with a warning. The same data, options and seed give the same model file,
+    byte by byte. Ctrl-C ends the fit, warns, and returns the best model so far.
 
     Parameters
     ----------
@@ -115,50 +115,78 @@ def fit(
     records : array of shape (n,), optional
         A label for each row: the memory starts afresh where the label changes.
     model : str, optional
-        ``"auto"``, the default: what does best on data held out, alone or together. Or a network: pnn, gpnn,
-        preisach-nn, xpnn or xpnn+; or another model, see `hysid.models`.
+        Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
-        Models that answer together, at most; 1 for a single small one. Of a model that is named, so many
-        starts answer together. 32 for auto, otherwise 1.
-    stops, hidden, relaxation : int, optional
-        Stop neurons, tanh neurons, and relaxation neurons of each input.
+        Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts
+        that are combined. Default: 32 for auto, otherwise 1.
+    stops : int, optional
+        Stop neurons of a network. Default: 10.
+    hidden : int, optional
+        Tanh neurons of a network, of neuro-madelung (at most 100) or of random-stops. Default: 10;
+        neuro-madelung 8, random-stops none.
+    relaxation : int, optional
+        Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4.
     no_deterioration : bool, optional
-        Stops do not deteriorate, whatever the family. Of auto, False is a decision too: they do.
-    companding, rate_companding : float, optional
-        Spreads the first input about zero by asinh: the scale, as a share of its largest magnitude, such as
-        0.1; 0 for never. The same for the rate.
+        Use stops that do not deteriorate. Default: gpnn, xpnn and xpnn+ have stops that deteriorate; chosen by
+        cross-validation for auto.
     history : bool, optional
-        The largest magnitude and the path of the input so far are inputs too, for xpnn+ and random-stops. Of
-        auto, False is a decision too: they are not.
+        Add the running peak and the travelled path of the input as inputs. Default: chosen by cross-validation
+        for auto, otherwise off.
+    companding : float, optional
+        Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as
+        0.1; 0 for off. Default: chosen by cross-validation for auto, otherwise off.
+    rate_companding : float, optional
+        Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all
+        rows stay below; 0 for off. Default: off.
     warm_up : int, optional
-        Rows at the beginning of each record that drive the memory and are not trained on, where records do
-        not begin in the virgin state.
+        Rows at the beginning of each record that drive the memory and are not trained on, for records that do
+        not begin in the virgin state. Default: chosen by cross-validation for auto, otherwise 0.
     training : str, optional
-        levenberg-marquardt, hybrid, genetic or subgradient.
-    starts, epochs : int, optional
-        Random starts, and epochs of each.
-    population, stall : int, optional
-        Individuals of the genetic algorithm, and epochs without noticeable improvement after which genetic
-        algorithm or sub-gradient method end.
+        Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the
+        sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.
+    starts : int, optional
+        Random networks, populations or parameters to start from. Default: 8; 1 for trainers other than
+        levenberg-marquardt; neuro-madelung 16.
+    epochs : int, optional
+        Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
+        iterations of the sub-gradient method; a hybrid shares them out in halves. Default: 40; 2000 for
+        trainers other than levenberg-marquardt; neuro-madelung 60.
+    population : int, optional
+        Individuals of the genetic algorithm. Default: 50.
+    stall : int, optional
+        Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method
+        ends; 0 for never. Default: 50.
     seed : int, optional
-        Seed of all randomness.
+        Seed of all random numbers; the same data, options and seed give the same model. Default: 1.
     validation : float, optional
-        Share of the data held out, between 0 and 1, in the place of the folds of a cross-validation. What is
-        held out tells the error on new data; the model is trained on everything.
-    ridge, decay : float, optional
-        Penalties on the squared output weights of a network, and on the weights of its stops and tanh neurons,
-        1e-6 and 1e-7 by default. Where neither is given, they are left out if that lowers the error on data
-        held out. Of auto: chosen by cross-validation.
+        Share of the data held out to validate a network on, between 0 and 1; the final network is trained on
+        all data. Default: the folds of a cross-validation.
+    ridge : float, optional
+        Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as in
+        the paper. Default: 1e-6, or nearly 0 where that lowers the cross-validation error; chosen by
+        cross-validation for auto.
+    decay : float, optional
+        Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
     operators : int, optional
-        Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops.
-    thresholds : array, optional
-        Thresholds of plays in the unit of the input.
+        Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops. Default: 10 to 60, by
+        model.
+    thresholds : array of numbers, optional
+        Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
+        input. Default: chosen by cross-validation.
     sign : str, optional
-        Sign of the weights of plays or cells: any, non-negative or non-positive.
+        Sign of the weights of plays, or of the cells of a Preisach plane. Default: chosen by cross-validation.
     dead_zones : int, optional
-        Dead zones on each side of modified-prandtl-ishlinskii.
-    free_weights, logarithmic_thresholds, degradation, differential_form : bool, optional
-        Variants of the classical models, as on the command line.
+        Dead zones on each side of modified-prandtl-ishlinskii. Default: 6.
+    free_weights : bool, optional
+        Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its
+        own, in place of an exponential law. Default: by model.
+    logarithmic_thresholds : bool, optional
+        Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
+        linear.
+    degradation : bool, optional
+        Use bouc-wen with the degradation and pinching of Baber and Noori. Default: off.
+    differential_form : bool, optional
+        Use jiles-atherton in its differential form of 1992 in place of that of 1986. Default: off.
     time_limit : float, optional
         Seconds after which to stop and keep the best model so far.
     threads : int, optional
@@ -187,35 +215,8 @@ def fit(
     >>> model.evaluate(x, y).nrmse_std_percent < 5
     True
     """
-    given = dict(
-        model=model,
-        members=members,
-        stops=stops,
-        hidden=hidden,
-        relaxation=relaxation,
-        no_deterioration=no_deterioration,
-        companding=companding,
-        rate_companding=rate_companding,
-        history=history,
-        warm_up=warm_up,
-        training=training,
-        starts=starts,
-        epochs=epochs,
-        population=population,
-        stall=stall,
-        seed=seed,
-        validation=validation,
-        ridge=ridge,
-        decay=decay,
-        operators=operators,
-        thresholds=thresholds,
-        sign=sign,
-        dead_zones=dead_zones,
-        free_weights=free_weights,
-        logarithmic_thresholds=logarithmic_thresholds,
-        degradation=degradation,
-        differential_form=differential_form,
-    )
+    keywords = locals()
+    given = {name: keywords[name] for name in _hysid.option_names()}
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
     return identified(

@@ -17,6 +17,7 @@ __all__ = [
     "minimise",
     "model_names",
     "option_names",
+    "option_table",
     "play",
     "relaxation",
     "relay",
@@ -102,6 +103,7 @@ def validate(
 ) -> tuple[str, bool]: ...
 def model_names() -> list[str]: ...
 def option_names() -> list[str]: ...
+def option_table() -> list[tuple[str, str, str]]: ...
 def minimise(
     function: Callable[[np.ndarray], tuple[float, np.ndarray]],
     x: _Column,

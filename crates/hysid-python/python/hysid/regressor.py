@@ -35,14 +35,13 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         The column of `X` that tells the records apart: the memory starts afresh where it changes.
     rate : str, default "auto"
         As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
-    model, members, stops, hidden, relaxation, no_deterioration : optional
+    model : str, optional
         As of `hysid.fit`: without a choice, the slow and accurate ``"auto"``. In a search or a cross-validation
         name a model, which takes seconds.
-    companding, rate_companding, history, warm_up, training, starts, epochs, population, stall : optional
-        As of `hysid.fit`.
-    validation, ridge, decay, operators, thresholds, sign, dead_zones, free_weights, logarithmic_thresholds : optional
-        As of `hysid.fit`.
-    degradation, differential_form, time_limit, threads : optional
+    members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
+    warm_up, training, starts, epochs, population, stall, validation, ridge, decay : optional
+    operators, thresholds, sign, dead_zones, free_weights : optional
+    logarithmic_thresholds, degradation, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
         Seed of all randomness: an int is the seed of `hysid.fit`.

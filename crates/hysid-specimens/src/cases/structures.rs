@@ -4,6 +4,7 @@ use crate::cyclic_plasticity::{Backstress, CyclicPlasticity, CyclicPlasticityPar
 use crate::peak_oriented::{PeakOriented, PeakOrientedParameters};
 use crate::{BoucWenBaberNoori, Concrete, ConcreteParameters, ReinforcedConcreteJoint};
 use hysid_core::error::Result;
+use hysid_core::law::Law;
 use hysid_core::law::bouc_wen::BoucWen;
 use hysid_core::law::masing::{Masing, MasingParts};
 use hysid_core::operator::{DeterioratingStop, Operator};

@@ -297,7 +297,7 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
 
 /// The laws that are searched, each in all its variants.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let searched = Rival::ALL.into_iter().filter(|model| model.is_searched());
+    let searched = Rival::ALL.iter().copied().filter(|model| model.is_searched());
     let with_rate = |model: Rival| ClassicalOptions {
         rate: options.rate.filter(|_| model.uses_rate()),
         starts: Some(STARTS_OF_A_SEARCH),

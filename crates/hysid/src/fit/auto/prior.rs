@@ -91,14 +91,8 @@ fn inside_over_folds(candidate: &Request) -> f64 {
 
 fn of_law(options: &ClassicalOptions) -> f64 {
     match options.model {
-        Rival::GeneralizedPrandtlIshlinskii
-        | Rival::RateDependentPrandtlIshlinskii
-        | Rival::BoucWen
-        | Rival::JilesAtherton => 0.15,
         Rival::RandomStops if options.deterioration == Some(true) => 0.6,
-        Rival::Preisach | Rival::PrandtlIshlinskii | Rival::Masing => 0.85,
-        Rival::ModifiedPrandtlIshlinskii => 1.05,
-        Rival::NeuroMadelung | Rival::RandomStops => 1.25,
+        model => model.facts().log_error_inside,
     }
 }
 

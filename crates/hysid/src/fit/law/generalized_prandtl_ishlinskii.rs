@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
+use crate::law::Law;
 use crate::law::series::{Series, slope, work};
 use crate::stop_check::StopCheck;
 

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
+use crate::law::Law;
 use crate::law::series::Series;
 use crate::stop_check::StopCheck;
 

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
+use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, work};
 use crate::stop_check::StopCheck;

@@ -1,0 +1,89 @@
+//! The options of a model and its training on the command line, made from the library's table of options.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use hysid::options::chosen::ChosenOptions;
+use hysid::options::table::{FitOption, OPTIONS, Values};
+use serde_json::{Map, Value};
+
+/// Options of the short help of a command.
+const IN_SHORT_HELP: [&str; 4] = ["model", "members", "seed", "validation"];
+
+/// What was asked for of the model and its training.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelOptions(pub ChosenOptions);
+
+impl Args for ModelOptions {
+    fn augment_args(command: Command) -> Command {
+        command.args(OPTIONS.iter().map(argument))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for ModelOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given =
+            OPTIONS.iter().filter_map(|option| Some((option.name.to_string(), value(option, matches)?)));
+        let options = ChosenOptions::of(given.collect::<Map<_, _>>());
+        options.map(Self).map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The names of the arguments.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    OPTIONS.iter().map(|option| option.name)
+}
+
+/// An option as a flag of the command line.
+pub fn flag(name: &str) -> String {
+    name.replace('_', "-")
+}
+
+fn argument(option: &'static FitOption) -> Arg {
+    let default = match option.default {
+        "" => String::new(),
+        default => format!(" [default: {default}]"),
+    };
+    let argument = Arg::new(option.name)
+        .long(flag(option.name))
+        .help(format!("{}{default}", option.meaning))
+        .help_heading(option.group.heading())
+        .hide_short_help(!IN_SHORT_HELP.contains(&option.name));
+    match option.values {
+        Values::Flag => argument.action(ArgAction::SetTrue),
+        Values::Names(names) => {
+            argument.value_name(option.values.placeholder()).value_parser(by_name(names()))
+        }
+        _ => {
+            let read = |text: String| option.read(&text);
+            argument
+                .value_name(option.values.placeholder())
+                .allow_hyphen_values(true)
+                .value_parser(StringValueParser::new().try_map(read))
+        }
+    }
+}
+
+/// One of the names, or another name of the paper's network.
+fn by_name(names: Vec<&'static str>) -> impl TypedValueParser<Value = Value> {
+    let known = names.into_iter().map(|name| match name {
+        "xpnn" => PossibleValue::new(name).alias("epnn"),
+        name => PossibleValue::new(name),
+    });
+    PossibleValuesParser::new(known).map(Value::from)
+}
+
+fn value(option: &FitOption, matches: &ArgMatches) -> Option<Value> {
+    match option.values {
+        Values::Flag => matches.get_flag(option.name).then_some(Value::Bool(true)),
+        _ => matches.get_one::<Value>(option.name).cloned(),
+    }
+}

@@ -1,0 +1,474 @@
+//! The table of options: name, meaning, range and default of each option of a fit, once. The command line, the Python
+//! keywords, the checks, the warnings and `docs/options.md` are made from it or tested against it.
+
+use serde_json::Value;
+
+use crate::error::{OptionError, Result};
+use crate::network::Family;
+use crate::options::ModelName;
+use crate::options::auto::MOST_MEMBERS;
+use crate::options::classical::Sign;
+use crate::options::network::{MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, Trainer};
+use crate::options::shaping::SHARES;
+
+/// An option of a fit.
+#[derive(Debug, Clone, Copy)]
+pub struct FitOption {
+    /// Its name, in words joined by underscores, as in Python; the command line joins them by hyphens.
+    pub name: &'static str,
+    /// Where it is listed.
+    pub group: Group,
+    /// What it does, in a sentence without a full stop.
+    pub meaning: &'static str,
+    /// The values that it can have.
+    pub values: Values,
+    /// What happens without it, in words; empty where the meaning says so.
+    pub default: &'static str,
+    /// Whether a network, or `auto`, uses it. A classical model lists its options itself.
+    used_by: fn(ModelName, Trainer) -> bool,
+}
+
+/// Where an option is listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// Of most models.
+    Model,
+    /// Of the training of networks and of searches.
+    Training,
+    /// Of classical models.
+    Classical,
+}
+
+impl Group {
+    /// All of them, in their order.
+    pub const ALL: [Self; 3] = [Self::Model, Self::Training, Self::Classical];
+
+    /// Its heading.
+    pub fn heading(self) -> &'static str {
+        match self {
+            Self::Model => "Model",
+            Self::Training => "Training",
+            Self::Classical => "Classical models",
+        }
+    }
+}
+
+/// The values that an option can have.
+#[derive(Debug, Clone, Copy)]
+pub enum Values {
+    /// Whole numbers from the first to the second.
+    Count(usize, usize),
+    /// Whole numbers from 0 up.
+    Whole,
+    /// Numbers between 0 and 1, both excluded.
+    Fraction,
+    /// 0, or numbers from the first to the second.
+    ZeroOr(f64, f64),
+    /// Numbers from the first to the second.
+    Number(f64, f64),
+    /// Numbers above 0, separated by commas on the command line.
+    Positive,
+    /// Given or not.
+    Flag,
+    /// True or false.
+    Truth,
+    /// One of these names.
+    Names(fn() -> Vec<&'static str>),
+}
+
+use Group::{Classical, Model, Training};
+
+/// Numbers of neurons or operators that can be asked for.
+const NEURONS: Values = Values::Count(1, 1000);
+
+/// A penalty on weights.
+const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
+
+/// The scale of a spreading.
+const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
+
+/// Every option, in the order in which it is listed.
+pub const OPTIONS: [FitOption; 27] = [
+    FitOption {
+        name: "model",
+        group: Model,
+        meaning: "Model to fit. `auto` cross-validates networks and classical models and combines the best",
+        values: Values::Names(models),
+        default: "auto",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "members",
+        group: Model,
+        meaning: "Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts \
+                  that are combined",
+        values: Values::Count(1, MOST_MEMBERS),
+        default: "32 for auto, otherwise 1",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "stops",
+        group: Model,
+        meaning: "Stop neurons of a network",
+        values: NEURONS,
+        default: "10",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "hidden",
+        group: Model,
+        meaning: "Tanh neurons of a network, of neuro-madelung (at most 100) or of random-stops",
+        values: NEURONS,
+        default: "10; neuro-madelung 8, random-stops none",
+        used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
+    },
+    FitOption {
+        name: "relaxation",
+        group: Model,
+        meaning: "Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none",
+        values: Values::Count(0, 1000),
+        default: "4",
+        used_by: |model, _| network_or_auto(model, |family| family.relaxes()),
+    },
+    FitOption {
+        name: "no_deterioration",
+        group: Model,
+        meaning: "Use stops that do not deteriorate",
+        values: Values::Flag,
+        default: "gpnn, xpnn and xpnn+ have stops that deteriorate; chosen by cross-validation for auto",
+        used_by: |model, _| network_or_auto(model, |family| family.deteriorates()),
+    },
+    FitOption {
+        name: "history",
+        group: Model,
+        meaning: "Add the running peak and the travelled path of the input as inputs",
+        values: Values::Flag,
+        default: "chosen by cross-validation for auto, otherwise off",
+        used_by: |model, _| network_or_auto(model, |family| family.takes_further_inputs()),
+    },
+    FitOption {
+        name: "companding",
+        group: Model,
+        meaning: "Expand the first input around zero by asinh: the scale, as a share of its largest magnitude, such as \
+                  0.1; 0 for off",
+        values: SHARE,
+        default: "chosen by cross-validation for auto, otherwise off",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "rate_companding",
+        group: Model,
+        meaning: "Expand the rate of the first input around zero: the scale, as a share of the rate that 99.5 % of all \
+                  rows stay below; 0 for off",
+        values: SHARE,
+        default: "off",
+        used_by: |model, _| matches!(model, ModelName::Network(family) if family.uses_rate()),
+    },
+    FitOption {
+        name: "warm_up",
+        group: Training,
+        meaning: "Rows at the beginning of each record that drive the memory and are not trained on, for records that \
+                  do not begin in the virgin state",
+        values: Values::Whole,
+        default: "chosen by cross-validation for auto, otherwise 0",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "training",
+        group: Training,
+        meaning: "Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the \
+                  sub-gradient method with space dilatation; or one of these two alone",
+        values: Values::Names(trainers),
+        default: "levenberg-marquardt",
+        used_by: of_networks,
+    },
+    FitOption {
+        name: "starts",
+        group: Training,
+        meaning: "Random networks, populations or parameters to start from",
+        values: Values::Count(1, MOST_STARTS),
+        default: "8; 1 for trainers other than levenberg-marquardt; neuro-madelung 16",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "epochs",
+        group: Training,
+        meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
+                  iterations of the sub-gradient method; a hybrid shares them out in halves",
+        values: Values::Count(0, MOST_EPOCHS),
+        default: "40; 2000 for trainers other than levenberg-marquardt; neuro-madelung 60",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "population",
+        group: Training,
+        meaning: "Individuals of the genetic algorithm",
+        values: Values::Count(*POPULATIONS.start(), *POPULATIONS.end()),
+        default: "50",
+        used_by: |model, trainer| of_networks(model, trainer) && trainer.is_genetic(),
+    },
+    FitOption {
+        name: "stall",
+        group: Training,
+        meaning: "Epochs without a noticeable improvement after which the genetic algorithm or the sub-gradient method \
+                  ends; 0 for never",
+        values: Values::Whole,
+        default: "50",
+        used_by: |model, trainer| of_networks(model, trainer) && trainer != Trainer::LevenbergMarquardt,
+    },
+    FitOption {
+        name: "seed",
+        group: Training,
+        meaning: "Seed of all random numbers; the same data, options and seed give the same model",
+        values: Values::Whole,
+        default: "1",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "validation",
+        group: Training,
+        meaning: "Share of the data held out to validate a network on, between 0 and 1; the final network is trained \
+                  on all data",
+        values: Values::Fraction,
+        default: "the folds of a cross-validation",
+        used_by: of_networks,
+    },
+    FitOption {
+        name: "ridge",
+        group: Training,
+        meaning: "Penalty on the squared output weights of a network, in scaled units; 0 for plain least squares, as \
+                  in the paper",
+        values: PENALTY,
+        default: "1e-6, or nearly 0 where that lowers the cross-validation error; chosen by cross-validation for auto",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "decay",
+        group: Training,
+        meaning: "Penalty on the squared weights of stops and tanh neurons",
+        values: PENALTY,
+        default: "1e-7, otherwise as for ridge",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "operators",
+        group: Classical,
+        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops",
+        values: NEURONS,
+        default: "10 to 60, by model",
+        used_by: of_auto,
+    },
+    FitOption {
+        name: "thresholds",
+        group: Classical,
+        meaning: "Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of \
+                  the input",
+        values: Values::Positive,
+        default: "chosen by cross-validation",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "sign",
+        group: Classical,
+        meaning: "Sign of the weights of plays, or of the cells of a Preisach plane",
+        values: Values::Names(signs),
+        default: "chosen by cross-validation",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "dead_zones",
+        group: Classical,
+        meaning: "Dead zones on each side of modified-prandtl-ishlinskii",
+        values: NEURONS,
+        default: "6",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "free_weights",
+        group: Classical,
+        meaning: "Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its \
+                  own, in place of an exponential law",
+        values: Values::Truth,
+        default: "by model",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "logarithmic_thresholds",
+        group: Classical,
+        meaning: "Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate",
+        values: Values::Flag,
+        default: "linear",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "degradation",
+        group: Classical,
+        meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori",
+        values: Values::Flag,
+        default: "off",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "differential_form",
+        group: Classical,
+        meaning: "Use jiles-atherton in its differential form of 1992 in place of that of 1986",
+        values: Values::Flag,
+        default: "off",
+        used_by: of_none,
+    },
+];
+
+fn models() -> Vec<&'static str> {
+    std::iter::once(ModelName::AUTO).chain(ModelName::all()).map(ModelName::name).collect()
+}
+
+fn trainers() -> Vec<&'static str> {
+    Trainer::ALL.map(Trainer::name).into()
+}
+
+fn signs() -> Vec<&'static str> {
+    Sign::ALL.map(Sign::name).into()
+}
+
+fn network_or_auto(model: ModelName, is_used: impl Fn(Family) -> bool) -> bool {
+    match model {
+        ModelName::Network(family) => is_used(family),
+        ModelName::Auto(_) => true,
+        ModelName::Rival(_) => false,
+    }
+}
+
+fn of_networks(model: ModelName, _: Trainer) -> bool {
+    matches!(model, ModelName::Network(_))
+}
+
+fn of_auto(model: ModelName, _: Trainer) -> bool {
+    matches!(model, ModelName::Auto(_))
+}
+
+fn of_none(_: ModelName, _: Trainer) -> bool {
+    false
+}
+
+/// Options of every model, whatever it is.
+const OF_EVERY_MODEL: [&str; 5] = ["model", "members", "companding", "warm_up", "seed"];
+
+/// Refuses values that their options cannot have.
+///
+/// # Errors
+/// A name that is no option, or a value that the option cannot have: the first of them.
+pub fn check<'a>(values: impl IntoIterator<Item = (&'a str, Value)>) -> Result<()> {
+    for (name, value) in values {
+        let Some(option) = FitOption::named(name) else {
+            return Err(OptionError::unknown(name, OPTIONS.iter().map(|option| option.name).collect()).into());
+        };
+        option.check(&value).map_err(|needed| OptionError::value(name, value, needed))?;
+    }
+    Ok(())
+}
+
+impl FitOption {
+    /// The option of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        OPTIONS.iter().find(|option| option.name == name)
+    }
+
+    /// Whether a model uses it; a network when it is trained by this trainer.
+    pub fn is_used_by(&self, model: ModelName, trainer: Trainer) -> bool {
+        match model {
+            ModelName::Rival(rival) => {
+                OF_EVERY_MODEL.contains(&self.name) || rival.facts().options.contains(&self.name)
+            }
+            _ => (self.used_by)(model, trainer),
+        }
+    }
+
+    /// The models that use it, by any trainer; in the order of [`ModelName::all`], after `auto`.
+    pub fn users(&self) -> Vec<ModelName> {
+        let is_used =
+            |model: &ModelName| Trainer::ALL.iter().any(|trainer| self.is_used_by(*model, *trainer));
+        std::iter::once(ModelName::AUTO).chain(ModelName::all()).filter(is_used).collect()
+    }
+
+    /// Refuses a value that it cannot have.
+    ///
+    /// # Errors
+    /// What is needed, in words.
+    pub fn check(&self, value: &Value) -> std::result::Result<(), String> {
+        if self.values.hold(value) { Ok(()) } else { Err(self.values.needed()) }
+    }
+
+    /// A value from its text on a command line.
+    ///
+    /// # Errors
+    /// What is needed, in words.
+    pub fn read(&self, text: &str) -> std::result::Result<Value, String> {
+        let value = self.values.read(text).ok_or_else(|| self.values.needed())?;
+        self.check(&value).map(|()| value)
+    }
+}
+
+impl Values {
+    /// What is needed, in words.
+    pub fn needed(&self) -> String {
+        match self {
+            Self::Count(low, high) => format!("choose a whole number from {low} to {high}"),
+            Self::Whole => "a whole number, 0 or more, is needed".into(),
+            Self::Fraction => "a number between 0 and 1 is needed".into(),
+            Self::ZeroOr(low, high) => format!("choose 0 for off, or {low:e} to {high:e}"),
+            Self::Number(low, high) => format!("choose a number from {low} to {high:e}"),
+            Self::Positive => "numbers above 0 are needed, such as 0.1, 0.2, 0.5".into(),
+            Self::Flag | Self::Truth => "choose true or false".into(),
+            Self::Names(names) => format!("choose one of {}", names().join(", ")),
+        }
+    }
+
+    /// What stands for a value in a usage.
+    pub fn placeholder(&self) -> &'static str {
+        match self {
+            Self::Count(..) | Self::Whole => "N",
+            Self::Fraction | Self::ZeroOr(..) => "SHARE",
+            Self::Number(..) => "NUMBER",
+            Self::Positive => "LIST",
+            Self::Flag | Self::Truth => "BOOL",
+            Self::Names(_) => "NAME",
+        }
+    }
+
+    fn hold(&self, value: &Value) -> bool {
+        let number = |is_allowed: &dyn Fn(f64) -> bool| value.as_f64().is_some_and(is_allowed);
+        match self {
+            Self::Count(low, high) => {
+                value.as_u64().is_some_and(|count| (*low as u64..=*high as u64).contains(&count))
+            }
+            Self::Whole => value.is_u64(),
+            Self::Fraction => number(&|share| share > 0.0 && share < 1.0),
+            Self::ZeroOr(low, high) => number(&|share| share == 0.0 || (*low..=*high).contains(&share)),
+            Self::Number(low, high) => number(&|number| (*low..=*high).contains(&number)),
+            Self::Positive => value.as_array().is_some_and(|values| {
+                let is_positive = |value: &Value| value.as_f64().is_some_and(|value| value > 0.0);
+                !values.is_empty() && values.iter().all(is_positive)
+            }),
+            Self::Flag | Self::Truth => value.is_boolean(),
+            Self::Names(names) => {
+                let known = |name: &str| name == "epnn" || names().contains(&name);
+                value.as_str().is_some_and(known)
+            }
+        }
+    }
+
+    fn read(&self, text: &str) -> Option<Value> {
+        match self {
+            Self::Count(..) | Self::Whole => text.parse::<u64>().ok().map(Value::from),
+            Self::Fraction | Self::ZeroOr(..) | Self::Number(..) => finite(text),
+            Self::Positive => text.split(',').map(finite).collect::<Option<Vec<_>>>().map(Value::from),
+            Self::Flag | Self::Truth => text.parse::<bool>().ok().map(Value::from),
+            Self::Names(_) => Some(Value::from(text)),
+        }
+    }
+}
+
+fn finite(text: &str) -> Option<Value> {
+    let number: f64 = text.trim().parse().ok()?;
+    number.is_finite().then(|| Value::from(number))
+}

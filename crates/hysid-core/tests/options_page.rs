@@ -1,0 +1,72 @@
+//! `docs/options.md` is made from the table of options: `HYSID_WRITE=1 cargo test -p hysid-core --test options_page`
+//! writes it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use hysid_core::options::ModelName;
+use hysid_core::options::table::{FitOption, Group, OPTIONS, Values};
+
+const HEAD: &str = "\
+# Options of a fit
+
+Each option has one name: `--no-deterioration` of `hysid fit` and `hysid validate` is the keyword `no_deterioration` of
+`hysid.fit`, of `HysteresisRegressor` and of the library's `ChosenOptions`. A model that has no use for an option
+ignores it, with a warning. This page is made from the table of options in `crates/hysid-core/src/options/table.rs`.
+";
+
+fn values(option: &FitOption) -> String {
+    match option.values {
+        Values::Count(low, high) => format!("{low} to {high}"),
+        Values::Whole => "0 or more".into(),
+        Values::Fraction => "between 0 and 1".into(),
+        Values::ZeroOr(low, high) => format!("0, or {low:e} to {high:e}"),
+        Values::Number(low, high) => format!("{low} to {high:e}"),
+        Values::Positive => "numbers above 0".into(),
+        Values::Flag => "a flag".into(),
+        Values::Truth => "true or false".into(),
+        Values::Names(names) => format!("`{}`", names().join("`, `")),
+    }
+}
+
+fn users(option: &FitOption) -> String {
+    let (all, users) = (1 + ModelName::all().count(), option.users());
+    if users.len() == all {
+        return "all".into();
+    }
+    let names: Vec<&str> = users.into_iter().map(ModelName::name).collect();
+    names.join(", ")
+}
+
+fn page() -> String {
+    let mut page = HEAD.to_string();
+    for group in Group::ALL {
+        let _ = write!(page, "\n## {}\n", group.heading());
+        for option in OPTIONS.iter().filter(|option| option.group == group) {
+            let _ = write!(
+                page,
+                "\n### `{}`\n\n{}.\n\n- Values: {}\n- Default: {}\n- Models: {}\n",
+                option.name,
+                option.meaning,
+                values(option),
+                option.default,
+                users(option)
+            );
+        }
+    }
+    page
+}
+
+#[test]
+fn the_page_of_options_is_that_of_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/options.md");
+    let page = page();
+    if std::env::var_os("HYSID_WRITE").is_some() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    assert_eq!(
+        std::fs::read_to_string(&path).unwrap(),
+        page,
+        "HYSID_WRITE=1 cargo test writes the page anew"
+    );
+}
