@@ -73,8 +73,7 @@ impl Source {
     fn explain(&self, error: hysid::Error, roles: &Roles) -> anyhow::Error {
         let error = match error {
             hysid::Error::Data(error) => error,
-            hysid::Error::Option(text) => return Usage(text).into(),
-            other => return other.into(),
+            other => return of_options(other),
         };
         let Some(place) = self.places.iter().find(|place| place.record == error.record) else {
             return error.into();
@@ -95,8 +94,7 @@ impl Source {
 pub fn explained(file: &str, line: Option<u64>, error: hysid::Error, roles: &Roles) -> anyhow::Error {
     let error = match error {
         hysid::Error::Data(error) => error,
-        hysid::Error::Option(text) => return Usage(text).into(),
-        other => return other.into(),
+        other => return of_options(other),
     };
     let column = error.channel.and_then(|channel| column(channel, roles));
     match (&error.problem, line, column) {
@@ -116,7 +114,29 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid::Error, roles: &Rol
         ) => {
             anyhow!("{file}: column \"{}\" {}", clipped(column), error.problem)
         }
-        (problem, ..) => anyhow!("{file}: {problem}"),
+        (problem, ..) => anyhow!("{file}: {problem}{}", advice(problem)),
+    }
+}
+
+/// An error that is about no row: a wrong use of the command line, or another.
+fn of_options(error: hysid::Error) -> anyhow::Error {
+    match error {
+        hysid::Error::SeveralInputs { .. } => Usage(format!("{error} with --input")).into(),
+        hysid::Error::RateNeeded(_) => Usage(format!("{error} (name a time column with --time)")).into(),
+        hysid::Error::Option(_)
+        | hysid::Error::Parts(_)
+        | hysid::Error::UnknownName { .. }
+        | hysid::Error::Probability { .. } => Usage(error.to_string()).into(),
+        other => other.into(),
+    }
+}
+
+/// What helps on the command line.
+fn advice(problem: &DataProblem) -> &'static str {
+    match problem {
+        DataProblem::NoTime => " (name one with --time, or use --rate none)",
+        DataProblem::NoTimeForModel => " (name it with --time)",
+        _ => "",
     }
 }
 

@@ -17,10 +17,68 @@ pub enum Error {
     Data(#[from] DataError),
     /// An option of a fit that cannot be used.
     #[error(transparent)]
-    FitOption(#[from] OptionError),
-    /// An architecture, parameter or option outside its meaning.
+    Option(#[from] OptionError),
+    /// A name that there is not.
+    #[error("{what} `{}` is unknown: choose one of {}", one_line(.name), .known.join(", "))]
+    UnknownName {
+        /// What it should name, such as "model".
+        what: &'static str,
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: Vec<&'static str>,
+    },
+    /// A parameter of a law that is not finite or out of bounds.
+    #[error("{law}: {symbol} ({meaning}) is {value}, and must be from {low} to {high}")]
+    Parameter {
+        /// The law.
+        law: &'static str,
+        /// The field's symbol of the parameter.
+        symbol: String,
+        /// What it is.
+        meaning: &'static str,
+        /// Its value.
+        value: f64,
+        /// The smallest that it may have.
+        low: f64,
+        /// The largest.
+        high: f64,
+    },
+    /// Parts of a model, or arguments of an element, that cannot be used together.
     #[error("{}", one_line(.0))]
-    Option(String),
+    Parts(String),
+    /// A model that takes one input, and data with several.
+    #[error("{model} takes one input, not {found}: use xpnn+, or choose one input")]
+    SeveralInputs {
+        /// The model.
+        model: &'static str,
+        /// Inputs of the data.
+        found: usize,
+    },
+    /// A model that cannot be fitted without the rate of its input.
+    #[error("{0} needs the rate of the input: there are no time stamps to take it from")]
+    RateNeeded(&'static str),
+    /// A sample that a model cannot take.
+    #[error(transparent)]
+    Sample(#[from] SampleError),
+    /// A data set without records.
+    #[error("a data set needs at least one record")]
+    NoRecords,
+    /// A model without a band of errors.
+    #[error(
+        "this model of {0} has no band: a fit of `auto` calibrates one where the data are enough to hold some out"
+    )]
+    NoBand(&'static str),
+    /// A probability that no band is calibrated for.
+    #[error("a band of {probability}: choose a probability from {least} to {most}")]
+    Probability {
+        /// What was asked for.
+        probability: f64,
+        /// The smallest that there is.
+        least: f64,
+        /// The largest.
+        most: f64,
+    },
     /// A model file that cannot be used.
     #[error("{}", one_line(.0))]
     ModelFile(String),
@@ -127,10 +185,10 @@ pub enum DataProblem {
     #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
     /// A rate was asked for and there is no time.
-    #[error("there is no time column to take the rate from (use rate `none`)")]
+    #[error("there is no time column to take the rate from")]
     NoTime,
     /// The model needs time and there is none.
-    #[error("there is no time column, and the model needs one (name it with --time)")]
+    #[error("there is no time column, and the model needs one")]
     NoTimeForModel,
     /// A rate was asked for from a column that is missing.
     #[error("there is no given rate (the model was trained with one)")]
@@ -176,6 +234,26 @@ impl fmt::Display for DataError {
 }
 
 impl std::error::Error for DataError {}
+
+/// A sample that a model cannot take.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SampleError {
+    /// Another number of inputs than the model has.
+    #[error("{found} inputs where the model has {expected}")]
+    Inputs {
+        /// Inputs of the model.
+        expected: usize,
+        /// Inputs of the sample.
+        found: usize,
+    },
+    /// A time stamp that does not come after the last sample's.
+    #[error("time {0} does not come after the last sample's")]
+    Time(f64),
+    /// NaN or infinity.
+    #[error("an input or its rate is {0}, not a finite number")]
+    NotFinite(f64),
+}
 
 /// An option of a fit that cannot be used.
 #[derive(Debug, Clone, PartialEq)]

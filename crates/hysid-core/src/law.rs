@@ -136,15 +136,13 @@ impl Parameter {
     }
 
     /// Refuses a value that is not finite or out of bounds.
-    pub(crate) fn check(&self, law: &str) -> Result<()> {
+    pub(crate) fn check(&self, law: &'static str) -> Result<()> {
         let (low, high) = self.bounds;
         if self.value >= low && self.value <= high {
             return Ok(());
         }
         let Self { symbol, meaning, value, .. } = self;
-        Err(Error::Option(format!(
-            "{law}: {symbol} ({meaning}) is {value}, and must be from {low} to {high}"
-        )))
+        Err(Error::Parameter { law, symbol: symbol.clone(), meaning, value: *value, low, high })
     }
 }
 

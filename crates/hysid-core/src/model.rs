@@ -153,7 +153,7 @@ impl TrainedRanges {
         if values && self.rate.iter().all(|range| is_range(range, f64::MAX)) {
             return Ok(());
         }
-        Err(Error::Option("a range that it was trained on is none".into()))
+        Err(Error::Parts("a range that it was trained on is none".into()))
     }
 }
 
@@ -388,6 +388,15 @@ impl Model {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
+    /// Free run over one input from the virgin state: the output, sample by sample, in the unit of the training.
+    ///
+    /// # Errors
+    /// A model of several inputs, or one that needs time stamps or a rate ([`Model::response`] takes them); an input
+    /// that is empty, not finite or too large.
+    pub fn run(&self, x: &[f64]) -> Result<Vec<f64>> {
+        self.response(&Excitation::new("data", vec![x])?)
+    }
+
     /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
     /// record's own output is not looked at.
     ///
@@ -436,10 +445,7 @@ impl Model {
     fn checked_band(&self, probability: f64) -> Result<&Band> {
         Band::check(probability)?;
         self.band.as_ref().ok_or_else(|| {
-            Error::Option(format!(
-                "this model of {} has no band: `--model auto` calibrates one where the data are enough to hold some out",
-                self.name().name()
-            ))
+            Error::NoBand(self.name().name())
         })
     }
 

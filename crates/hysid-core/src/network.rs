@@ -55,14 +55,14 @@ impl Network {
     pub fn new(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Result<Self> {
         Layout::new(architecture).check(&parameters)?;
         if output.len() != architecture.output_weights() {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} output weights where the architecture has {}",
                 output.len(),
                 architecture.output_weights()
             )));
         }
         match output.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_OUTPUT_WEIGHT) {
-            Some(weight) => Err(Error::Option(format!("output weight {weight} is not a usable number"))),
+            Some(weight) => Err(Error::Parts(format!("output weight {weight} is not a usable number"))),
             None => Ok(Self { architecture, parameters, output }),
         }
     }

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use hysid_core::data::record::{Dataset, Record};
-use hysid_core::error::{Error, Result};
+use hysid_core::error::{OptionError, Result};
 
 /// The data with Gaussian noise on the output. Its deviation is `percent` of the population standard
 /// deviation of all scored outputs together. The same data, `percent` and `seed` give the same noise;
@@ -14,7 +14,7 @@ use hysid_core::error::{Error, Result};
 /// `percent` is negative or not finite, or so large that an output leaves the range of a record.
 pub fn with_noise(data: &Dataset, percent: f64, seed: u64) -> Result<Dataset> {
     if !(percent >= 0.0 && percent.is_finite()) {
-        return Err(Error::Option(format!("noise must be 0 % or more, not {percent} %")));
+        return Err(OptionError::value("noise", percent, "a number of percent, 0 or more, is needed").into());
     }
     let deviation = 0.01 * percent * standard_deviation(data);
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);

@@ -1,48 +1,82 @@
-//! Identification of hysteresis: from measured input and output to a small, stable model.
+//! Identification of hysteresis: from measured input and output to a small, stable model that simulates it.
 //!
 //! ```
-//! use std::ops::ControlFlow;
+//! use hysid::{Dataset, Fit, Model};
 //! use hysid::operator::{Operator, Stop};
-//! use hysid::data::record::{ColumnNames, Dataset, Record};
-//! use hysid::options::network::FitOptions;
-//! use hysid::fit::network::fit;
 //!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // A specimen: an elastic spring beside a friction slider, driven by a growing oscillation.
+//! # fn main() -> hysid::Result<()> {
+//! // A spring beside a friction slider, driven by a growing oscillation.
 //! let x: Vec<f64> = (0..600).map(|k| 0.01 * k as f64 * (0.1 * k as f64).sin()).collect();
 //! let slider = Stop::new(1.0)?.run(&x);
 //! let y: Vec<f64> = x.iter().zip(slider).map(|(x, slider)| 0.2 * x + slider).collect();
 //!
-//! let record = Record::new("test 1", vec![x], y)?;
-//! let data = Dataset::new(ColumnNames::plain(1), vec![record])?;
-//! let options = FitOptions { starts: 2, ..FitOptions::default() };
-//! let fitted = fit(&data, &options, &mut |_| ControlFlow::Continue(()))?;
-//!
-//! let errors = fitted.model.evaluate(&data)?;
+//! let data = Dataset::from_slices(&x, &y)?;
+//! let model = Fit::new().model("prandtl-ishlinskii").run(&data)?;
+//! let errors = model.evaluate(&data)?;
 //! assert!(errors.nrmse_std_percent.unwrap() < 2.0);
-//! let file = fitted.model.to_json();
-//! assert_eq!(hysid::model::Model::from_json(&file)?, fitted.model);
+//!
+//! let simulated = model.run(&x)?;
+//! assert_eq!(simulated.len(), x.len());
+//! assert_eq!(Model::from_json(&model.to_json())?, model);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! The library does no input or output, keeps no global state and has no unsafe code. Where to find
-//! what, each room using only those before it: [`data`] holds measured records, [`operator`] the elements of memory,
-//! [`network`] the family of networks, [`law`] the classical models, [`options`] what can be asked for, [`model`] the
-//! result, [`validation`] the folds, [`fit`] identifies; [`diagnosis`] tells what kind of hysteresis it is, and
-//! [`plant`] makes data.
+//! [`fit`](fit()) takes the defaults: it cross-validates networks and classical models and combines the best.
+//! [`Fit`] chooses a model, options, a time limit and an observer; [`validate`] estimates the error on new data;
+//! [`compare`] fits every model; [`diagnose`] tells what kind of hysteresis the data show. [`Model::stepper`] runs a
+//! model sample by sample, as a controller does.
+//!
+//! The library does no input or output, keeps no global state and has no unsafe code; only [`Fit::time_limit`] reads a
+//! clock. Its rooms, each using only those before it: [`data`] holds measured records, [`operator`] the elements of
+//! memory, [`network`] the family of networks, [`law`] the classical models, [`options`] what can be asked for,
+//! [`model`] the result, [`validation`] the folds, [`mod@fit`] the identification; [`diagnosis`] tells what kind of
+//! hysteresis it is, and [`specimens`] makes data.
 
+mod builder;
 pub mod fit;
 mod random;
 pub mod validation;
 
+pub use builder::{Compared, Fit, compare};
+pub use fit::network::Progress;
+pub use hysid_core::data::metrics::Errors;
+pub use hysid_core::data::record::{ColumnNames, Dataset, Record};
 pub(crate) use hysid_core::linear_algebra;
+pub use hysid_core::model::{Model, Stepper};
+pub use hysid_core::options::ModelName;
 pub use hysid_core::{Error, Result};
 pub use hysid_core::{
-    data, error, law, model, network, operator, options, significant, simd, stop_check, termination,
+    data, error, law, model, network, operator, options, property, significant, simd, stop_check, termination,
 };
 pub use hysid_diagnosis as diagnosis;
-pub use hysid_specimens as plant;
+pub use hysid_diagnosis::Diagnosis;
+pub use hysid_specimens as specimens;
+pub use validation::CrossValidation;
+
+/// Fits a model to data with the defaults: cross-validates networks and classical models and combines the best.
+///
+/// # Errors
+/// Data that nothing can be identified from.
+pub fn fit(data: &Dataset) -> Result<Model> {
+    Fit::new().run(data)
+}
+
+/// Cross-validates the default fit: estimates its error on new data. [`Fit::validate`] does so for any other.
+///
+/// # Errors
+/// As [`fit`](fit()), and data too few for two folds.
+pub fn validate(data: &Dataset) -> Result<CrossValidation> {
+    Fit::new().validate(data)
+}
+
+/// Tells what kind of hysteresis the data show, each property with its evidence.
+///
+/// # Errors
+/// Data that nothing can be said about: a constant input or output, or hardly any rows.
+pub fn diagnose(data: &Dataset) -> Result<Diagnosis> {
+    Diagnosis::of(data, &diagnosis::DiagnosisOptions::default())
+}
 
 /// The examples of the README, compiled and run by the tests.
 #[cfg(doctest)]

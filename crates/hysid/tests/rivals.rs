@@ -10,7 +10,7 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::Error;
 use hysid::fit::identify;
 use hysid::fit::network::Fit;
-use hysid::law::{Dimension, Law};
+use hysid::law::Dimension;
 use hysid::model::{Body, Model};
 use hysid::network::Family;
 use hysid::options::classical::{ClassicalOptions, Rival};
@@ -140,7 +140,7 @@ fn wild_inputs_leave_every_model_finite() {
 
 #[test]
 fn parameters_of_laws_are_named_within_bounds_and_in_units() {
-    for rival in Rival::ALL {
+    for &rival in Rival::ALL {
         let model = quietly(&small(ModelName::Rival(rival), Some(RateMethod::Central))).model;
         let Body::Law(law) = model.body() else {
             assert_eq!(rival, Rival::RandomStops);

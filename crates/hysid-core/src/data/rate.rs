@@ -89,9 +89,10 @@ impl std::str::FromStr for RateMethod {
             "central" => Ok(RateMethod::Central),
             "backward" => Ok(RateMethod::Backward),
             "savitzky-golay" => Ok(RateMethod::SavitzkyGolay),
-            _ => Err(Error::Option(format!(
-                "rate `{text}` is unknown: given, central, backward or savitzky-golay"
-            ))),
+            _ => {
+                let known = vec!["given", "central", "backward", "savitzky-golay"];
+                Err(Error::UnknownName { what: "rate", name: text.into(), known })
+            }
         }
     }
 }

@@ -215,13 +215,59 @@ pub struct Dataset {
 }
 
 impl Dataset {
+    /// One record of one input and the output, sample by sample; NaN in `y` is a blank, which drives the memory and is
+    /// neither trained on nor scored.
+    ///
+    /// ```
+    /// let data = hysid_core::data::record::Dataset::from_slices(&[0.0, 1.0, 0.5], &[0.0, 0.9, 0.7])?;
+    /// assert_eq!(data.rows(), 3);
+    /// # Ok::<(), hysid_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Slices that are empty or of different length, a value that is not finite or too large.
+    pub fn from_slices(x: &[f64], y: &[f64]) -> Result<Self> {
+        Self::from_columns(None, &[("x", x)], ("y", y))
+    }
+
+    /// One record from named columns: time stamps if there are any, one or more inputs, the output.
+    ///
+    /// ```
+    /// use hysid_core::data::record::Dataset;
+    /// let (t, x, y) = ([0.0, 0.1, 0.2], [0.0, 1.0, 0.5], [0.0, 0.9, 0.7]);
+    /// let data = Dataset::from_columns(Some(("t_s", &t)), &[("u_mm", &x)], ("F_kN", &y))?;
+    /// assert!(data.has_time());
+    /// # Ok::<(), hysid_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Dataset::from_slices`], no input, and time stamps that do not increase.
+    pub fn from_columns(
+        time: Option<(&str, &[f64])>,
+        inputs: &[(&str, &[f64])],
+        output: (&str, &[f64]),
+    ) -> Result<Self> {
+        let values = inputs.iter().map(|(_, values)| values.to_vec()).collect();
+        let mut record = Record::new("data", values, output.1.to_vec())?;
+        if let Some((_, time)) = time {
+            record = record.with_time(time.to_vec())?;
+        }
+        let names = ColumnNames {
+            time: time.map(|(name, _)| name.to_string()),
+            inputs: inputs.iter().map(|(name, _)| (*name).to_string()).collect(),
+            rate: None,
+            output: output.0.to_string(),
+        };
+        Self::new(names, vec![record])
+    }
+
     /// Several records with the same channels.
     ///
     /// # Errors
     /// No record, or one whose channels are not those of `names`.
     pub fn new(names: ColumnNames, records: Vec<Record>) -> Result<Self> {
         if records.is_empty() {
-            return Err(Error::Option("a data set needs at least one record".into()));
+            return Err(Error::NoRecords);
         }
         for record in &records {
             let (expected, found) = (names.inputs.len(), record.inputs.len());

@@ -107,7 +107,7 @@ impl fmt::Display for Warning {
             Self::UnevenTimeSteps { record, shortest, longest } => write!(
                 f,
                 "record \"{record}\": time steps vary from {:.3} to {:.3}, so rates are uncertain \
-                 (are records joined, or samples missing? name records in a column `record`, or use --rate none)",
+                 (are records joined, or samples missing? name the records, or use no rate)",
                 Significant(*shortest),
                 Significant(*longest)
             ),

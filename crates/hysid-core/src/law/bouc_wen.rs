@@ -244,6 +244,7 @@ impl Law for BoucWen {
         origin: Origin::OfData,
         identification: Identification::Search,
         options: &["degradation", "starts", "epochs", "rate_companding"],
+        limits: &[],
         variant: Some("degradation"),
         log_error_inside: 0.15,
     };
@@ -289,7 +290,7 @@ impl Law for BoucWen {
             parameter.check("Bouc-Wen")?;
         }
         if self.yield_displacement <= 0.0 {
-            return Err(Error::Option("Bouc-Wen: the yield displacement must be positive".into()));
+            return Err(Error::Parts("Bouc-Wen: the yield displacement must be positive".into()));
         }
         Ok(self)
     }

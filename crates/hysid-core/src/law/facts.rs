@@ -13,6 +13,8 @@ pub struct Facts {
     pub identification: Identification,
     /// Options of a fit that it uses, beside those of every model.
     pub options: &'static [&'static str],
+    /// Largest numbers of such options, where they are smaller than those of the table of options.
+    pub limits: &'static [(&'static str, usize)],
     /// The option among them that adds a term or takes another form; both are tried where a law is tried in all its
     /// variants.
     pub variant: Option<&'static str>,

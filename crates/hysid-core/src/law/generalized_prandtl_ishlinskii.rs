@@ -111,6 +111,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
         origin: Origin::OfData,
         identification: Identification::Search,
         options: &["operators", "free_weights", "starts", "epochs"],
+        limits: &[],
         variant: None,
         log_error_inside: 0.15,
     };

@@ -164,6 +164,7 @@ impl Law for JilesAtherton {
         origin: Origin::Zero,
         identification: Identification::Search,
         options: &["differential_form", "starts", "epochs"],
+        limits: &[],
         variant: Some("differential_form"),
         log_error_inside: 0.15,
     };
@@ -203,7 +204,7 @@ impl Law for JilesAtherton {
             parameter.check("Jiles-Atherton")?;
         }
         if !(self.a > 0.0 && self.k > 0.0) {
-            return Err(Error::Option("Jiles-Atherton: a and k must be positive".into()));
+            return Err(Error::Parts("Jiles-Atherton: a and k must be positive".into()));
         }
         Ok(self)
     }

@@ -70,7 +70,7 @@ impl Masing {
         check_weights(&parts.slopes)?;
         check_weights(&[parts.constant])?;
         if parts.slopes.len() != parts.thresholds.len() + 1 {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} slopes where {} thresholds need {}",
                 parts.slopes.len(),
                 parts.thresholds.len(),
@@ -112,6 +112,7 @@ impl Law for Masing {
         origin: Origin::OfData,
         identification: Identification::LeastSquares,
         options: &["operators", "thresholds", "sign"],
+        limits: &[],
         variant: None,
         log_error_inside: 0.85,
     };

@@ -75,10 +75,10 @@ impl DeadZones {
         check_weights(&parts.weights)?;
         check_weights(&[parts.constant, parts.linear])?;
         if parts.thresholds.contains(&0.0) || parts.thresholds.windows(2).any(|pair| pair[1] <= pair[0]) {
-            return Err(Error::Option("thresholds of dead zones must rise, and none be 0".into()));
+            return Err(Error::Parts("thresholds of dead zones must rise, and none be 0".into()));
         }
         if parts.thresholds.len() != parts.weights.len() {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} thresholds and {} weights of dead zones: there must be one for each",
                 parts.thresholds.len(),
                 parts.weights.len()
@@ -87,7 +87,7 @@ impl DeadZones {
         let zones = Self { parts };
         match zones.slopes().into_iter().find(|&slope| slope <= 0.0) {
             Some(slope) => {
-                Err(Error::Option(format!("dead zones with a slope of {slope}: it must be positive")))
+                Err(Error::Parts(format!("dead zones with a slope of {slope}: it must be positive")))
             }
             None => Ok(zones),
         }
@@ -158,6 +158,7 @@ impl Law for ModifiedPrandtlIshlinskii {
         origin: Origin::OfData,
         identification: Identification::LeastSquares,
         options: &["operators", "thresholds", "sign", "dead_zones"],
+        limits: &[],
         variant: None,
         log_error_inside: 1.05,
     };

@@ -137,6 +137,7 @@ impl Law for NeuroMadelung {
         origin: Origin::OfData,
         identification: Identification::Search,
         options: &["hidden", "starts", "epochs", "rate_companding"],
+        limits: &[("hidden", MOST_HIDDEN)],
         variant: None,
         log_error_inside: 1.25,
     };
@@ -175,7 +176,7 @@ impl Law for NeuroMadelung {
     }
 
     fn validated(self) -> Result<Self> {
-        let refuse = |what: &str| Err(Error::Option(format!("neuro-Madelung: {what}")));
+        let refuse = |what: &str| Err(Error::Parts(format!("neuro-Madelung: {what}")));
         let positive = |scale: f64| scale > 0.0 && scale <= LARGEST_VALUE;
         if !(positive(self.input_scale)
             && positive(self.output_scale)

@@ -69,12 +69,12 @@ impl PlayWeights {
     pub(crate) fn check(&self, law: &str, spacing: f64, first: usize) -> Result<()> {
         if self.plays() == 0 || self.plays() > MOST_PLAYS {
             let plays = self.plays();
-            return Err(Error::Option(format!("{law}: {plays} plays, and there must be 1 to {MOST_PLAYS}")));
+            return Err(Error::Parts(format!("{law}: {plays} plays, and there must be 1 to {MOST_PLAYS}")));
         }
         if self.values(spacing, first).iter().all(|weight| weight.abs() <= LARGEST_VALUE) {
             return Ok(());
         }
-        Err(Error::Option(format!("{law}: a weight is not finite or beyond {LARGEST_VALUE:e}")))
+        Err(Error::Parts(format!("{law}: a weight is not finite or beyond {LARGEST_VALUE:e}")))
     }
 
     /// Its parameters; `weight` is the unit of a weight, `threshold` that of a threshold.

@@ -66,7 +66,7 @@ impl PrandtlIshlinskii {
         check_thresholds(&thresholds)?;
         check_weights(&[&[constant, linear], weights.as_slice()].concat())?;
         if thresholds.len() != weights.len() {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} thresholds and {} weights: there must be one weight for each threshold",
                 thresholds.len(),
                 weights.len()
@@ -106,6 +106,7 @@ impl Law for PrandtlIshlinskii {
         origin: Origin::OfData,
         identification: Identification::LeastSquares,
         options: &["operators", "thresholds", "sign"],
+        limits: &[],
         variant: None,
         log_error_inside: 0.85,
     };

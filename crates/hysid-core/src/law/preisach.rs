@@ -83,7 +83,7 @@ impl Preisach {
     pub fn new(weights: PreisachWeights) -> Result<Self> {
         let lines = &weights.lines;
         if lines.len() < 2 || lines.len() > MOST_INTERVALS + 1 {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} lines: a plane has 2 to {}",
                 lines.len(),
                 MOST_INTERVALS + 1
@@ -91,12 +91,12 @@ impl Preisach {
         }
         check_weights(lines)?;
         if let Some(pair) = lines.windows(2).find(|pair| pair[1] <= pair[0]) {
-            return Err(Error::Option(format!("line {} after {}: lines must rise", pair[1], pair[0])));
+            return Err(Error::Parts(format!("line {} after {}: lines must rise", pair[1], pair[0])));
         }
         let plane = Plane::new(lines.clone());
         let expected = (plane.intervals(), plane.cells());
         if (weights.reversible.len(), weights.cells.len()) != expected {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} reversible weights and {} cells where {} lines make {} and {}",
                 weights.reversible.len(),
                 weights.cells.len(),
@@ -146,6 +146,7 @@ impl Law for Preisach {
         origin: Origin::OfData,
         identification: Identification::LeastSquares,
         options: &["operators", "sign"],
+        limits: &[("operators", MOST_INTERVALS)],
         variant: None,
         log_error_inside: 0.85,
     };

@@ -118,6 +118,7 @@ impl Law for RateDependentPrandtlIshlinskii {
             "epochs",
             "rate_companding",
         ],
+        limits: &[],
         variant: Some("logarithmic_thresholds"),
         log_error_inside: 0.15,
     };

@@ -9,11 +9,11 @@ const LARGEST_WEIGHT: f64 = 1e100;
 pub fn check_thresholds(thresholds: &[f64]) -> Result<()> {
     let sound = |r: f64| r.is_finite() && r > 0.0;
     if let Some(r) = thresholds.iter().find(|&&r| !sound(r)) {
-        return Err(Error::Option(format!("threshold {r}: it must be finite and greater than 0")));
+        return Err(Error::Parts(format!("threshold {r}: it must be finite and greater than 0")));
     }
     match thresholds.windows(2).find(|pair| pair[1] <= pair[0]) {
         Some(pair) => {
-            Err(Error::Option(format!("threshold {} after {}: thresholds must rise", pair[1], pair[0])))
+            Err(Error::Parts(format!("threshold {} after {}: thresholds must rise", pair[1], pair[0])))
         }
         None => Ok(()),
     }
@@ -22,7 +22,7 @@ pub fn check_thresholds(thresholds: &[f64]) -> Result<()> {
 /// Refuses weights that are not finite, or so large that an output could overflow.
 pub(crate) fn check_weights(weights: &[f64]) -> Result<()> {
     match weights.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_WEIGHT) {
-        Some(weight) => Err(Error::Option(format!("weight {weight} is not a usable number"))),
+        Some(weight) => Err(Error::Parts(format!("weight {weight} is not a usable number"))),
         None => Ok(()),
     }
 }

@@ -134,7 +134,7 @@ impl Band {
             return Ok(());
         }
         let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
-        Err(Error::Option(format!("a band of {level}: choose a probability from {least} to {most}")))
+        Err(Error::Probability { probability: level, least: *least, most: *most })
     }
 
     /// Refuses factors of a file that are none.
@@ -145,7 +145,7 @@ impl Band {
         if is_sound(&self.inside) && is_sound(&self.outside) && self.floor > 0.0 && self.floor.is_finite() {
             return Ok(self);
         }
-        Err(Error::Option("its band is not a band".into()))
+        Err(Error::Parts("its band is not a band".into()))
     }
 }
 

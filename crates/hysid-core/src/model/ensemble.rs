@@ -168,13 +168,13 @@ impl Ensemble {
     pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
         if members.iter().any(|member| member.ensemble().is_some()) {
-            return Err(Error::Option("an ensemble cannot be a member of another".into()));
+            return Err(Error::Parts("an ensemble cannot be a member of another".into()));
         }
         if members.iter().any(|member| member.inputs() != members[0].inputs()) {
-            return Err(Error::Option("the members of an ensemble do not have the same inputs".into()));
+            return Err(Error::Parts("the members of an ensemble do not have the same inputs".into()));
         }
         if !(range.0 < range.1 && range.0.is_finite() && range.1.is_finite()) {
-            return Err(Error::Option("the range of an ensemble's input is no range".into()));
+            return Err(Error::Parts("the range of an ensemble's input is no range".into()));
         }
         // The ensemble remembers them for all.
         members.iter_mut().for_each(Model::forget_records);
@@ -205,10 +205,10 @@ impl Ensemble {
 impl Group {
     fn check(&self, members: usize, deepest: usize) -> Result<()> {
         if self.voices.is_empty() {
-            return Err(Error::Option("an ensemble needs at least one member".into()));
+            return Err(Error::Parts("an ensemble needs at least one member".into()));
         }
         if deepest == 0 {
-            return Err(Error::Option("the groups of an ensemble are nested too deeply".into()));
+            return Err(Error::Parts("the groups of an ensemble are nested too deeply".into()));
         }
         let (inside, outside) = self.sums();
         let is_weight = |weight: f64| (0.0..=1e9).contains(&weight);
@@ -216,14 +216,14 @@ impl Group {
             |Voice { weights, .. }: &Voice| is_weight(weights.inside) && is_weight(weights.outside);
         if !self.voices.iter().all(are_weights) || inside.max(outside) < 1e-9 {
             let problem = "a group of an ensemble needs weights from 0 to 1e9 that are not all 0";
-            return Err(Error::Option(problem.into()));
+            return Err(Error::Parts(problem.into()));
         }
         for voice in &self.voices {
             match &voice.who {
                 Speaker::Group(group) => group.check(members, deepest - 1)?,
                 Speaker::Member(member) if *member < members => {}
                 Speaker::Member(member) => {
-                    return Err(Error::Option(format!("an ensemble of {members} has no member {member}")));
+                    return Err(Error::Parts(format!("an ensemble of {members} has no member {member}")));
                 }
             }
         }

@@ -179,10 +179,10 @@ impl NetworkParts {
         self.architecture.check()?;
         let (channels, run) = (self.architecture.channels(), 1 + self.architecture.memory_neurons());
         if self.memory.stops.iter().any(|stop| stop.weights.len() != channels) {
-            return Err(Error::Option(format!("not every stop has {channels} weights")));
+            return Err(Error::Parts(format!("not every stop has {channels} weights")));
         }
         if self.readout.hidden.iter().any(|neuron| neuron.len() != run) {
-            return Err(Error::Option(format!("not every hidden neuron has {run} weights")));
+            return Err(Error::Parts(format!("not every hidden neuron has {run} weights")));
         }
         let mut parameters = Vec::with_capacity(Layout::new(self.architecture).len());
         parameters.extend(self.memory.stops.iter().flat_map(|stop| &stop.weights));
@@ -337,7 +337,7 @@ fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Body>
             Ok(Body::Network { network: parts.network()?, scaling: parts.scaling })
         }
         (None, Some(law)) => Ok(Body::Law(law.validated()?)),
-        _ => Err(Error::Option("it must have either a network or a law".into())),
+        _ => Err(Error::Parts("it must have either a network or a law".into())),
     }
 }
 
@@ -348,7 +348,7 @@ fn assemble(file: File) -> Result<Model> {
             let members = parts.members.into_iter().map(|member| member.model(&file.columns));
             Body::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.group, parts.range)?)
         }
-        Some(_) => return Err(Error::Option("it is an ensemble and has parts of another model".into())),
+        Some(_) => return Err(Error::Parts("it is an ensemble and has parts of another model".into())),
     };
     let model = Model {
         body,
@@ -376,10 +376,10 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
         Body::Ensemble(_) => model.inputs(),
     };
     if inputs == 0 || [model.names.inputs.len(), model.trained.inputs.len()] != [inputs; 2] {
-        return Err(Error::Option(format!("it does not describe {inputs} inputs throughout")));
+        return Err(Error::Parts(format!("it does not describe {inputs} inputs throughout")));
     }
     if ![0, inputs].contains(&model.preprocessing.origins.len()) {
-        return Err(Error::Option(format!(
+        return Err(Error::Parts(format!(
             "its preprocessing does not have an origin for each of {inputs} inputs"
         )));
     }
@@ -387,10 +387,10 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
         && (network.architecture().rate != model.rate.is_some()
             || model.rate.is_some() != scaling.rate.is_some())
     {
-        return Err(Error::Option("it has a rate in some places only".into()));
+        return Err(Error::Parts("it has a rate in some places only".into()));
     }
     if name != model.name() {
-        return Err(Error::Option("it names two different models".into()));
+        return Err(Error::Parts("it names two different models".into()));
     }
     Ok(model)
 }

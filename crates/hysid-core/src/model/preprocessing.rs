@@ -274,7 +274,7 @@ impl Preprocessing {
         if scales.into_iter().flatten().all(is_scale) && self.origins.iter().all(is_value) {
             return Ok(());
         }
-        Err(Error::Option("its preprocessing has a scale that is none".into()))
+        Err(Error::Parts("its preprocessing has a scale that is none".into()))
     }
 }
 

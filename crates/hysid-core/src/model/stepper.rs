@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, SampleError};
 use crate::law::{ClassicalState, Sample};
 use crate::model::ensemble::{Council, Excursion};
 use crate::model::preprocessing::{Past, limited};
@@ -99,15 +99,15 @@ impl State {
     fn check(&self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<()> {
         let expected = model.inputs();
         if inputs.len() != expected {
-            return Err(Error::Option(format!("{} inputs where the model has {expected}", inputs.len())));
+            return Err(SampleError::Inputs { expected, found: inputs.len() }.into());
         }
         let elapsed = self.elapsed(time);
         if model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
-            return Err(Error::Option(format!("time {time} does not come after the last sample's")));
+            return Err(SampleError::Time(time).into());
         }
         let rate = self.rate(model, inputs, elapsed, rate);
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
-            return Err(Error::Option(format!("an input or its rate is {bad}, not a finite number")));
+            return Err(SampleError::NotFinite(*bad).into());
         }
         if let (Body::Ensemble(ensemble), Memory::Ensemble(jury)) = (&model.body, &self.memory) {
             let mut members = jury.members.iter().zip(ensemble.members());

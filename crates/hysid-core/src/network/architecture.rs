@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 
 /// The networks of the paper, and ours. All are [`Architecture`]s with parts switched off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,8 +73,8 @@ impl std::str::FromStr for Family {
     fn from_str(name: &str) -> Result<Self> {
         let known = if name == "epnn" { "xpnn" } else { name };
         Family::ALL.into_iter().find(|family| family.name() == known).ok_or_else(|| {
-            let names = Family::ALL.map(Family::name).join(", ");
-            Error::Option(format!("model `{name}` is unknown: choose one of {names}"))
+            let known = Family::ALL.map(Family::name).into();
+            Error::UnknownName { what: "model", name: name.into(), known }
         })
     }
 }
@@ -136,16 +136,11 @@ impl Architecture {
     pub fn new(family: Family, sizes: Sizes, inputs: usize, rate: bool, time: bool) -> Result<Self> {
         let neural = !matches!(family, Family::Pnn | Family::Gpnn);
         if inputs != 1 && !family.takes_further_inputs() {
-            return Err(Error::Option(format!(
-                "{} takes one input, not {inputs}: use xpnn+, or name one with --input",
-                family.name()
-            )));
+            return Err(Error::SeveralInputs { model: family.name(), found: inputs });
         }
         if neural && sizes.hidden == 0 {
-            return Err(Error::Option(format!(
-                "{} needs at least one hidden neuron (pnn and gpnn have none)",
-                family.name()
-            )));
+            let needed = format!("{} needs at least one tanh neuron (pnn and gpnn have none)", family.name());
+            return Err(OptionError::value("hidden", 0, needed).into());
         }
         let plus = family == Family::XpnnPlus;
         let architecture = Self {
@@ -169,16 +164,16 @@ impl Architecture {
     /// No stop, no input, more than 100 inputs, more than 1000 neurons of a kind.
     pub fn check(&self) -> Result<()> {
         if self.stops == 0 {
-            return Err(Error::Option("a network needs at least one stop".into()));
+            return Err(Error::Parts("a network needs at least one stop".into()));
         }
         if self.inputs == 0 || self.inputs > MOST_INPUTS {
-            return Err(Error::Option(format!("{} inputs: a network takes 1 to {MOST_INPUTS}", self.inputs)));
+            return Err(Error::Parts(format!("{} inputs: a network takes 1 to {MOST_INPUTS}", self.inputs)));
         }
         for (count, kind) in
             [(self.stops, "stops"), (self.hidden, "hidden neurons"), (self.relaxation, "relaxation neurons")]
         {
             if count > MOST_NEURONS {
-                return Err(Error::Option(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
+                return Err(Error::Parts(format!("{count} {kind} are too many: at most {MOST_NEURONS}")));
             }
         }
         Ok(())

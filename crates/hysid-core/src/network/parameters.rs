@@ -115,7 +115,7 @@ impl Layout {
     /// Another length, or a parameter that is outside its bounds or NaN, named.
     pub fn check(&self, values: &[f64]) -> Result<()> {
         if values.len() != self.len() {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "{} parameters where the architecture has {}",
                 values.len(),
                 self.len()
@@ -127,7 +127,7 @@ impl Layout {
             let slack = 1e-9 * low.abs().max(high.abs());
             if !(low - slack..=high + slack).contains(&value) {
                 let name = &self.names()[index];
-                return Err(Error::Option(format!("parameter `{name}` is {value}, outside {low} to {high}")));
+                return Err(Error::Parts(format!("parameter `{name}` is {value}, outside {low} to {high}")));
             }
         }
         Ok(())

@@ -34,12 +34,12 @@ impl Scaling {
     pub(crate) fn check(&self) -> Result<()> {
         let factors = self.inputs.iter().chain(&self.rate).chain([&self.output_deviation]);
         if let Some(factor) = factors.into_iter().find(|factor| !SCALES.contains(factor)) {
-            return Err(Error::Option(format!("its scaling has the factor {factor}")));
+            return Err(Error::Parts(format!("its scaling has the factor {factor}")));
         }
         if self.output_mean.abs() <= LARGEST_VALUE {
             return Ok(());
         }
-        Err(Error::Option(format!("its scaling has the mean output {}", self.output_mean)))
+        Err(Error::Parts(format!("its scaling has the mean output {}", self.output_mean)))
     }
 
     /// Finds the factors of a data set.

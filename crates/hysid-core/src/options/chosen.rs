@@ -8,7 +8,6 @@ use serde_json::{Map, Value};
 
 use crate::data::rate::RateMethod;
 use crate::error::{Error, OptionError, Result};
-use crate::law::neuro_madelung::MOST_HIDDEN;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalOptions, Rival, Sign};
@@ -68,15 +67,21 @@ impl ChosenOptions {
         Ok(options)
     }
 
-    /// Refuses what the model that was named cannot have.
+    /// Refuses more than the model that was named can have.
     fn check(&self) -> Result<()> {
-        match (self.model(), self.hidden) {
-            (ModelName::Rival(Rival::NeuroMadelung), Some(hidden)) if hidden > MOST_HIDDEN => {
-                let needed = format!("neuro-madelung has at most {MOST_HIDDEN} tanh neurons");
-                Err(OptionError::value("hidden", hidden, needed).into())
+        let ModelName::Rival(rival) = self.model() else { return Ok(()) };
+        for &(option, most) in rival.facts().limits {
+            let asked = match option {
+                "hidden" => self.hidden,
+                "operators" => self.operators,
+                _ => unreachable!("a law limits the number of its neurons or operators"),
+            };
+            if let Some(asked) = asked.filter(|asked| *asked > most) {
+                let needed = format!("{} has at most {most}", rival.name());
+                return Err(OptionError::value(option, asked, needed).into());
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
     /// Which model is asked for.
@@ -364,8 +369,9 @@ mod tests {
             ),
             (
                 json!({ "model": "neuro-madelung", "hidden": 500 }),
-                "neuro-madelung has at most 100 tanh neurons",
+                "hidden 500: neuro-madelung has at most 100",
             ),
+            (json!({ "model": "preisach", "operators": 201 }), "operators 201: preisach has at most 200"),
             (json!({ "model": "xpn" }), "model \"xpn\": choose one of auto, pnn, gpnn"),
             (json!({ "training": "lm" }), "training \"lm\": choose one of levenberg-marquardt,"),
             (json!({ "validation": 1.0 }), "validation 1.0: a number between 0 and 1 is needed"),

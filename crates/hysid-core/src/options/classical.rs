@@ -25,6 +25,7 @@ const RANDOM_STOPS: Facts = Facts {
     origin: Origin::OfData,
     identification: Identification::LeastSquares,
     options: &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
+    limits: &[],
     variant: None,
     log_error_inside: 1.25,
 };

@@ -79,8 +79,8 @@ impl std::str::FromStr for ModelName {
         let known = if name == "epnn" { "xpnn" } else { name };
         let all = || std::iter::once(Self::AUTO).chain(Self::all());
         all().find(|model| model.name() == known).ok_or_else(|| {
-            let names: Vec<&str> = all().map(Self::name).collect();
-            Error::Option(format!("model `{name}` is unknown: choose one of {}", names.join(", ")))
+            let known = all().map(Self::name).collect();
+            Error::UnknownName { what: "model", name: name.into(), known }
         })
     }
 }

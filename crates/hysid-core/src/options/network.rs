@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::network::{Architecture, Family, Sizes};
 use crate::options::shaping::{HISTORY_INPUTS, Shaping};
 use crate::options::table::check;
@@ -97,8 +97,8 @@ impl std::str::FromStr for Trainer {
 
     fn from_str(name: &str) -> Result<Self> {
         Trainer::ALL.into_iter().find(|trainer| trainer.name() == name).ok_or_else(|| {
-            let names = Trainer::ALL.map(Trainer::name).join(", ");
-            Error::Option(format!("training `{name}` is unknown: choose one of {names}"))
+            let known = Trainer::ALL.map(Trainer::name).into();
+            Error::UnknownName { what: "training", name: name.into(), known }
         })
     }
 }
@@ -227,7 +227,7 @@ impl FitOptions {
         ])?;
         check(self.validation.map(|share| ("validation", json!(share))))?;
         if self.thin < FEWEST_ROWS {
-            return Err(Error::Option(format!("thin {}: at least {FEWEST_ROWS} rows are needed", self.thin)));
+            return Err(OptionError::value("thin", self.thin, format!("at least {FEWEST_ROWS} rows are needed")).into());
         }
         self.shaping.check()?;
         self.penalties().check()

@@ -253,7 +253,7 @@ pub const OPTIONS: [FitOption; 27] = [
     FitOption {
         name: "operators",
         group: Classical,
-        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops",
+        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops",
         values: NEURONS,
         default: "10 to 60, by model",
         used_by: of_auto,
@@ -279,7 +279,7 @@ pub const OPTIONS: [FitOption; 27] = [
         name: "dead_zones",
         group: Classical,
         meaning: "Dead zones on each side of modified-prandtl-ishlinskii",
-        values: NEURONS,
+        values: Values::Count(1, 100),
         default: "6",
         used_by: of_none,
     },

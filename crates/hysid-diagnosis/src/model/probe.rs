@@ -133,7 +133,7 @@ impl<'m> Probe<'m> {
         let (low, high) = ranges[0];
         let half = 0.5 * high - 0.5 * low;
         if !(half > 0.0 && half.is_finite()) {
-            return Err(Error::Option(format!(
+            return Err(Error::Parts(format!(
                 "the model was trained on inputs from {low} to {high}: there is no range to probe"
             )));
         }
