@@ -33,7 +33,7 @@
 //! [`plant`] makes data.
 
 pub mod fit;
-mod random;
+pub mod optimise;
 pub mod validation;
 
 pub(crate) use hysid_core::linear_algebra;

@@ -101,6 +101,11 @@ impl Folds {
         Self { of_rows, count: 1, judged: vec![0] }
     }
 
+    /// Rows that are all in one fold, whichever record they are of.
+    pub fn one() -> Self {
+        Self { of_rows: Vec::new(), count: 1, judged: vec![0] }
+    }
+
     /// Folds for series.
     pub fn of_series(series: &[Series]) -> Self {
         let inputs = |series: &Series| series.samples.iter().map(|sample| sample.x).collect();
@@ -366,6 +371,14 @@ impl Bounds {
         }
     }
 
+    /// Takes weights back to their bounds.
+    pub fn limit(&self, weights: &mut [f64]) {
+        let sides = self.bounded.iter().zip(&self.flipped);
+        for (weight, (_, &flipped)) in weights.iter_mut().zip(sides).filter(|(_, (bounded, _))| **bounded) {
+            *weight = if flipped { weight.min(0.0) } else { weight.max(0.0) };
+        }
+    }
+
     fn turn(&self, weights: &mut [f64]) {
         weights.iter_mut().zip(&self.flipped).filter(|(_, flipped)| **flipped).for_each(|(w, _)| *w = -*w);
     }
@@ -575,7 +588,7 @@ mod tests {
                 (row as u64 * 31 + column as u64 * 17 + seed * 101).wrapping_mul(0x9e37_79b9_7f4a_7c15);
             (mixed >> 40) as f64 / (1u64 << 24) as f64 - 0.5 + 0.4 * ((row + 3 * column) as f64 * 0.37).sin()
         };
-        let one = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
+        let one = Folds::one();
         let mut gatherer = Gatherer::new(n, &one, StopCheck::never());
         for row in 0..rows {
             let features: Vec<f64> = (0..n).map(|column| value(row, column)).collect();
@@ -670,7 +683,7 @@ mod tests {
 
     #[test]
     fn the_error_from_sums_is_that_of_the_rows() {
-        let one = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
+        let one = Folds::one();
         let mut gatherer = Gatherer::new(2, &one, StopCheck::never());
         for k in 0..1000 {
             let x = f64::from(k) * 0.01;

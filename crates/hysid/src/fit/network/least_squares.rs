@@ -8,7 +8,7 @@ use crate::stop_check::{Pace, StopCheck};
 const LARGEST_RIDGE: f64 = 1e12;
 
 /// The linear least-squares problem inside the objective.
-pub(crate) struct OutputProblem<'a> {
+pub struct OutputProblem<'a> {
     pub gram: &'a Gram,
     /// Number of features.
     pub features: usize,
@@ -23,7 +23,7 @@ pub(crate) struct OutputProblem<'a> {
 
 /// Output weights and what they reach.
 #[derive(Debug, Clone)]
-pub(crate) struct OutputSolution {
+pub struct OutputSolution {
     pub weights: Vec<f64>,
     /// Mean square residual, in scaled units.
     pub mean_square: f64,
