@@ -16,9 +16,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
-use crate::fit::law::linear::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Quadratic, identifiable_series, logarithmic, lowest,
-};
+use crate::fit::law::linear::{FoldSums, Folds, Gatherer, identifiable_series, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
@@ -29,6 +27,7 @@ use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
 use crate::operator::play;
 use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
+use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
 

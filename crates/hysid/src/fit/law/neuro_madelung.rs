@@ -9,6 +9,7 @@
 //!
 //! `dy_t/dθ` is stored with each turning point, so the derivative of the free run is exact.
 
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 use rayon::prelude::*;
@@ -22,6 +23,7 @@ use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
+use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
@@ -90,16 +92,15 @@ struct Training<'a> {
     /// What they are trained on, and what judges them.
     kept: &'a Task<'a>,
     held: &'a Task<'a>,
-    walks: Vec<Walk>,
+    walks: MultiStart<Walk>,
     epochs: usize,
-    given_up: usize,
 }
 
 impl<'a> Training<'a> {
     fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &NeuroMadelungOptions) -> Self {
         let walks =
             (0..options.starts).into_par_iter().map(|start| Walk::new(kept, options.seed, start)).collect();
-        Self { kept, held, walks, epochs: options.epochs, given_up: 0 }
+        Self { kept, held, walks: MultiStart::new(walks), epochs: options.epochs }
     }
 
     fn run(
@@ -107,36 +108,22 @@ impl<'a> Training<'a> {
         whole: &Task<'_>,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<NeuroMadelung>> {
-        if self.walks.iter().all(|walk| walk.value().objective == f64::INFINITY) {
+        self.walks.sort();
+        if self.walks.best().value().objective == f64::INFINITY {
             return Err(Error::Stopped);
         }
-        let forced = self.epochs / 2;
         let last = (self.epochs / 6).max(1);
-        let mut termination = Termination::EpochsUsed;
-        for epoch in 1..=self.epochs {
-            self.epoch(epoch, forced);
-            let mut told = self.progress(epoch, self.epochs + last);
-            if epoch <= forced {
-                // With the measured output at every turning point it is no error of a free run.
-                told.train_nrmse_percent = f64::NAN;
-            }
-            if observer(told).is_break() || whole.stop.is_asked() {
-                termination = Termination::Stopped;
-                break;
-            }
-            if epoch > forced && self.walks.iter().all(|walk| walk.ended.is_some()) {
-                break;
-            }
-        }
+        let rounds = self.epochs + last;
+        let mut termination = self.epochs(rounds, whole.stop, observer);
         // A training that was stopped early has not judged any free run; there may be no time for it.
-        for walk in self.walks.iter_mut().filter(|walk| walk.best.is_none()) {
+        for walk in self.walks.starts_mut().iter_mut().filter(|walk| walk.best.is_none()) {
             if !whole.stop.is_asked() {
                 walk.set_free(self.kept);
                 walk.judge(self.held);
             }
         }
-        self.sort();
-        let best = &self.walks[0];
+        self.walks.sort();
+        let best = self.walks.best();
         let parameters = best.best.as_ref().map_or(best.parameters(), |(_, parameters)| parameters);
         // What was held out is learnt from where it was judged best, in few epochs.
         let mut walk = Walk::at(whole, parameters.to_vec());
@@ -147,7 +134,7 @@ impl<'a> Training<'a> {
             walk.advance(whole);
             let told = SearchProgress {
                 train_nrmse_percent: walk.nrmse_percent(),
-                ..self.progress(self.epochs + epoch, self.epochs + last)
+                ..progress(&self.walks, self.epochs + epoch, rounds)
             };
             if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
                 termination = Termination::Stopped;
@@ -158,14 +145,23 @@ impl<'a> Training<'a> {
             }
         }
         let law = whole.law(walk.parameters()).validated()?;
-        let evaluations = self.evaluations() + walk.evaluations();
+        let evaluations = self.walks.evaluations() + walk.evaluations();
         let train_nrmse_percent = walk.nrmse_percent();
         Ok(Identified { law, train_nrmse_percent, evaluations, termination })
     }
 
-    fn epoch(&mut self, epoch: usize, forced: usize) {
-        let (kept, held) = (self.kept, self.held);
-        self.walks.par_iter_mut().for_each(|walk| {
+    /// Half of the epochs teacher forced, then the others in free run; the observer hears of `rounds` in all.
+    fn epochs(
+        &mut self,
+        rounds: usize,
+        stop: StopCheck<'_>,
+        observer: &mut SearchObserver<'_>,
+    ) -> Termination {
+        let Self { kept, held, ref mut walks, epochs } = *self;
+        let forced = epochs / 2;
+        let plan =
+            Plan { rounds: epochs, spared: forced, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+        let advance = |walk: &mut Walk, epoch| {
             if epoch == forced + 1 {
                 walk.set_free(kept);
             }
@@ -173,34 +169,27 @@ impl<'a> Training<'a> {
             if epoch > forced {
                 walk.judge(held);
             }
-        });
-        self.sort();
-        if epoch > forced && (epoch - forced).is_multiple_of(EPOCHS_TO_PROVE_ITSELF) {
-            let keep = self.walks.len().div_ceil(2);
-            self.given_up += self.walks.drain(keep..).map(|walk| walk.evaluations()).sum::<usize>();
+        };
+        let tell = |walks: &MultiStart<Walk>, epoch| {
+            let mut told = progress(walks, epoch, rounds);
+            if epoch <= forced {
+                // With the measured output at every turning point it is no error of a free run.
+                told.train_nrmse_percent = f64::NAN;
+            }
+            let flow = observer(told);
+            if stop.is_asked() { ControlFlow::Break(()) } else { flow }
+        };
+        match walks.run(plan, advance, tell) {
+            Termination::Stopped => Termination::Stopped,
+            // How the whole ends, what follows tells.
+            _ => Termination::EpochsUsed,
         }
     }
+}
 
-    /// The best first, by what was held out once that has been judged. Stable: of equals the earlier
-    /// start stays before the later.
-    fn sort(&mut self) {
-        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);
-        let is_judged = |walk: &Walk| walk.best.is_some();
-        self.walks.sort_by(|a, b| is_judged(b).cmp(&is_judged(a)).then(rank(a).total_cmp(&rank(b))));
-    }
-
-    fn evaluations(&self) -> usize {
-        self.given_up + self.walks.iter().map(Walk::evaluations).sum::<usize>()
-    }
-
-    fn progress(&self, round: usize, rounds: usize) -> SearchProgress {
-        SearchProgress {
-            round,
-            rounds,
-            evaluations: self.evaluations(),
-            train_nrmse_percent: self.walks[0].nrmse_percent(),
-        }
-    }
+fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProgress {
+    let train_nrmse_percent = walks.best().nrmse_percent();
+    SearchProgress { round, rounds, evaluations: walks.evaluations(), train_nrmse_percent }
 }
 
 /// A model with its scales and without a network.
@@ -496,7 +485,7 @@ impl Walk {
     /// From teacher forcing to free run.
     fn set_free(&mut self, task: &Task<'_>) {
         if self.forced {
-            self.further_evaluations = self.evaluations();
+            self.further_evaluations = Start::evaluations(self);
             let parameters = self.parameters().to_vec();
             self.search = LevenbergMarquardt::new(&Objective { task, forced: false }, parameters);
             (self.forced, self.ended) = (false, None);
@@ -530,11 +519,24 @@ impl Walk {
         self.search.known_value().expect("a walk begins at a known value")
     }
 
+    fn nrmse_percent(&self) -> f64 {
+        100.0 * self.value().mean_square.sqrt()
+    }
+}
+
+impl Start for Walk {
+    /// By what was held out once that has been judged.
+    fn order(&self, other: &Self) -> Ordering {
+        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);
+        let is_judged = |walk: &Walk| walk.best.is_some();
+        is_judged(other).cmp(&is_judged(self)).then(rank(self).total_cmp(&rank(other)))
+    }
+
     fn evaluations(&self) -> usize {
         self.search.evaluations() + self.further_evaluations
     }
 
-    fn nrmse_percent(&self) -> f64 {
-        100.0 * self.value().mean_square.sqrt()
+    fn ended(&self) -> Option<Termination> {
+        self.ended
     }
 }

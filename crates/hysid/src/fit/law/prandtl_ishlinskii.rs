@@ -7,17 +7,16 @@ use crate::error::Result;
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::Bounds;
 use crate::fit::law::linear::FoldSums;
 use crate::fit::law::linear::Folds;
 use crate::fit::law::linear::Gatherer;
-use crate::fit::law::linear::Penalty;
 use crate::fit::law::linear::identifiable_series;
 use crate::fit::law::linear::logarithmic;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::series::Series;
 use crate::network::scaling::Scaling;
 use crate::operator::play;
+use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 

@@ -11,14 +11,13 @@ use serde::{Deserialize, Serialize};
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
-use crate::fit::law::linear::{
-    Bounds, Choice, FoldSums, Folds, Gatherer, Penalty, identifiable_series, logarithmic,
-};
+use crate::fit::law::linear::{Choice, FoldSums, Folds, Gatherer, identifiable_series, logarithmic};
 use crate::law::preisach::plane::Plane;
 use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
+use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 

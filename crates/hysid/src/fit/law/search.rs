@@ -23,6 +23,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::law::series::Series;
+use crate::optimise::multi_start::{MultiStart, Plan};
 use crate::optimise::random::generator;
 use crate::options::network::MOST_EPOCHS;
 use crate::options::network::MOST_STARTS;
@@ -230,42 +231,34 @@ pub(crate) fn search<F: Family>(
     let variation = target.len() as f64 * deviation * deviation;
     let objective = Objective { family, series, target, variation, stop };
 
-    let mut descents = beginnings(&objective, effort);
-    if descents.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
+    let begun = beginnings(&objective, effort);
+    if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
         return Err(Error::Stopped);
     }
-    let mut evaluations = effort.starts * DRAWS_PER_START;
-    let mut termination = Termination::EpochsUsed;
-    for round in 1..=effort.epochs {
-        descents.par_iter_mut().for_each(|descent| descent.advance(&objective));
-        // Stable: of equals the earlier start stays before the later.
-        descents.sort_by(|a, b| a.value().square_residual.total_cmp(&b.value().square_residual));
-        if round % ROUNDS_TO_PROVE_ITSELF == 0 {
-            let keep = descents.len().div_ceil(2).max(FINALISTS).min(descents.len());
-            evaluations += descents.drain(keep..).map(|descent| descent.evaluations()).sum::<usize>();
-        }
+    let drawn = effort.starts * DRAWS_PER_START;
+    let plan = Plan {
+        rounds: effort.epochs,
+        spared: 0,
+        to_prove_itself: ROUNDS_TO_PROVE_ITSELF,
+        finalists: FINALISTS,
+    };
+    let mut descents = MultiStart::new(begun);
+    let tell = |descents: &MultiStart<Descent>, round| {
         let told = observer(SearchProgress {
             round,
             rounds: effort.epochs,
-            evaluations: evaluations + descents.iter().map(|descent| descent.evaluations()).sum::<usize>(),
-            train_nrmse_percent: objective.nrmse_percent(descents[0].value()),
+            evaluations: drawn + descents.evaluations(),
+            train_nrmse_percent: objective.nrmse_percent(descents.best().value()),
         });
-        if told.is_break() || stop.is_asked() {
-            termination = Termination::Stopped;
-            break;
-        }
-        if descents.iter().all(|descent| descent.ended.is_some()) {
-            termination = descents[0].ended.unwrap_or(Termination::Converged);
-            break;
-        }
-    }
-    evaluations += descents.iter().map(|descent| descent.evaluations()).sum::<usize>();
-    let best = &descents[0];
+        if stop.is_asked() { ControlFlow::Break(()) } else { told }
+    };
+    let termination = descents.run(plan, |descent, _| descent.advance(&objective), tell);
+    let best = descents.best();
     Ok(Found {
         parameters: objective.parameters(best.u()),
         weights: best.value().weights.clone(),
         train_nrmse_percent: objective.nrmse_percent(best.value()),
-        evaluations,
+        evaluations: drawn + descents.evaluations(),
         termination,
     })
 }

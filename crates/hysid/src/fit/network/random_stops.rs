@@ -15,10 +15,11 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::linear::{Bounds, FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
+use crate::fit::law::linear::{FoldSums, Folds, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
+use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 

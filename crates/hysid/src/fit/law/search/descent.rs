@@ -1,9 +1,12 @@
 //! One start of a search on its way: Levenberg-Marquardt within a box, theory.md (8.3).
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use crate::linear_algebra::Symmetric;
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
+use crate::optimise::multi_start::Start;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
@@ -17,7 +20,7 @@ const DIFFERENCE: f64 = 1e-5;
 #[derive(Debug, Clone)]
 pub(crate) struct Descent {
     search: LevenbergMarquardt<Projection>,
-    pub ended: Option<Termination>,
+    ended: Option<Termination>,
 }
 
 impl Descent {
@@ -35,16 +38,26 @@ impl Descent {
         self.search.known_value().expect("a descent begins at a known value")
     }
 
-    /// Free runs of the law.
-    pub fn evaluations(&self) -> usize {
-        self.search.evaluations()
-    }
-
     /// One iteration, which lowers the residual unless there is no way on.
     pub fn advance<F: Family>(&mut self, objective: &Objective<'_, F>) {
         if self.ended.is_none() {
             self.ended = self.search.advance(objective);
         }
+    }
+}
+
+impl Start for Descent {
+    fn order(&self, other: &Self) -> Ordering {
+        self.value().square_residual.total_cmp(&other.value().square_residual)
+    }
+
+    /// Free runs of the law.
+    fn evaluations(&self) -> usize {
+        self.search.evaluations()
+    }
+
+    fn ended(&self) -> Option<Termination> {
+        self.ended
     }
 }
 
