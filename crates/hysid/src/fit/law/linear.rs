@@ -18,101 +18,37 @@ use crate::data::record::Dataset;
 use crate::error::{DataProblem, Error, Result};
 use crate::law::series::Series;
 use crate::linear_algebra::{Batch, Gram, Symmetric};
+use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
-
-/// Blocks that the rows are cut into for cross-validation.
-const FOLDS: usize = 5;
-
-/// Records from which on each is a fold by itself.
-const RECORDS_AS_FOLDS: usize = 3;
-
-/// Share of the range of the other records by which one may exceed it and still lie within.
-const SLACK: f64 = 0.03;
+use crate::validation::RowFolds;
 
 /// Rows that are copied into a batch together: a cache line.
 const LINE: usize = 8;
 
-/// Series of a data set with one input, all that a classical model can be fitted to.
-///
-/// # Errors
-/// Data that nothing can be identified from, or more than one input.
-pub(crate) fn identifiable_series(data: &Dataset) -> Result<Vec<Series>> {
-    data.check_identifiable(FEWEST_ROWS)?;
-    let found = data.names().inputs.len();
-    if found != 1 {
-        return Err(data.records()[0].defect(None, None, DataProblem::Inputs { expected: 1, found }));
-    }
-    Series::all(data, None)
+/// What a law that is linear in its weights is fitted to.
+#[derive(Debug, Clone)]
+pub(crate) struct TrainingRows {
+    pub series: Vec<Series>,
+    /// Folds of the rows of all series.
+    pub folds: RowFolds,
+    pub scaling: Scaling,
 }
 
-/// How rows are cut into folds.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Folds {
-    /// Fold of every row of every record.
-    pub of_rows: Vec<Vec<usize>>,
-    /// Number of folds.
-    pub count: usize,
-    /// Folds that are held out in turn, in rising order.
-    pub judged: Vec<usize>,
-}
-
-impl Folds {
-    /// Folds for records given by their inputs and outputs (NaN where blank). From three records on, each
-    /// is a fold, and those are held out whose input stays within the range of the others, so that what
-    /// is judged lies between what is trained on; else blocks of rows that have an output are held out in
-    /// turn.
-    pub fn of(records: &[(Vec<f64>, &[f64])]) -> Self {
-        if records.len() >= RECORDS_AS_FOLDS {
-            let count = records.len().min(2 * FOLDS);
-            let of_rows: Vec<Vec<usize>> =
-                records.iter().enumerate().map(|(index, (x, _))| vec![index % count; x.len()]).collect();
-            let range = |chosen: &dyn Fn(usize) -> bool| {
-                let inputs = (0..records.len())
-                    .filter(|index| chosen(index % count))
-                    .flat_map(|index| &records[index].0);
-                inputs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-            };
-            let is_within = |fold: &usize| {
-                let (inside, outside) = (range(&|other| other == *fold), range(&|other| other != *fold));
-                let slack = SLACK * (outside.1 - outside.0);
-                inside.0 >= outside.0 - slack && inside.1 <= outside.1 + slack
-            };
-            let mut judged: Vec<usize> = (0..count).filter(is_within).collect();
-            if judged.is_empty() {
-                judged = (0..count).collect();
-            }
-            return Self { of_rows, count, judged };
+impl TrainingRows {
+    /// All rows of a data set with one input, which is all that a classical model can be fitted to.
+    ///
+    /// # Errors
+    /// Data that nothing can be identified from, or more than one input.
+    pub fn of(data: &Dataset) -> Result<Self> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let found = data.names().inputs.len();
+        if found != 1 {
+            return Err(data.records()[0].defect(None, None, DataProblem::Inputs { expected: 1, found }));
         }
-        let scored = records.iter().flat_map(|(_, y)| y.iter()).filter(|y| !y.is_nan()).count();
-        let mut seen = 0;
-        let mut fold_of = |y: &f64| {
-            let fold = (seen * FOLDS / scored.max(1)).min(FOLDS - 1);
-            seen += usize::from(!y.is_nan());
-            fold
-        };
-        let of_rows = records.iter().map(|(_, y)| y.iter().map(&mut fold_of).collect()).collect();
-        Self { of_rows, count: FOLDS, judged: (0..FOLDS).collect() }
-    }
-
-    /// All rows together, for sums that nothing is held out of.
-    pub fn none(series: &[Series]) -> Self {
-        let of_rows = series.iter().map(|series| vec![0; series.samples.len()]).collect();
-        Self { of_rows, count: 1, judged: vec![0] }
-    }
-
-    /// Rows that are all in one fold, whichever record they are of.
-    pub fn one() -> Self {
-        Self { of_rows: Vec::new(), count: 1, judged: vec![0] }
-    }
-
-    /// Folds for series.
-    pub fn of_series(series: &[Series]) -> Self {
-        let inputs = |series: &Series| series.samples.iter().map(|sample| sample.x).collect();
-        let records: Vec<(Vec<f64>, &[f64])> =
-            series.iter().map(|series| (inputs(series), series.output.as_slice())).collect();
-        Self::of(&records)
+        let scaling = Scaling::of(data, None)?;
+        Ok(Self { series: Series::all(data, None)?, folds: RowFolds::of(data), scaling })
     }
 }
 
@@ -287,7 +223,7 @@ pub(crate) struct Gatherer<'a> {
 }
 
 impl<'a> Gatherer<'a> {
-    pub fn new(features: usize, folds: &Folds, stop: StopCheck<'a>) -> Self {
+    pub fn new(features: usize, folds: &RowFolds, stop: StopCheck<'a>) -> Self {
         Self {
             pace: Pace::new(stop),
             folds: vec![Sums::new(Gram::new(features + 1), features, 0); folds.count],
@@ -356,23 +292,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn folds_hold_out_records_within_the_range_of_the_others() {
-        let record = |size: f64| vec![-size, 0.0, size];
-        let y = [0.0, 1.0, f64::NAN];
-        let sizes = [3.0, 1.0, 2.0];
-        let records: Vec<(Vec<f64>, &[f64])> =
-            sizes.iter().map(|&size| (record(size), y.as_slice())).collect();
-        let folds = Folds::of(&records);
-        assert_eq!((folds.count, folds.judged), (3, vec![1, 2]));
-        let long: Vec<f64> = (0..100).map(|k| if k < 50 { f64::NAN } else { 0.0 }).collect();
-        let folds = Folds::of(&[(vec![0.0; 100], long.as_slice())]);
-        assert_eq!(folds.judged, [0, 1, 2, 3, 4]);
-        assert_eq!((folds.of_rows[0][59], folds.of_rows[0][60], folds.of_rows[0][99]), (0, 1, 4));
-    }
-
-    #[test]
     fn the_error_from_sums_is_that_of_the_rows() {
-        let one = Folds::one();
+        let one = RowFolds::one();
         let mut gatherer = Gatherer::new(2, &one, StopCheck::never());
         for k in 0..1000 {
             let x = f64::from(k) * 0.01;

@@ -16,12 +16,11 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
-use crate::fit::law::linear::{FoldSums, Folds, Gatherer, identifiable_series, logarithmic, lowest};
+use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use crate::law::series::Series;
 use crate::law::thresholds::check_thresholds;
 use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
@@ -30,6 +29,7 @@ use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slop
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
+use crate::validation::RowFolds;
 
 /// How a modified Prandtl-Ishlinskii model is fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -74,8 +74,8 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         stop: StopCheck<'_>,
     ) -> Result<Self> {
         // A stop leaves out priors that were not compared yet, and further refinement.
-        let series = identifiable_series(data)?;
-        let scaling = Scaling::of(data, None)?;
+        let rows = TrainingRows::of(data)?;
+        let scaling = &rows.scaling;
         if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
             let found = options.dead_zones;
             return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
@@ -84,7 +84,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
         let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
-        let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
+        let problem = |grid: &[f64]| Problem::new(&rows, grid, options.dead_zones, stop);
         let problems = grids::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
@@ -108,7 +108,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;
-        problem.refine(start, ITERATIONS, stop).in_users_units(&grids[grid], &scaling)
+        problem.refine(start, ITERATIONS, stop).in_users_units(&grids[grid], scaling)
     }
 }
 
@@ -129,7 +129,7 @@ struct Problem {
     drives: Vec<Vec<f64>>,
     targets: Vec<f64>,
     fold_of: Vec<usize>,
-    folds: Folds,
+    folds: RowFolds,
     dead_zones: usize,
 }
 
@@ -149,15 +149,9 @@ struct Point {
 impl Problem {
     /// # Errors
     /// A stop.
-    fn new(
-        series: &[Series],
-        scaling: &Scaling,
-        grid: &[f64],
-        dead_zones: usize,
-        stop: StopCheck<'_>,
-    ) -> Result<Self> {
+    fn new(rows: &TrainingRows, grid: &[f64], dead_zones: usize, stop: StopCheck<'_>) -> Result<Self> {
         let mut pace = Pace::new(stop);
-        let folds = Folds::of_series(series);
+        let TrainingRows { series, folds, scaling } = rows;
         let (mut drives, mut targets, mut fold_of) = (Vec::new(), Vec::new(), Vec::new());
         for (series, of_rows) in series.iter().zip(&folds.of_rows) {
             let mut plays = vec![0.0; grid.len()];
@@ -175,7 +169,7 @@ impl Problem {
                 }
             }
         }
-        Ok(Self { drives, targets, fold_of, folds, dead_zones })
+        Ok(Self { drives, targets, fold_of, folds: folds.clone(), dead_zones })
     }
 
     /// Ridge on the plays among `count` parameters.
@@ -385,7 +379,7 @@ impl levenberg_marquardt::Problem for Refinement<'_> {
         let Problem { drives, targets, .. } = self.problem;
         let point = self.point.at(values);
         let count = values.len();
-        let mut gatherer = Gatherer::new(count, &Folds::one(), self.stop);
+        let mut gatherer = Gatherer::new(count, &RowFolds::one(), self.stop);
         let mut jacobian = vec![0.0; count];
         for (drive, &y) in drives.iter().zip(targets) {
             if gatherer.is_over(4 * count) {
