@@ -23,6 +23,7 @@ mod deterioration;
 mod doctor;
 mod loop_closure;
 mod masing;
+mod minimum;
 pub mod model;
 mod noise;
 mod odd_symmetry;

@@ -1,6 +1,6 @@
 //! The minimiser of functions that need not be smooth.
 
-use hysid::fit::network::space_dilation::{self, DilationOptions, Limits};
+use hysid::optimise::space_dilatation::{self, DilatationOptions, Limits};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -23,7 +23,7 @@ pub fn minimise<'py>(
     target: f64,
     stall: usize,
 ) -> PyResult<Found<'py>> {
-    let options: DilationOptions = serde_json::from_str(options).map_err(refused)?;
+    let options: DilatationOptions = serde_json::from_str(options).map_err(refused)?;
     let mut failure = None;
     let mut value = |x: &[f64], subgradient: &mut [f64]| match evaluate(py, function, x, subgradient) {
         Ok(value) if failure.is_none() => value,
@@ -34,7 +34,7 @@ pub fn minimise<'py>(
         }
     };
     let limits = Limits { iterations, target, stall };
-    let found = space_dilation::minimise(&mut value, x.as_slice()?.to_vec(), options, limits);
+    let found = space_dilatation::minimise(&mut value, x.as_slice()?.to_vec(), options, limits);
     if let Some(error) = failure {
         return Err(error);
     }

@@ -1,29 +1,12 @@
-//! Generalized Prandtl-Ishlinskii law: plays between two bent envelopes in place of two straight lines.
+//! Generalized plays with their memory: the law of
+//! [`generalized_prandtl_ishlinskii`](hysid_core::law::generalized_prandtl_ishlinskii), theory.md (6.13) to (6.15).
 //!
-//! ```text
-//! S_k  = max(γ_l(v_k) - r, min(γ_r(v_k) + r, S_{k-1}))                     theory.md (6.13)
-//! γ(v) = a0 tanh(a1 v + a2) + a3                                           theory.md (6.14)
-//! y    = c + Σ_j p_j S_j,   r_j = α j,   p_j = ρ e^{-τ r_j}                theory.md (6.15)
-//! ```
-//!
-//! Each play follows `γ_l - r` upwards and `γ_r + r` downwards and rests in between; `γ_l ≤ γ_r` over
-//! the range of the input `v`. Source: Al Janaideh, Rakheja and Su; form, envelopes and weights as in
-//! the programs of Al Janaideh (IEEE Control Systems Magazine lecture, 2022) and of Basaeri.
+//! Source of the values: the programs of Al Janaideh (IEEE Control Systems Magazine lecture, 2022) and of Basaeri.
 
-/// An envelope `a0 tanh(a1 v + a2) + a3`: theory.md (6.14).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Envelope {
-    /// `a0, a1, a2, a3`: height, steepness in one over the unit of the input, shift, offset.
-    pub a: [f64; 4],
-}
-
-impl Envelope {
-    /// The envelope at input `v`.
-    pub fn value(&self, v: f64) -> f64 {
-        let [a0, a1, a2, a3] = self.a;
-        a0 * (a1 * v + a2).tanh() + a3
-    }
-}
+pub use hysid_core::law::generalized_prandtl_ishlinskii::{
+    Envelope, GeneralizedPrandtlIshlinskii, PlayWeights,
+};
+use hysid_core::law::{Law, Sample};
 
 /// Where the plays are at the first sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,66 +17,53 @@ pub enum Start {
     Lowered,
 }
 
-/// One play of the sum.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeightedPlay {
-    /// Threshold `r`, not negative, in the unit of the envelopes.
-    pub threshold: f64,
-    /// Weight `p`, in the unit of the output for a unit of the envelopes.
-    pub weight: f64,
-}
-
 /// A weighted sum of generalized plays, with its memory.
 ///
 /// ```
-/// use hysid_specimens::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
+/// use hysid_specimens::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
 /// // One play on straight ground (nearly: tanh bends far away) is an ordinary play.
-/// let line = Envelope { a: [1e6, 1e-6, 0.0, 0.0] };
-/// let play = WeightedPlay { threshold: 1.0, weight: 1.0 };
-/// let mut law = GeneralizedPlays::new([line, line], vec![play], 0.0, Start::Virgin);
-/// let y = law.run(&[0.0, 3.0, 2.0, 0.0, -3.0]);
+/// let line = Envelope::new([1e6, 1e-6, 0.0, 0.0]);
+/// let weights = PlayWeights::Free(vec![0.0, 1.0]);
+/// let mut plays = GeneralizedPlays::new([line, line], 1.0, weights, 0.0, Start::Virgin);
+/// let y = plays.run(&[0.0, 3.0, 2.0, 0.0, -3.0]);
 /// for (y, expected) in y.iter().zip([0.0, 2.0, 2.0, 1.0, -2.0]) {
 ///     assert!((y - expected).abs() < 1e-9);
 /// }
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneralizedPlays {
-    /// `γ_l`, followed upwards.
-    pub left: Envelope,
-    /// `γ_r`, followed downwards; nowhere below `γ_l` in the range of the input.
-    pub right: Envelope,
-    /// `c`, in the unit of the output.
-    pub offset: f64,
-    /// Where the plays are at first.
-    pub start: Start,
-    terms: Vec<WeightedPlay>,
-    /// `S` of each play; empty before the first sample.
+    /// The law.
+    pub law: GeneralizedPrandtlIshlinskii,
+    /// `S` of each play.
     state: Vec<f64>,
 }
 
 impl GeneralizedPlays {
-    /// The law with the envelopes `γ_l` and `γ_r`, before its first sample.
-    pub fn new([left, right]: [Envelope; 2], terms: Vec<WeightedPlay>, offset: f64, start: Start) -> Self {
-        Self { left, right, offset, start, terms, state: Vec::new() }
-    }
-
-    /// Plays with thresholds `α j` and weights `ρ e^{-τ α j}`, `j = 0, 1, ... count - 1`.
-    pub fn exponential_terms(count: usize, alpha: f64, rho: f64, tau: f64) -> Vec<WeightedPlay> {
-        let term = |j| {
-            let threshold = alpha * j as f64;
-            WeightedPlay { threshold, weight: rho * (-tau * threshold).exp() }
+    /// The law with the envelopes `γ_l` and `γ_r` and thresholds `spacing` times 0, 1, ..., before its first sample.
+    pub fn new(
+        [left, right]: [Envelope; 2],
+        spacing: f64,
+        weights: PlayWeights,
+        offset: f64,
+        start: Start,
+    ) -> Self {
+        let initial = match start {
+            Start::Virgin => 0.0,
+            // Above any envelope.
+            Start::Lowered => 1e100,
         };
-        (0..count).map(term).collect()
+        let law = GeneralizedPrandtlIshlinskii { offset, left, right, initial, spacing, weights };
+        Self { state: law.virgin(), law }
     }
 
-    /// The plays of the sum.
-    pub fn terms(&self) -> &[WeightedPlay] {
-        &self.terms
+    /// Weights `ρ e^{-τ α j}`, `j = 0, 1, ... count - 1`.
+    pub fn exponential(count: usize, alpha: f64, rho: f64, tau: f64) -> PlayWeights {
+        PlayWeights::Free((0..count).map(|j| rho * (-tau * (alpha * j as f64)).exp()).collect())
     }
 
     /// Back to before the first sample.
     pub fn reset(&mut self) {
-        self.state.clear();
+        self.state = self.law.virgin();
     }
 
     /// The output at the next input. An input that is not finite gives NaN and leaves the memory as it
@@ -102,20 +72,7 @@ impl GeneralizedPlays {
         if !v.is_finite() {
             return f64::NAN;
         }
-        let (left, right) = (self.left.value(v), self.right.value(v));
-        if self.state.is_empty() {
-            let first = match self.start {
-                Start::Virgin => 0.0,
-                Start::Lowered => f64::INFINITY,
-            };
-            self.state = vec![first; self.terms.len()];
-        }
-        let mut y = self.offset;
-        for (term, s) in self.terms.iter().zip(&mut self.state) {
-            *s = (left - term.threshold).max((right + term.threshold).min(*s));
-            y += term.weight * *s;
-        }
-        y
+        self.law.step(&mut self.state, Sample { x: v, rate: 0.0, step: 0.0 })
     }
 
     /// The outputs at all inputs, from before the first sample.

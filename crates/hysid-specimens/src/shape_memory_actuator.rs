@@ -29,11 +29,11 @@ use super::specimen::{Columns, Specimen};
 /// stated. All values are published.
 pub fn law() -> GeneralizedPlays {
     let envelopes = [
-        Envelope { a: [0.8380, 6.4364, -9.9631, 0.5618] },
-        Envelope { a: [15.7940, 2.7649, -5.6356, 15.5400] },
+        Envelope::new([0.8380, 6.4364, -9.9631, 0.5618]),
+        Envelope::new([15.7940, 2.7649, -5.6356, 15.5400]),
     ];
-    let terms = GeneralizedPlays::exponential_terms(21, 0.0395, 10.9590, 2.5785);
-    GeneralizedPlays::new(envelopes, terms, 17.72, Start::Lowered)
+    let weights = GeneralizedPlays::exponential(21, 0.0395, 10.9590, 2.5785);
+    GeneralizedPlays::new(envelopes, 0.0395, weights, 17.72, Start::Lowered)
 }
 
 pub(super) static SPECIMEN: Specimen = Specimen {

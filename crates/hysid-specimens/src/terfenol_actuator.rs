@@ -21,9 +21,9 @@ use super::specimen::{Columns, Specimen};
 
 /// The actuator, virgin: current in A to displacement in µm. All values are designed.
 pub fn law() -> GeneralizedPlays {
-    let envelopes = [Envelope { a: [4.0, 1.35, -0.35, 0.0] }, Envelope { a: [4.0, 1.25, 0.05, 0.15] }];
-    let terms = GeneralizedPlays::exponential_terms(11, 0.25, 2.4, 0.55);
-    GeneralizedPlays::new(envelopes, terms, 24.0, Start::Virgin)
+    let envelopes = [Envelope::new([4.0, 1.35, -0.35, 0.0]), Envelope::new([4.0, 1.25, 0.05, 0.15])];
+    let weights = GeneralizedPlays::exponential(11, 0.25, 2.4, 0.55);
+    GeneralizedPlays::new(envelopes, 0.25, weights, 24.0, Start::Virgin)
 }
 
 pub(super) static SPECIMEN: Specimen = Specimen {

@@ -50,7 +50,7 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
         seed: options.seed,
     };
     let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
-    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
     let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
@@ -63,7 +63,7 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
     let mut history = Vec::new();
     let seen = Seen::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
-    let observer = SharedObserver::new(observer, Progress::of_least_squares(options.model));
+    let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
     let mut of_round = |progress: SearchProgress| {

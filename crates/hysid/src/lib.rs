@@ -35,7 +35,7 @@
 
 mod builder;
 pub mod fit;
-mod random;
+pub mod optimise;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};

@@ -7,6 +7,7 @@
 //! one path from one that knows the material.
 
 mod pooled;
+mod row_folds;
 
 use serde::Serialize;
 
@@ -16,6 +17,7 @@ use crate::data::record::{Dataset, Record, measurements};
 use crate::error::{Error, Result};
 use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
+pub(crate) use row_folds::RowFolds;
 
 /// A part to fit to and a part to judge on.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,21 +107,30 @@ fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
     cuts.into_iter().filter(is_enough).collect()
 }
 
-/// Measurements with an output are dealt out in their order; copies stay together.
+/// Folds of several measurements.
 fn of_records(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Cut> {
+    let folds = deal(data, measurements, most);
+    if folds.len() < 2 { Vec::new() } else { folds.into_iter().map(Cut::Records).collect() }
+}
+
+/// The records of each of at most `most` folds: measurements with an output are dealt out in their order; copies stay
+/// together.
+fn deal(data: &Dataset, measurements: &[Vec<usize>], most: usize) -> Vec<Vec<usize>> {
     let is_scored = |records: &&Vec<usize>| data.records()[records[0]].scored() > 0;
     let scored: Vec<&Vec<usize>> = measurements.iter().filter(is_scored).collect();
     let count = scored.len().min(most);
-    if count < 2 {
-        return Vec::new();
-    }
-    let cut = |fold: usize| {
+    let fold = |fold: usize| {
         let records = scored.iter().skip(fold).step_by(count).flat_map(|records| (*records).clone());
         let mut held: Vec<usize> = records.collect();
         held.sort_unstable();
-        Cut::Records(held)
+        held
     };
-    (0..count).map(cut).collect()
+    (0..count).map(fold).collect()
+}
+
+/// The records of a data set as they are dealt out.
+fn dealt(data: &Dataset, most: usize) -> Vec<Vec<usize>> {
+    deal(data, &measurements(data.records()), most)
 }
 
 /// A single measurement is cut in time: the record at this place.

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use hysid::data::record::{Dataset, Record};
 use hysid::operator::{Operator, Play};
-use hysid::plant::generalized_play::{Envelope, GeneralizedPlays, Start, WeightedPlay};
+use hysid::plant::generalized_play::{Envelope, GeneralizedPlays, PlayWeights, Start};
 use hysid::plant::{
     BoucWenBaberNoori, Concrete, ConcreteParameters, Ferromagnet, MagnetostrictiveActuator, PiezoActuator,
     RateDependentActuator, ReinforcedConcreteJoint, Specimen, shape_memory_actuator, terfenol_actuator,
@@ -177,9 +177,9 @@ fn a_displacement_that_is_none_leaves_the_joint_as_it_was() {
 /// thresholds 0.45 (j - 1), weights 0.65 exp(-7.75e-4 r). Its output is ±20.157.
 #[test]
 fn the_lecture_example_has_its_published_range() {
-    let envelope = Envelope { a: [6.0, 0.4, 0.0, 0.0] };
-    let terms = GeneralizedPlays::exponential_terms(7, 0.45, 0.65, 7.75e-4);
-    let mut law = GeneralizedPlays::new([envelope, envelope], terms, 0.0, Start::Virgin);
+    let envelope = Envelope::new([6.0, 0.4, 0.0, 0.0]);
+    let weights = GeneralizedPlays::exponential(7, 0.45, 0.65, 7.75e-4);
+    let mut law = GeneralizedPlays::new([envelope, envelope], 0.45, weights, 0.0, Start::Virgin);
     let y = law.run(&[0.0, 5.0, -5.0, 5.0]);
     assert_abs_diff_eq!(y[1], 20.157, epsilon = 5e-4);
     assert_abs_diff_eq!(y[2], -20.157, epsilon = 5e-4);
@@ -258,19 +258,22 @@ fn every_third_cycle_of_the_joint_is_unseen() {
 
 #[test]
 fn envelopes_do_not_cross_and_plays_stay_between_them() {
-    for (mut law, from, to) in
+    for (mut plays, from, to) in
         [(terfenol_actuator::law(), -0.7, 1.2), (shape_memory_actuator::law(), 0.0, 2.4)]
     {
+        let law = plays.law.clone();
         for v in through(&[from, to], 1000) {
             assert!(law.left.value(v) <= law.right.value(v));
         }
         for v in through(&[from, to, 0.5, 0.9, from], 50) {
-            let y = law.step(v);
-            let sum = |level: &dyn Fn(&WeightedPlay) -> f64| {
-                law.offset + law.terms().iter().map(|term| term.weight * level(term)).sum::<f64>()
+            let y = plays.step(v);
+            let sum = |level: &dyn Fn(f64) -> f64| {
+                let weights = law.weights.values(law.spacing, 0);
+                let terms = weights.iter().enumerate();
+                law.offset + terms.map(|(j, weight)| weight * level(law.spacing * j as f64)).sum::<f64>()
             };
-            let lowest = sum(&|term| law.left.value(v) - term.threshold);
-            let highest = sum(&|term| law.right.value(v) + term.threshold);
+            let lowest = sum(&|r| law.left.value(v) - r);
+            let highest = sum(&|r| law.right.value(v) + r);
             assert!(lowest - 1e-12 <= y && y <= highest + 1e-12);
         }
     }
@@ -377,9 +380,8 @@ fn piezo_loops_are_ellipses_of_the_area_of_their_law() {
 
 /// Generalized plays that are the identity: one without threshold on ground that is straight to 1e-12.
 fn no_hysteresis() -> GeneralizedPlays {
-    let line = Envelope { a: [1e6, 1e-6, 0.0, 0.0] };
-    let play = WeightedPlay { threshold: 0.0, weight: 1.0 };
-    GeneralizedPlays::new([line, line], vec![play], 0.0, Start::Virgin)
+    let line = Envelope::new([1e6, 1e-6, 0.0, 0.0]);
+    GeneralizedPlays::new([line, line], 1.0, PlayWeights::Free(vec![1.0]), 0.0, Start::Virgin)
 }
 
 /// The gain and the lag of (6.20) and (6.21) for a sine, from their transfer functions.

@@ -2,9 +2,9 @@
 //! lines, which saturates and need not be symmetric.
 //!
 //! ```text
-//! S_k  = max(γ_l(x_k) - r, min(γ_r(x_k) + r, S_{k-1}))                      theory.md (8.12)
-//! γ(x) = a0 tanh(a1 x + a2) + a3                                            theory.md (8.13)
-//! y    = c + Σ_j p(r_j) S_j,   r_j = α j,   j = 0 ... N                     theory.md (8.14)
+//! S_k  = max(γ_l(x_k) - r, min(γ_r(x_k) + r, S_{k-1}))                      theory.md (8.12), (6.13)
+//! γ(x) = a0 tanh(a1 x + a2) + a3                                            theory.md (8.13), (6.14)
+//! y    = c + Σ_j p(r_j) S_j,   r_j = α j,   j = 0 ... N                     theory.md (8.14), (6.15)
 //! ```
 //!
 //! Each play follows `γ_l - r` upwards and `γ_r + r` downwards and rests in between. Thresholds and
@@ -61,6 +61,12 @@ impl Envelope {
             Parameter::new(symbol("a3_"), "level of an envelope", self.a3, any, Dimension::NONE),
         ]
     }
+}
+
+/// Where a play with threshold `r` is next, between the values of its envelopes there: theory.md (8.12).
+#[inline(always)]
+pub fn follow(play: f64, left: f64, right: f64, r: f64) -> f64 {
+    (left - r).max((right + r).min(play))
 }
 
 /// A generalized Prandtl-Ishlinskii model in the user's units.
@@ -127,7 +133,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
         let mut r = 0.0;
         self.weights.for_each(self.spacing, 0, |index, weight| {
             let play = &mut state[index];
-            *play = (left - r).max((right + r).min(*play));
+            *play = follow(*play, left, right, r);
             y += weight * *play;
             r = self.spacing * (index + 1) as f64;
         });

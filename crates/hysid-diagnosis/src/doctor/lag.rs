@@ -1,7 +1,9 @@
 //! A lag between input and output. Around a turning point, the output of a rate-independent law is a smooth function
 //! of the input on either side, and continuous: whatever the law is, the time by which the output must be taken
 //! later for that to be so is the lag, theory.md (10.20) and (10.21). It is found at a single speed, and to
-//! fractions of a sample.
+//! fractions of a sample. [`delay`](crate::rate_dependence) asks another question, which needs several speeds: which shift
+//! makes whole branches agree. Where it has an answer, that one is given. What both share is the search for the
+//! lowest place.
 
 mod turn;
 
@@ -10,6 +12,7 @@ use turn::{Beside, Turn, Window};
 use super::{Complaint, ComplaintKind, Severity, Units};
 use crate::Delay;
 use crate::branch::Survey;
+use crate::minimum::lowest;
 
 /// Shares of the shorter branch that are taken around a turning point, the narrowest first.
 const SHARES: [f64; 7] = [0.025, 0.035, 0.05, 0.07, 0.1, 0.14, 0.2];
@@ -33,6 +36,9 @@ const PARTS: usize = 8;
 
 /// Lags are sought up to this share of the time of both branches.
 const LONGEST: f64 = 0.1;
+
+/// Lags tried on either side before the best is refined.
+const PLACES: i32 = 4;
 
 /// Windows agree within this many deviations.
 const AGREE: f64 = 1.5;
@@ -200,7 +206,7 @@ impl<'t, 'd> Turns<'t, 'd> {
     }
 
     fn lag(&self, centre: f64, reach: f64) -> f64 {
-        lowest(&|lag| self.remainder(Beside::Lag(lag)), centre, reach)
+        lowest(&|lag| self.remainder(Beside::Lag(lag)), centre, reach, PLACES)
     }
 
     /// The lag and its deviation, from that of parts of the turning points.
@@ -212,7 +218,7 @@ impl<'t, 'd> Turns<'t, 'd> {
                 let pairs = self.turns.iter().zip(&self.windows).skip(number).step_by(parts);
                 pairs.map(|(turn, window)| turn.remainder(window, Beside::Lag(lag))).sum()
             };
-            lowest(&of_part, time, 0.6 * reach)
+            lowest(&of_part, time, 0.6 * reach, PLACES)
         };
         let squares: f64 = (0..parts).map(|number| (part(number) - time).powi(2)).sum();
         // The scatter of few is not well known.
@@ -324,17 +330,4 @@ fn first_search(turns: &[&Turn], reach: f64) -> Option<f64> {
     let near = Turns::new(turns, narrowest?, ends);
     let left = |lag: &f64| near.remainder(Beside::Lag(*lag));
     found.into_iter().min_by(|a, b| left(a).total_cmp(&left(b)))
-}
-
-/// Where a function is lowest within `centre ± reach`: the best of a few places, again and again around it.
-fn lowest(function: &impl Fn(f64) -> f64, mut centre: f64, mut reach: f64) -> f64 {
-    const PLACES: i32 = 4;
-    const ROUNDS: usize = 8;
-    for _ in 0..ROUNDS {
-        let place = |k: i32| centre + reach * f64::from(k) / f64::from(PLACES);
-        let values: Vec<(f64, f64)> = (-PLACES..=PLACES).map(|k| (place(k), function(place(k)))).collect();
-        centre = values.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(centre, |best| best.0);
-        reach *= 0.3;
-    }
-    centre
 }

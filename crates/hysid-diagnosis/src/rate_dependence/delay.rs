@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 use crate::branch::{Branch, Survey};
+use crate::minimum::lowest;
 use crate::rate_dependence::Speeds;
 use hysid_core::data::record::Record;
 
@@ -12,9 +13,6 @@ const LONGEST: f64 = 0.25;
 
 /// Delays tried before the best is refined.
 const TRIED: i32 = 20;
-
-/// Golden sections of the interval around the best.
-const SECTIONS: usize = 40;
 
 /// Courses and branches that are looked at.
 const MOST: usize = 40;
@@ -38,35 +36,11 @@ pub(crate) fn between_speeds(survey: &Survey, courses: &[Speeds]) -> Option<Dela
         return None;
     }
     let squares = |delay: f64| courses.iter().filter_map(move |speeds| mean_square(survey, speeds, delay));
-    let time = lowest(&|delay| squares(delay).sum(), LONGEST * shortest);
+    let time = lowest(&|delay| squares(delay).sum(), 0.0, LONGEST * shortest, TRIED);
     let worst = squares(time).fold(0.0, f64::max);
     // Rows are taken with their noise, which no delay takes away.
     let remains = (worst - survey.output_noise.powi(2)).max(0.0).sqrt();
     Some(Delay { time, remains: remains / survey.height() })
-}
-
-/// Where a function of one valley is lowest within `±reach`: a coarse search, then golden sections.
-fn lowest(function: &impl Fn(f64) -> f64, reach: f64) -> f64 {
-    let place = |k: i32| reach * f64::from(k) / f64::from(TRIED);
-    let best = (-TRIED..=TRIED)
-        .min_by(|&a, &b| function(place(a)).total_cmp(&function(place(b))))
-        .expect("there are places");
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut low, mut high) = (place(best - 1), place(best + 1));
-    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_a, mut at_b) = (function(a), function(b));
-    for _ in 0..SECTIONS {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - golden * (high - low);
-            at_a = function(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + golden * (high - low);
-            at_b = function(b);
-        }
-    }
-    0.5 * (low + high)
 }
 
 /// Mean square of the difference between slow and fast branches whose outputs are taken `delay` later. The rows

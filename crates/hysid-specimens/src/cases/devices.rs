@@ -22,18 +22,14 @@ use super::subject::Subject;
 pub(super) fn shape_memory_actuator(draw: &mut Draw) -> Result<Subject> {
     let mut envelope = |[a0, a1, a2, a3]: [f64; 4]| {
         let (height, steepness) = (draw.factor(0.1), draw.factor(0.1));
-        Envelope { a: [height * a0, steepness * a1, steepness * a2, height * a3] }
+        Envelope::new([height * a0, steepness * a1, steepness * a2, height * a3])
     };
     let envelopes =
         [envelope([0.8380, 6.4364, -9.9631, 0.5618]), envelope([15.7940, 2.7649, -5.6356, 15.5400])];
-    let terms = GeneralizedPlays::exponential_terms(
-        21,
-        draw.around(0.0395),
-        draw.around(10.959),
-        draw.around(2.5785),
-    );
-    let mut law = GeneralizedPlays::new(envelopes, terms, draw.around(17.72), Start::Lowered);
-    Ok(Subject::new((0.0, 2.4), move |sample| law.step(sample.x)))
+    let spacing = draw.around(0.0395);
+    let weights = GeneralizedPlays::exponential(21, spacing, draw.around(10.959), draw.around(2.5785));
+    let plays = GeneralizedPlays::new(envelopes, spacing, weights, draw.around(17.72), Start::Lowered);
+    Ok(Subject::of_law((0.0, 2.4), plays.law))
 }
 
 /// A shape-memory wire by the cosine law.
@@ -54,18 +50,17 @@ pub(super) fn shape_memory_wire(draw: &mut Draw) -> Result<Subject> {
 fn terfenol_plays(draw: &mut Draw) -> GeneralizedPlays {
     let (height, steepness) = (draw.around(4.0), draw.around(1.0));
     let envelopes = [
-        Envelope { a: [height, 1.35 * steepness, -draw.around(0.35), 0.0] },
-        Envelope { a: [height, 1.25 * steepness, draw.around(0.05), draw.around(0.15)] },
+        Envelope::new([height, 1.35 * steepness, -draw.around(0.35), 0.0]),
+        Envelope::new([height, 1.25 * steepness, draw.around(0.05), draw.around(0.15)]),
     ];
-    let terms =
-        GeneralizedPlays::exponential_terms(11, draw.around(0.25), draw.around(2.4), draw.around(0.55));
-    GeneralizedPlays::new(envelopes, terms, draw.around(24.0), Start::Virgin)
+    let spacing = draw.around(0.25);
+    let weights = GeneralizedPlays::exponential(11, spacing, draw.around(2.4), draw.around(0.55));
+    GeneralizedPlays::new(envelopes, spacing, weights, draw.around(24.0), Start::Virgin)
 }
 
 /// A Terfenol-D actuator at low speed.
 pub(super) fn terfenol_actuator(draw: &mut Draw) -> Result<Subject> {
-    let mut law = terfenol_plays(draw);
-    Ok(Subject::new((-0.7, 1.2), move |sample| law.step(sample.x)))
+    Ok(Subject::of_law((-0.7, 1.2), terfenol_plays(draw).law))
 }
 
 /// A magnetostrictive actuator: such plays between a lag and a resonance.

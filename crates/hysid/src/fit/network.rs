@@ -8,16 +8,12 @@ pub mod checkpoint;
 pub(crate) mod curvature;
 mod encoding;
 mod fitting;
-pub mod genetic;
-pub mod least_squares;
-pub mod levenberg_marquardt;
+pub(crate) mod least_squares;
 pub mod objective;
 pub mod random_stops;
 mod run;
 mod shared_observer;
 mod soundness;
-pub mod space_dilation;
-mod stall;
 pub mod start;
 
 use std::ops::ControlFlow;

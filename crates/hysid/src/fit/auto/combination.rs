@@ -291,6 +291,18 @@ mod tests {
                 }
                 let predictions = combination.predictions(&trials, &folds);
                 assert!(predictions.iter().flatten().all(|y| y.is_finite()));
+                // Where its members say what was predicted of the folds, the ensemble answers what was validated.
+                let of_member: Vec<usize> =
+                    shares.iter().flat_map(|(place, _)| vec![*place; kept[*place]]).collect();
+                let mut council = Council::new(ensemble.group());
+                for (fold, (held_out, validated)) in folds.iter().zip(&predictions).enumerate() {
+                    for (row, (&outside, validated)) in held_out.outside.iter().zip(validated).enumerate() {
+                        let said = |member: usize| trials[of_member[member]].predicted[fold][row];
+                        let answer = council.output(ensemble.group(), outside, said);
+                        let size = validated.abs().max(1.0);
+                        assert!((answer - validated).abs() < 1e-9 * size, "{answer} and {validated}");
+                    }
+                }
             }
         }
     }

@@ -2,19 +2,17 @@
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::identify;
-use crate::fit::network::{Observer, Progress};
+use crate::fit::network::{Observer, Progress, SharedObserver};
 use crate::model::Model;
 
 /// The observer, shared by all fits.
 pub(super) struct Work<'o, 'a> {
-    observer: Mutex<&'o mut Observer<'a>>,
-    stopped: AtomicBool,
+    observer: SharedObserver<'o, 'a>,
     fits: Mutex<Fits>,
 }
 
@@ -31,15 +29,14 @@ impl<'o, 'a> Work<'o, 'a> {
     /// Work of about so many fits.
     pub fn new(observer: &'o mut Observer<'a>, expected: usize) -> Self {
         Self {
-            observer: Mutex::new(observer),
-            stopped: AtomicBool::new(false),
+            observer: SharedObserver::new(observer, None),
             fits: Mutex::new(Fits { done: 0, expected: expected.max(1), told: 0.0 }),
         }
     }
 
     /// True once the observer has asked to stop.
     pub fn is_stopped(&self) -> bool {
-        self.stopped.load(Ordering::Relaxed)
+        self.observer.is_over()
     }
 
     /// Fits done.
@@ -86,13 +83,7 @@ impl<'o, 'a> Work<'o, 'a> {
             fits.told = fits.told.max((fits.done as f64 / fits.expected as f64).min(1.0));
             fits.told
         };
-        let mut observer = self.observer.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        // Asked once more by a fit that has not noticed yet, the observer must not change its mind.
-        if self.is_stopped() || observer(&progress.of_part(share)).is_break() {
-            self.stopped.store(true, Ordering::Relaxed);
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
+        self.observer.tell(&progress.of_part(share))
     }
 
     fn fits(&self) -> std::sync::MutexGuard<'_, Fits> {

@@ -18,7 +18,9 @@ use crate::stop_check::StopCheck;
 use crate::law::play_weights::MOST_PLAYS;
 
 use crate::fit::law::Identify;
-use crate::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
+use crate::law::generalized_prandtl_ishlinskii::{
+    Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
+};
 
 /// An envelope rises by at least this share of its full height over the range of the input: otherwise
 /// it would leap where the input leaves the range.
@@ -180,7 +182,7 @@ impl Family for Plays {
             let (left, right) = (law.left.value(sample.x), law.right.value(sample.x));
             for (index, play) in plays.iter_mut().enumerate() {
                 let r = law.spacing * index as f64;
-                *play = (left - r).max((right + r).min(*play));
+                *play = follow(*play, left, right, r);
             }
             if y.is_nan() {
                 continue;

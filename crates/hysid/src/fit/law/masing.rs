@@ -7,19 +7,15 @@ use crate::error::Result;
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::Bounds;
 use crate::fit::law::linear::FoldSums;
-use crate::fit::law::linear::Folds;
 use crate::fit::law::linear::Gatherer;
-use crate::fit::law::linear::Penalty;
-use crate::fit::law::linear::identifiable_series;
+use crate::fit::law::linear::TrainingRows;
 use crate::fit::law::linear::logarithmic;
 use crate::law::masing::Masing;
 use crate::law::masing::MasingParts;
-use crate::law::series::Series;
-use crate::network::scaling::Scaling;
 use crate::operator::play;
 use crate::operator::stop;
+use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 
@@ -49,11 +45,10 @@ impl LeastSquaresLaw for Masing {
 
     fn fitted(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out grids and penalties that were not compared yet.
-        let series = identifiable_series(data)?;
-        let scaling = Scaling::of(data, None)?;
+        let rows = TrainingRows::of(data)?;
+        let scaling = &rows.scaling;
         let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-        let (grid, weights) =
-            best_on_grids(grids, |grid| slopes_on_grid(&series, &scaling, grid, options.sign, stop))?;
+        let (grid, weights) = best_on_grids(grids, |grid| slopes_on_grid(&rows, grid, options.sign, stop))?;
         let slope = scaling.output_deviation / scaling.inputs[0];
         Self::new(MasingParts {
             constant: scaling.output(weights[0]),
@@ -65,13 +60,12 @@ impl LeastSquaresLaw for Masing {
 
 /// Score by cross-validation, and weights (constant, slopes) in scaled units.
 fn slopes_on_grid(
-    series: &[Series],
-    scaling: &Scaling,
+    rows: &TrainingRows,
     grid: &[f64],
     sign: Option<Sign>,
     stop: StopCheck<'_>,
 ) -> Result<(f64, Vec<f64>)> {
-    let sums = slope_sums(series, scaling, grid, stop)?;
+    let sums = slope_sums(rows, grid, stop)?;
     let features = grid.len() + 2;
     // Bends of the curve are what costs; all slopes alike cost next to nothing.
     let mut penalty = Penalty::ridge((0..features).map(|i| if i == 0 { 0.0 } else { 1e-3 }));
@@ -88,10 +82,10 @@ fn slopes_on_grid(
 }
 
 /// Sums of constant and slopes: the feature of a slope is a stop less the one before.
-fn slope_sums(series: &[Series], scaling: &Scaling, grid: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
-    let folds = Folds::of_series(series);
+fn slope_sums(rows: &TrainingRows, grid: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
+    let TrainingRows { series, folds, scaling } = rows;
     let mut features = vec![1.0; grid.len() + 2];
-    let mut gatherer = Gatherer::new(features.len(), &folds, stop);
+    let mut gatherer = Gatherer::new(features.len(), folds, stop);
     let factor = 1.0 / scaling.inputs[0];
     for (series, fold) in series.iter().zip(&folds.of_rows) {
         let mut plays = vec![0.0; grid.len()];

@@ -16,19 +16,20 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
-use crate::fit::law::linear::{
-    Bounds, FoldSums, Folds, Gatherer, Penalty, Quadratic, identifiable_series, logarithmic, lowest,
-};
+use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use crate::law::series::Series;
 use crate::law::thresholds::check_thresholds;
+use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
 use crate::operator::play;
+use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
+use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::{Pace, StopCheck};
+use crate::validation::RowFolds;
 
 /// How a modified Prandtl-Ishlinskii model is fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,9 +64,6 @@ const ITERATIONS: usize = 40;
 /// Iterations of a refinement that is only judged.
 const ITERATIONS_IN_VALIDATION: usize = 10;
 
-/// Steps refused in a row after which the refinement ends.
-const REFUSALS: usize = 8;
-
 /// A convex start, then Levenberg-Marquardt.
 impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
     type Options = ModifiedPrandtlIshlinskiiOptions;
@@ -76,8 +74,8 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         stop: StopCheck<'_>,
     ) -> Result<Self> {
         // A stop leaves out priors that were not compared yet, and further refinement.
-        let series = identifiable_series(data)?;
-        let scaling = Scaling::of(data, None)?;
+        let rows = TrainingRows::of(data)?;
+        let scaling = &rows.scaling;
         if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
             let found = options.dead_zones;
             return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
@@ -86,7 +84,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
         let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
-        let problem = |grid: &[f64]| Problem::new(&series, &scaling, grid, options.dead_zones, stop);
+        let problem = |grid: &[f64]| Problem::new(&rows, grid, options.dead_zones, stop);
         let problems = grids::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();
@@ -110,7 +108,7 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let (grid, prior) = candidates[lowest(&scores)];
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;
-        problem.refine(start, ITERATIONS, stop)?.in_users_units(&grids[grid], &scaling)
+        problem.refine(start, ITERATIONS, stop).in_users_units(&grids[grid], scaling)
     }
 }
 
@@ -131,7 +129,7 @@ struct Problem {
     drives: Vec<Vec<f64>>,
     targets: Vec<f64>,
     fold_of: Vec<usize>,
-    folds: Folds,
+    folds: RowFolds,
     dead_zones: usize,
 }
 
@@ -151,15 +149,9 @@ struct Point {
 impl Problem {
     /// # Errors
     /// A stop.
-    fn new(
-        series: &[Series],
-        scaling: &Scaling,
-        grid: &[f64],
-        dead_zones: usize,
-        stop: StopCheck<'_>,
-    ) -> Result<Self> {
+    fn new(rows: &TrainingRows, grid: &[f64], dead_zones: usize, stop: StopCheck<'_>) -> Result<Self> {
         let mut pace = Pace::new(stop);
-        let folds = Folds::of_series(series);
+        let TrainingRows { series, folds, scaling } = rows;
         let (mut drives, mut targets, mut fold_of) = (Vec::new(), Vec::new(), Vec::new());
         for (series, of_rows) in series.iter().zip(&folds.of_rows) {
             let mut plays = vec![0.0; grid.len()];
@@ -177,7 +169,7 @@ impl Problem {
                 }
             }
         }
-        Ok(Self { drives, targets, fold_of, folds, dead_zones })
+        Ok(Self { drives, targets, fold_of, folds: folds.clone(), dead_zones })
     }
 
     /// Ridge on the plays among `count` parameters.
@@ -220,7 +212,7 @@ impl Problem {
             if rest.targets.is_empty() || held_out.targets.is_empty() {
                 return Ok(0.0);
             }
-            let mut point = rest.refine(rest.convex_start(prior, stop)?, ITERATIONS_IN_VALIDATION, stop)?;
+            let mut point = rest.refine(rest.convex_start(prior, stop)?, ITERATIONS_IN_VALIDATION, stop);
             point.prior.ridge = 0.0;
             Ok(held_out.objective(&point).max(1e-30).ln())
         };
@@ -320,67 +312,15 @@ impl Problem {
     }
 
     /// Step 2, or as much of it as there is time for.
-    fn refine(&self, start: Point, iterations: usize, stop: StopCheck<'_>) -> Result<Point> {
-        let first = self.drives[0].len();
-        let count = first + 1 + start.slopes.len();
-        let penalty = self.penalty(count, count..count);
-        let bounds = Bounds::apart(start.prior.sign, 2..first, first + 1..count, count);
-        let whole = Folds { of_rows: Vec::new(), count: 1, judged: vec![0] };
-        let mut point = start;
-        let mut objective = self.objective(&point);
-        let (mut damping, mut refused) = (1e-3, 0);
+    fn refine(&self, start: Point, iterations: usize, stop: StopCheck<'_>) -> Point {
+        let refinement = Refinement::new(self, &start, stop);
+        let mut search = LevenbergMarquardt::new(&refinement, start.values());
         for _ in 0..iterations {
-            if stop.is_asked() {
-                break;
-            }
-            let mut gatherer = Gatherer::new(count, &whole, stop);
-            let mut jacobian = vec![0.0; count];
-            for (drive, &y) in self.drives.iter().zip(&self.targets) {
-                if gatherer.is_over(4 * count) {
-                    return Ok(point);
-                }
-                let residual = y - point.linearise(drive, &mut jacobian);
-                gatherer.add(0, &jacobian, residual);
-            }
-            let sums = match gatherer.finish() {
-                Err(Error::Stopped) => return Ok(point),
-                sums => sums?.into_total(),
-            };
-            let gauss_newton = sums.quadratic();
-            while refused < REFUSALS {
-                let mut damped = gauss_newton.clone();
-                damped.penalise(&penalty, point.prior.ridge);
-                for i in 0..count {
-                    let diagonal = damped.matrix.diagonal(i);
-                    damped.matrix.add_to_diagonal(i, damping * (diagonal + 1e-6));
-                }
-                for i in 2..first {
-                    damped.right[i] -= point.prior.ridge * point.hysteresis[i];
-                }
-                // The unknowns are where the step leads, so that bounds hold for them.
-                let values = point.values();
-                let shift = damped.matrix.times(&values);
-                damped.right.iter_mut().zip(shift).for_each(|(right, shift)| *right += shift);
-                let Some(step_to) = damped.minimum_within(&bounds, &values, stop) else {
-                    return Ok(point);
-                };
-                let candidate = point.at(&step_to);
-                let value = self.objective(&candidate);
-                if value < objective {
-                    let gain = objective - value;
-                    (point, objective) = (candidate, value);
-                    damping = (damping * 0.3).max(1e-9);
-                    refused = if gain < 1e-9 * objective { REFUSALS } else { 0 };
-                    break;
-                }
-                damping *= 5.0;
-                refused += 1;
-            }
-            if refused >= REFUSALS {
+            if stop.is_asked() || search.advance(&refinement).is_some() {
                 break;
             }
         }
-        Ok(point)
+        start.at(search.parameters())
     }
 
     /// Half the mean square error and half the penalty.
@@ -390,6 +330,90 @@ impl Problem {
         let squares = rows.map(|(drive, y)| (zones.value(point.before(drive)) - y).powi(2)).sum::<f64>();
         let penalty: f64 = point.hysteresis[2..].iter().map(|w| w * w).sum();
         0.5 * (squares / self.targets.len() as f64 + point.prior.ridge * penalty)
+    }
+}
+
+/// Step 2 as a function of the values of a point, from which its thresholds and prior are.
+struct Refinement<'a> {
+    problem: &'a Problem,
+    point: &'a Point,
+    penalty: Penalty,
+    bounds: Bounds,
+    stop: StopCheck<'a>,
+}
+
+impl<'a> Refinement<'a> {
+    fn new(problem: &'a Problem, point: &'a Point, stop: StopCheck<'a>) -> Self {
+        let first = problem.drives[0].len();
+        let count = first + 1 + point.slopes.len();
+        Self {
+            problem,
+            point,
+            penalty: problem.penalty(count, count..count),
+            bounds: Bounds::apart(point.prior.sign, 2..first, first + 1..count, count),
+            stop,
+        }
+    }
+}
+
+impl levenberg_marquardt::Problem for Refinement<'_> {
+    type Value = f64;
+    type Curvature = Symmetric;
+    const RULES: Rules = Rules {
+        damping: (1e-9, 1e6),
+        curvature_memory: 0.0,
+        least_curvature: 1e-6,
+        least_gradient: 0.0,
+        stall: 1e-6,
+    };
+
+    fn value(&self, values: &[f64]) -> f64 {
+        self.problem.objective(&self.point.at(values))
+    }
+
+    fn objective(value: &f64) -> f64 {
+        *value
+    }
+
+    fn slope(&self, values: &[f64], _: &f64) -> Option<Slope<Symmetric>> {
+        let Problem { drives, targets, .. } = self.problem;
+        let point = self.point.at(values);
+        let count = values.len();
+        let mut gatherer = Gatherer::new(count, &RowFolds::one(), self.stop);
+        let mut jacobian = vec![0.0; count];
+        for (drive, &y) in drives.iter().zip(targets) {
+            if gatherer.is_over(4 * count) {
+                return None;
+            }
+            let residual = y - point.linearise(drive, &mut jacobian);
+            gatherer.add(0, &jacobian, residual);
+        }
+        let mut sums = gatherer.finish().ok()?.into_total().into_quadratic();
+        sums.penalise(&self.penalty, point.prior.ridge);
+        let mut gradient: Vec<f64> = sums.right.iter().map(|right| -right).collect();
+        for (slope, weight) in gradient.iter_mut().zip(&point.hysteresis).skip(2) {
+            *slope += point.prior.ridge * weight;
+        }
+        let diagonal = (0..count).map(|i| sums.matrix.diagonal(i)).collect();
+        Some(Slope { gradient, diagonal, curvature: sums.matrix, evaluations: 1 })
+    }
+
+    fn step(&self, slope: &Slope<Symmetric>, values: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
+        let mut matrix = slope.curvature.clone();
+        damping.iter().enumerate().for_each(|(i, &damping)| matrix.add_to_diagonal(i, damping));
+        // The unknowns are where the step leads, so that bounds hold for them.
+        let shift = matrix.times(values);
+        let right = shift.iter().zip(&slope.gradient).map(|(shift, g)| shift - g).collect();
+        let there = Quadratic { matrix, right }.minimum_within(&self.bounds, values, self.stop)?;
+        Some(there.iter().zip(values).map(|(there, here)| there - here).collect())
+    }
+
+    fn limit(&self, values: &mut [f64]) {
+        self.bounds.limit(values);
+    }
+
+    fn stop(&self) -> StopCheck<'_> {
+        self.stop
     }
 }
 

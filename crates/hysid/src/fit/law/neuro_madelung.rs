@@ -9,10 +9,9 @@
 //!
 //! `dy_t/dθ` is stored with each turning point, so the derivative of the free run is exact.
 
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-use rand::SeedableRng;
-use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 use crate::data::FEWEST_ROWS;
@@ -24,7 +23,9 @@ use crate::law::Law;
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::linear_algebra::{Symmetric, dot};
-use crate::random::normal;
+use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
+use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::random::{generator, normal};
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
@@ -35,11 +36,6 @@ use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, NeuroMadelung, argument
 const DECAY: f64 = 1e-5;
 /// Share of the data that judges the starts.
 const HELD_OUT: f64 = 0.25;
-const FIRST_DAMPING: f64 = 1e-2;
-const LARGEST_DAMPING: f64 = 1e8;
-/// Relative fall of the objective that counts as none, and how many in a row end a phase.
-const STALL: f64 = 1e-5;
-const PATIENCE: usize = 3;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
 /// Most tanh neurons.
@@ -97,16 +93,15 @@ struct Training<'a> {
     /// What they are trained on, and what judges them.
     kept: &'a Task<'a>,
     held: &'a Task<'a>,
-    walks: Vec<Walk>,
+    walks: MultiStart<Walk>,
     epochs: usize,
-    given_up: usize,
 }
 
 impl<'a> Training<'a> {
     fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &NeuroMadelungOptions) -> Self {
         let walks =
             (0..options.starts).into_par_iter().map(|start| Walk::new(kept, options.seed, start)).collect();
-        Self { kept, held, walks, epochs: options.epochs, given_up: 0 }
+        Self { kept, held, walks: MultiStart::new(walks), epochs: options.epochs }
     }
 
     fn run(
@@ -114,47 +109,33 @@ impl<'a> Training<'a> {
         whole: &Task<'_>,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<NeuroMadelung>> {
-        if self.walks.iter().all(|walk| walk.objective == f64::INFINITY) {
+        self.walks.sort();
+        if self.walks.best().value().objective == f64::INFINITY {
             return Err(Error::Stopped);
         }
-        let forced = self.epochs / 2;
         let last = (self.epochs / 6).max(1);
-        let mut termination = Termination::EpochsUsed;
-        for epoch in 1..=self.epochs {
-            self.epoch(epoch, forced);
-            let mut told = self.progress(epoch, self.epochs + last);
-            if epoch <= forced {
-                // With the measured output at every turning point it is no error of a free run.
-                told.train_nrmse_percent = f64::NAN;
-            }
-            if observer(told).is_break() || whole.stop.is_asked() {
-                termination = Termination::Stopped;
-                break;
-            }
-            if epoch > forced && self.walks.iter().all(|walk| walk.ended.is_some()) {
-                break;
-            }
-        }
+        let rounds = self.epochs + last;
+        let mut termination = self.epochs(rounds, whole.stop, observer);
         // A training that was stopped early has not judged any free run; there may be no time for it.
-        for walk in self.walks.iter_mut().filter(|walk| walk.best.is_none()) {
+        for walk in self.walks.starts_mut().iter_mut().filter(|walk| walk.best.is_none()) {
             if !whole.stop.is_asked() {
                 walk.set_free(self.kept);
                 walk.judge(self.held);
             }
         }
-        self.sort();
-        let best = &self.walks[0];
-        let parameters = best.best.as_ref().map_or(&best.parameters, |(_, parameters)| parameters);
+        self.walks.sort();
+        let best = self.walks.best();
+        let parameters = best.best.as_ref().map_or(best.parameters(), |(_, parameters)| parameters);
         // What was held out is learnt from where it was judged best, in few epochs.
-        let mut walk = Walk::at(whole, parameters.clone());
+        let mut walk = Walk::at(whole, parameters.to_vec());
         for epoch in 1..=last {
             if termination == Termination::Stopped {
                 break;
             }
             walk.advance(whole);
             let told = SearchProgress {
-                train_nrmse_percent: 100.0 * walk.mean_square.sqrt(),
-                ..self.progress(self.epochs + epoch, self.epochs + last)
+                train_nrmse_percent: walk.nrmse_percent(),
+                ..progress(&self.walks, self.epochs + epoch, rounds)
             };
             if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
                 termination = Termination::Stopped;
@@ -164,15 +145,24 @@ impl<'a> Training<'a> {
                 break;
             }
         }
-        let law = whole.law(&walk.parameters).validated()?;
-        let evaluations = self.evaluations() + walk.evaluations;
-        let train_nrmse_percent = 100.0 * walk.mean_square.sqrt();
+        let law = whole.law(walk.parameters()).validated()?;
+        let evaluations = self.walks.evaluations() + walk.evaluations();
+        let train_nrmse_percent = walk.nrmse_percent();
         Ok(Identified { law, train_nrmse_percent, evaluations, termination })
     }
 
-    fn epoch(&mut self, epoch: usize, forced: usize) {
-        let (kept, held) = (self.kept, self.held);
-        self.walks.par_iter_mut().for_each(|walk| {
+    /// Half of the epochs teacher forced, then the others in free run; the observer hears of `rounds` in all.
+    fn epochs(
+        &mut self,
+        rounds: usize,
+        stop: StopCheck<'_>,
+        observer: &mut SearchObserver<'_>,
+    ) -> Termination {
+        let Self { kept, held, ref mut walks, epochs } = *self;
+        let forced = epochs / 2;
+        let plan =
+            Plan { rounds: epochs, spared: forced, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+        let advance = |walk: &mut Walk, epoch| {
             if epoch == forced + 1 {
                 walk.set_free(kept);
             }
@@ -180,34 +170,27 @@ impl<'a> Training<'a> {
             if epoch > forced {
                 walk.judge(held);
             }
-        });
-        self.sort();
-        if epoch > forced && (epoch - forced).is_multiple_of(EPOCHS_TO_PROVE_ITSELF) {
-            let keep = self.walks.len().div_ceil(2);
-            self.given_up += self.walks.drain(keep..).map(|walk| walk.evaluations).sum::<usize>();
+        };
+        let tell = |walks: &MultiStart<Walk>, epoch| {
+            let mut told = progress(walks, epoch, rounds);
+            if epoch <= forced {
+                // With the measured output at every turning point it is no error of a free run.
+                told.train_nrmse_percent = f64::NAN;
+            }
+            let flow = observer(told);
+            if stop.is_asked() { ControlFlow::Break(()) } else { flow }
+        };
+        match walks.run(plan, advance, tell) {
+            Termination::Stopped => Termination::Stopped,
+            // How the whole ends, what follows tells.
+            _ => Termination::EpochsUsed,
         }
     }
+}
 
-    /// The best first, by what was held out once that has been judged. Stable: of equals the earlier
-    /// start stays before the later.
-    fn sort(&mut self) {
-        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.objective, |(error, _)| *error);
-        let is_judged = |walk: &Walk| walk.best.is_some();
-        self.walks.sort_by(|a, b| is_judged(b).cmp(&is_judged(a)).then(rank(a).total_cmp(&rank(b))));
-    }
-
-    fn evaluations(&self) -> usize {
-        self.given_up + self.walks.iter().map(|walk| walk.evaluations).sum::<usize>()
-    }
-
-    fn progress(&self, round: usize, rounds: usize) -> SearchProgress {
-        SearchProgress {
-            round,
-            rounds,
-            evaluations: self.evaluations(),
-            train_nrmse_percent: 100.0 * self.walks[0].mean_square.sqrt(),
-        }
-    }
+fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProgress {
+    let train_nrmse_percent = walks.best().nrmse_percent();
+    SearchProgress { round, rounds, evaluations: walks.evaluations(), train_nrmse_percent }
 }
 
 /// A model with its scales and without a network.
@@ -297,8 +280,7 @@ impl<'a> Task<'a> {
     }
 
     fn random(&self, seed: u64, start: usize) -> Vec<f64> {
-        let mixed = seed ^ (start as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let mut generator = Xoshiro256PlusPlus::seed_from_u64(mixed);
+        let mut generator = generator(seed, start);
         let mut parameters: Vec<f64> =
             (0..self.hidden * (1 + self.inputs())).map(|_| normal(&mut generator)).collect();
         parameters.extend((0..=self.hidden).map(|_| 0.3 * normal(&mut generator)));
@@ -401,16 +383,86 @@ fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> 
     Reached { y, by_parameters: all }
 }
 
-/// A start on its way: Levenberg-Marquardt.
-struct Walk {
-    parameters: Vec<f64>,
+/// The error of a task as a function of the parameters, which count as well.
+struct Objective<'a, 't> {
+    task: &'a Task<'t>,
+    /// With the measured output at every turning point.
+    forced: bool,
+}
+
+/// The objective at a point; infinite if it was broken off.
+#[derive(Debug, Clone, Copy)]
+struct Value {
     objective: f64,
     mean_square: f64,
+}
+
+impl Problem for Objective<'_, '_> {
+    type Value = Value;
+    type Curvature = Symmetric;
+    const RULES: Rules = Rules {
+        damping: (1e-12, 1e8),
+        curvature_memory: 0.0,
+        least_curvature: 1e-6,
+        least_gradient: 0.0,
+        stall: 1e-5,
+    };
+
+    fn value(&self, parameters: &[f64]) -> Value {
+        let broken_off = Value { objective: f64::INFINITY, mean_square: f64::INFINITY };
+        if self.task.stop.is_asked() {
+            return broken_off;
+        }
+        let Sweep { residual, is_complete, .. } = self.task.sweep(parameters, self.forced, false);
+        if !is_complete {
+            return broken_off;
+        }
+        let mean_square = dot(&residual, &residual) / residual.len() as f64;
+        let objective = 0.5 * (mean_square + DECAY * dot(parameters, parameters));
+        Value { objective, mean_square }
+    }
+
+    fn objective(value: &Value) -> f64 {
+        value.objective
+    }
+
+    fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
+        let Sweep { residual, jacobian, is_complete } = self.task.sweep(parameters, self.forced, true);
+        if !is_complete {
+            return None;
+        }
+        let n = parameters.len();
+        let rows = residual.len() as f64;
+        let curvature = Symmetric::from_fn(n, |i, j| {
+            dot(&jacobian[i], &jacobian[j]) / rows + if i == j { DECAY } else { 0.0 }
+        });
+        Some(Slope {
+            gradient: (0..n).map(|i| dot(&jacobian[i], &residual) / rows + DECAY * parameters[i]).collect(),
+            diagonal: (0..n).map(|i| curvature.diagonal(i)).collect(),
+            curvature,
+            evaluations: 1,
+        })
+    }
+
+    fn step(&self, slope: &Slope<Symmetric>, _: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
+        damped_step(&slope.curvature, &slope.gradient, damping, StopCheck::never())
+    }
+
+    fn limit(&self, parameters: &mut [f64]) {
+        parameters.iter_mut().for_each(|p| *p = p.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT));
+    }
+
+    fn stop(&self) -> StopCheck<'_> {
+        self.task.stop
+    }
+}
+
+/// A start on its way.
+struct Walk {
+    search: LevenbergMarquardt<Value>,
     forced: bool,
-    damping: f64,
-    growth: f64,
-    stalled: usize,
-    evaluations: usize,
+    /// Evaluations of what was held out, and of the search before this one.
+    further_evaluations: usize,
     ended: Option<Termination>,
     /// Smallest error of a free run on what was held out, and where it was.
     best: Option<(f64, Vec<f64>)>,
@@ -427,105 +479,65 @@ impl Walk {
     }
 
     fn from(task: &Task<'_>, parameters: Vec<f64>, forced: bool) -> Self {
-        let mut walk = Self {
-            parameters,
-            objective: 0.0,
-            mean_square: 0.0,
-            forced,
-            damping: FIRST_DAMPING,
-            growth: 2.0,
-            stalled: 0,
-            evaluations: 0,
-            ended: None,
-            best: None,
-        };
-        (walk.objective, walk.mean_square) = walk.value(task, &walk.parameters);
-        walk
+        let search = LevenbergMarquardt::new(&Objective { task, forced }, parameters);
+        Self { search, forced, further_evaluations: 0, ended: None, best: None }
     }
 
     /// From teacher forcing to free run.
     fn set_free(&mut self, task: &Task<'_>) {
         if self.forced {
-            self.forced = false;
-            (self.damping, self.growth, self.stalled, self.ended) = (FIRST_DAMPING, 2.0, 0, None);
-            (self.objective, self.mean_square) = self.value(task, &self.parameters);
-            self.evaluations += 1;
+            self.further_evaluations = Start::evaluations(self);
+            let parameters = self.parameters().to_vec();
+            self.search = LevenbergMarquardt::new(&Objective { task, forced: false }, parameters);
+            (self.forced, self.ended) = (false, None);
         }
     }
 
     /// Remembers the parameters if they do better than any before on what was held out.
     fn judge(&mut self, held: &Task<'_>) {
-        let Sweep { residual, is_complete, .. } = held.sweep(&self.parameters, false, false);
+        let Sweep { residual, is_complete, .. } = held.sweep(self.parameters(), false, false);
         if !is_complete {
             return;
         }
         let error = dot(&residual, &residual) / residual.len() as f64;
-        self.evaluations += 1;
+        self.further_evaluations += 1;
         if self.best.as_ref().is_none_or(|(best, _)| error < *best) {
-            self.best = Some((error, self.parameters.clone()));
+            self.best = Some((error, self.parameters().to_vec()));
         }
-    }
-
-    /// The objective, which weighs the parameters as well, and the mean square error; infinite if it was broken off.
-    fn value(&self, task: &Task<'_>, parameters: &[f64]) -> (f64, f64) {
-        if task.stop.is_asked() {
-            return (f64::INFINITY, f64::INFINITY);
-        }
-        let Sweep { residual, is_complete, .. } = task.sweep(parameters, self.forced, false);
-        if !is_complete {
-            return (f64::INFINITY, f64::INFINITY);
-        }
-        let mean_square = dot(&residual, &residual) / residual.len() as f64;
-        (mean_square + DECAY * dot(parameters, parameters), mean_square)
     }
 
     fn advance(&mut self, task: &Task<'_>) {
-        if self.ended.is_some() {
-            return;
+        if self.ended.is_none() {
+            self.ended = self.search.advance(&Objective { task, forced: self.forced });
         }
-        let Sweep { residual, jacobian, is_complete } = task.sweep(&self.parameters, self.forced, true);
-        if !is_complete {
-            return;
-        }
-        self.evaluations += 1;
-        let n = self.parameters.len();
-        let rows = residual.len() as f64;
-        let gradient: Vec<f64> =
-            (0..n).map(|i| dot(&jacobian[i], &residual) / rows + DECAY * self.parameters[i]).collect();
-        let matrix = Symmetric::from_fn(n, |i, j| {
-            dot(&jacobian[i], &jacobian[j]) / rows + if i == j { DECAY } else { 0.0 }
-        });
-        while self.damping < LARGEST_DAMPING && !task.stop.is_asked() {
-            let mut damped = matrix.clone();
-            for i in 0..n {
-                damped.add_to_diagonal(i, self.damping * (matrix.diagonal(i) + 1e-6));
-            }
-            let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
-            if let Some(factor) = damped.cholesky(StopCheck::never()) {
-                factor.solve(&mut step);
-                let foretold: f64 = (0..n)
-                    .map(|i| step[i] * (self.damping * (matrix.diagonal(i) + 1e-6) * step[i] - gradient[i]))
-                    .sum();
-                let limit = LARGEST_WEIGHT;
-                let there: Vec<f64> =
-                    self.parameters.iter().zip(&step).map(|(p, by)| (p + by).clamp(-limit, limit)).collect();
-                let (objective, mean_square) = self.value(task, &there);
-                self.evaluations += 1;
-                let fall = self.objective - objective;
-                if fall > 0.0 {
-                    let quality = (fall / foretold).clamp(0.0, 2.0);
-                    self.damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).max(1.0 / 3.0);
-                    self.damping = self.damping.max(1e-12);
-                    self.growth = 2.0;
-                    self.stalled = if fall > STALL * self.objective { 0 } else { self.stalled + 1 };
-                    (self.parameters, self.objective, self.mean_square) = (there, objective, mean_square);
-                    self.ended = (self.stalled == PATIENCE).then_some(Termination::Converged);
-                    return;
-                }
-            }
-            self.damping *= self.growth;
-            self.growth *= 2.0;
-        }
-        self.ended = Some(Termination::NoFurtherImprovement);
+    }
+
+    fn parameters(&self) -> &[f64] {
+        self.search.parameters()
+    }
+
+    fn value(&self) -> &Value {
+        self.search.known_value().expect("a walk begins at a known value")
+    }
+
+    fn nrmse_percent(&self) -> f64 {
+        100.0 * self.value().mean_square.sqrt()
+    }
+}
+
+impl Start for Walk {
+    /// By what was held out once that has been judged.
+    fn order(&self, other: &Self) -> Ordering {
+        let rank = |walk: &Walk| walk.best.as_ref().map_or(walk.value().objective, |(error, _)| *error);
+        let is_judged = |walk: &Walk| walk.best.is_some();
+        is_judged(other).cmp(&is_judged(self)).then(rank(self).total_cmp(&rank(other)))
+    }
+
+    fn evaluations(&self) -> usize {
+        self.search.evaluations() + self.further_evaluations
+    }
+
+    fn ended(&self) -> Option<Termination> {
+        self.ended
     }
 }

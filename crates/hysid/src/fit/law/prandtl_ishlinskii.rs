@@ -7,17 +7,13 @@ use crate::error::Result;
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::Bounds;
 use crate::fit::law::linear::FoldSums;
-use crate::fit::law::linear::Folds;
 use crate::fit::law::linear::Gatherer;
-use crate::fit::law::linear::Penalty;
-use crate::fit::law::linear::identifiable_series;
+use crate::fit::law::linear::TrainingRows;
 use crate::fit::law::linear::logarithmic;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use crate::law::series::Series;
-use crate::network::scaling::Scaling;
 use crate::operator::play;
+use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 
@@ -46,11 +42,10 @@ impl LeastSquaresLaw for PrandtlIshlinskii {
 
     fn fitted(data: &Dataset, options: &PrandtlIshlinskiiOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out grids and penalties that were not compared yet.
-        let series = identifiable_series(data)?;
-        let scaling = Scaling::of(data, None)?;
+        let rows = TrainingRows::of(data)?;
+        let scaling = &rows.scaling;
         let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
-        let (grid, weights) =
-            best_on_grids(grids, |grid| weights_on_grid(&series, &scaling, grid, options.sign, stop))?;
+        let (grid, weights) = best_on_grids(grids, |grid| weights_on_grid(&rows, grid, options.sign, stop))?;
         let slope = scaling.output_deviation / scaling.inputs[0];
         Self::new(
             scaling.output(weights[0]),
@@ -63,13 +58,12 @@ impl LeastSquaresLaw for PrandtlIshlinskii {
 
 /// Score by cross-validation and weights (constant, input, plays) in scaled units.
 fn weights_on_grid(
-    series: &[Series],
-    scaling: &Scaling,
+    rows: &TrainingRows,
     thresholds: &[f64],
     sign: Option<Sign>,
     stop: StopCheck<'_>,
 ) -> Result<(f64, Vec<f64>)> {
-    let sums = play_sums(series, scaling, thresholds, stop)?;
+    let sums = play_sums(rows, thresholds, stop)?;
     let features = 2 + thresholds.len();
     // The constant is free, the input nearly.
     let of = |i: usize| match i {
@@ -90,14 +84,9 @@ fn weights_on_grid(
 const PLAYS_BEGIN: std::ops::Range<usize> = 2..2;
 
 /// Sums of constant, input and plays, inputs and plays in units of the largest input.
-fn play_sums(
-    series: &[Series],
-    scaling: &Scaling,
-    thresholds: &[f64],
-    stop: StopCheck<'_>,
-) -> Result<FoldSums> {
-    let folds = Folds::of_series(series);
-    let mut gatherer = Gatherer::new(2 + thresholds.len(), &folds, stop);
+fn play_sums(rows: &TrainingRows, thresholds: &[f64], stop: StopCheck<'_>) -> Result<FoldSums> {
+    let TrainingRows { series, folds, scaling } = rows;
+    let mut gatherer = Gatherer::new(2 + thresholds.len(), folds, stop);
     let mut features = vec![0.0; 2 + thresholds.len()];
     features[0] = 1.0;
     let factor = 1.0 / scaling.inputs[0];

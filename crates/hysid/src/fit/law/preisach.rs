@@ -11,16 +11,16 @@ use serde::{Deserialize, Serialize};
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
-use crate::fit::law::linear::{
-    Bounds, Choice, FoldSums, Folds, Gatherer, Penalty, identifiable_series, logarithmic,
-};
+use crate::fit::law::linear::{Choice, FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::law::preisach::plane::Plane;
 use crate::law::preisach::{MOST_INTERVALS, Preisach, PreisachWeights};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
+use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
+use crate::validation::RowFolds;
 
 /// How a Preisach model is fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,28 +51,28 @@ impl LeastSquaresLaw for Preisach {
 
     fn fitted(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out folds of the choice, and the finer plane.
-        let series = identifiable_series(data)?;
-        let scaling = Scaling::of(data, None)?;
+        let rows = TrainingRows::of(data)?;
+        let TrainingRows { series, folds, scaling } = &rows;
         let intervals = options.intervals;
         if !(1..=MOST_INTERVALS).contains(&intervals) {
             return Err(Error::Option(format!("{intervals} intervals: choose 1 to {MOST_INTERVALS}")));
         }
-        let density = LineDensity::new(&series, data.input_range(0));
+        let density = LineDensity::new(series, data.input_range(0));
         let penalties = logarithmic(1e-9, 1e2, 12);
 
         let coarse = Problem::new(Plane::new(density.lines(intervals.min(INTERVALS_FOR_CHOICE))));
-        let sums = coarse.sums(&series, &scaling, &Folds::of_series(&series), stop)?;
+        let sums = coarse.sums(series, scaling, folds, stop)?;
         let choice = sums.choose(&coarse.penalty, &penalties, options.sign, &coarse.reversible(), stop);
         if intervals > INTERVALS_FOR_CHOICE && !stop.is_asked() {
             let fine = Problem::new(Plane::new(density.lines(intervals)));
             // Nothing is held out here, and the sums of a fine plane are gigabytes.
-            let sums = fine.sums(&series, &scaling, &Folds::none(&series), stop);
-            match sums.and_then(|sums| fine.weighted(sums, choice, &scaling, stop)) {
+            let sums = fine.sums(series, scaling, &RowFolds::none(data), stop);
+            match sums.and_then(|sums| fine.weighted(sums, choice, scaling, stop)) {
                 Err(Error::Stopped) => {}
                 fitted => return fitted,
             }
         }
-        coarse.weighted(sums, choice, &scaling, stop)
+        coarse.weighted(sums, choice, scaling, stop)
     }
 }
 
@@ -181,7 +181,7 @@ impl Problem {
         &self,
         series: &[Series],
         scaling: &Scaling,
-        folds: &Folds,
+        folds: &RowFolds,
         stop: StopCheck<'_>,
     ) -> Result<FoldSums> {
         let mut gatherer = Gatherer::new(self.features(), folds, stop);

@@ -18,12 +18,13 @@ mod rows;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus;
+use rand::RngExt;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::law::series::Series;
+use crate::optimise::multi_start::{MultiStart, Plan};
+use crate::optimise::random::generator;
 use crate::options::network::MOST_EPOCHS;
 use crate::options::network::MOST_STARTS;
 use crate::stop_check::StopCheck;
@@ -230,42 +231,34 @@ pub(crate) fn search<F: Family>(
     let variation = target.len() as f64 * deviation * deviation;
     let objective = Objective { family, series, target, variation, stop };
 
-    let mut descents = beginnings(&objective, effort);
-    if descents.first().is_none_or(|best| best.value.square_residual == UNFINISHED) {
+    let begun = beginnings(&objective, effort);
+    if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
         return Err(Error::Stopped);
     }
-    let mut evaluations = effort.starts * DRAWS_PER_START;
-    let mut termination = Termination::EpochsUsed;
-    for round in 1..=effort.epochs {
-        descents.par_iter_mut().for_each(|descent| descent.advance(&objective));
-        // Stable: of equals the earlier start stays before the later.
-        descents.sort_by(|a, b| a.value.square_residual.total_cmp(&b.value.square_residual));
-        if round % ROUNDS_TO_PROVE_ITSELF == 0 {
-            let keep = descents.len().div_ceil(2).max(FINALISTS).min(descents.len());
-            evaluations += descents.drain(keep..).map(|descent| descent.evaluations).sum::<usize>();
-        }
+    let drawn = effort.starts * DRAWS_PER_START;
+    let plan = Plan {
+        rounds: effort.epochs,
+        spared: 0,
+        to_prove_itself: ROUNDS_TO_PROVE_ITSELF,
+        finalists: FINALISTS,
+    };
+    let mut descents = MultiStart::new(begun);
+    let tell = |descents: &MultiStart<Descent>, round| {
         let told = observer(SearchProgress {
             round,
             rounds: effort.epochs,
-            evaluations: evaluations + descents.iter().map(|descent| descent.evaluations).sum::<usize>(),
-            train_nrmse_percent: objective.nrmse_percent(&descents[0].value),
+            evaluations: drawn + descents.evaluations(),
+            train_nrmse_percent: objective.nrmse_percent(descents.best().value()),
         });
-        if told.is_break() || stop.is_asked() {
-            termination = Termination::Stopped;
-            break;
-        }
-        if descents.iter().all(|descent| descent.ended.is_some()) {
-            termination = descents[0].ended.unwrap_or(Termination::Converged);
-            break;
-        }
-    }
-    evaluations += descents.iter().map(|descent| descent.evaluations).sum::<usize>();
-    let best = &descents[0];
+        if stop.is_asked() { ControlFlow::Break(()) } else { told }
+    };
+    let termination = descents.run(plan, |descent, _| descent.advance(&objective), tell);
+    let best = descents.best();
     Ok(Found {
-        parameters: objective.parameters(&best.u),
-        weights: best.value.weights.clone(),
-        train_nrmse_percent: objective.nrmse_percent(&best.value),
-        evaluations,
+        parameters: objective.parameters(best.u()),
+        weights: best.value().weights.clone(),
+        train_nrmse_percent: objective.nrmse_percent(best.value()),
+        evaluations: drawn + descents.evaluations(),
         termination,
     })
 }
@@ -278,9 +271,7 @@ fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<De
         if let Some(values) = suggested.get(index) {
             return variables.iter().zip(values).map(|(variable, &value)| variable.place(value)).collect();
         }
-        // A generator for each draw, so that it does not matter which thread draws first.
-        let mixed = effort.seed ^ (index as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let mut generator = Xoshiro256PlusPlus::seed_from_u64(mixed);
+        let mut generator = generator(effort.seed, index);
         variables.iter().map(|_| generator.random()).collect()
     };
     let count = suggested.len().max(effort.starts * DRAWS_PER_START);
@@ -292,7 +283,7 @@ fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<De
         let value = objective.value(&u);
         let square_residual = value.square_residual;
         let mut best = best.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        if best.as_ref().is_none_or(|best| square_residual < best.value.square_residual) {
+        if best.as_ref().is_none_or(|best| square_residual < best.value().square_residual) {
             *best = Some(Descent::new(u.clone(), value));
         }
         (square_residual, u)
@@ -322,7 +313,7 @@ fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<De
         Descent::new(u, value)
     };
     let begun: Vec<Descent> = chosen.into_par_iter().map(begin).collect();
-    match begun[0].value.square_residual {
+    match begun[0].value().square_residual {
         UNFINISHED => best.into_inner().ok().flatten().into_iter().collect(),
         _ => begun,
     }

@@ -12,6 +12,7 @@
 
 use crate::fit::network::least_squares::OutputSolution;
 use crate::linear_algebra::{Batch, Gram, Symmetric, dot};
+use crate::optimise::levenberg_marquardt::damped_step;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Parameters from which on few rows are worth a way of their own.
@@ -23,7 +24,7 @@ pub(crate) fn has_few_rows(parameters: usize, features: usize, rows: usize) -> b
 }
 
 /// Curvature at a point.
-pub(crate) enum Curvature {
+pub enum Curvature {
     /// The Gauss-Newton matrix with decay.
     Matrix(Symmetric),
     /// Its rows.
@@ -42,20 +43,14 @@ impl Curvature {
     /// it is not positive definite, or asked to stop.
     pub fn step(&self, gradient: &[f64], damping: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         match self {
-            Self::Matrix(matrix) => {
-                let mut damped = matrix.clone();
-                damping.iter().enumerate().for_each(|(index, &value)| damped.add_to_diagonal(index, value));
-                let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
-                damped.cholesky(stop)?.solve(&mut step);
-                Some(step)
-            }
+            Self::Matrix(matrix) => damped_step(matrix, gradient, damping, stop),
             Self::Rows(rows) => rows.step(damping, stop),
         }
     }
 }
 
 /// `U` with the residual `v` and the decay.
-pub(crate) struct Rows {
+pub struct Rows {
     /// Rows of `U`: those of the data, then one for each feature.
     height: usize,
     /// `U`, parameter by parameter.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::network::objective::Objective;
 use crate::fit::network::soundness::Frame;
-use crate::random::normal;
+use crate::optimise::random::normal;
 
 /// Largest threshold, in half ranges of the input: beyond 1 a stop no longer slides.
 const LARGEST_THRESHOLD: f64 = 1.2;

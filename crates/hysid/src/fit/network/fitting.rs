@@ -185,7 +185,7 @@ impl<'a> Fitting<'a> {
     /// # Errors
     /// A stop before there was any network.
     pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fit> {
-        let observer = &SharedObserver::new(observer, Progress::of_beginning(&self.asked));
+        let observer = &SharedObserver::new(observer, Some(Progress::of_beginning(&self.asked)));
         let penalties = self.asked.penalties();
         self.train_on_everything(penalties, observer)?;
         let validation = self.validate(penalties, observer)?;

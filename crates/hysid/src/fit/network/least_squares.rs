@@ -2,13 +2,11 @@
 //! Jacobian, theory.md (3.2) to (3.4).
 
 use crate::linear_algebra::{Cholesky, Gram, Symmetric};
+use crate::optimise::ridge::factor_with_ridge;
 use crate::stop_check::{Pace, StopCheck};
 
-/// Ridge beyond which a matrix is given up, as a multiple of its largest diagonal entry.
-const LARGEST_RIDGE: f64 = 1e12;
-
 /// The linear least-squares problem inside the objective.
-pub(crate) struct OutputProblem<'a> {
+pub struct OutputProblem<'a> {
     pub gram: &'a Gram,
     /// Number of features.
     pub features: usize,
@@ -23,7 +21,7 @@ pub(crate) struct OutputProblem<'a> {
 
 /// Output weights and what they reach.
 #[derive(Debug, Clone)]
-pub(crate) struct OutputSolution {
+pub struct OutputSolution {
     pub weights: Vec<f64>,
     /// Mean square residual, in scaled units.
     pub mean_square: f64,
@@ -55,23 +53,9 @@ impl OutputProblem<'_> {
     pub fn solve(&self) -> OutputSolution {
         let m = self.features;
         let matrix = Symmetric::from_fn(m, |i, j| self.gram.at(i, j) / self.rows);
-        let largest = (0..m).map(|i| matrix.diagonal(i)).fold(1e-30, f64::max);
-        let mut ridge = self.ridge;
-        let (factor, added) = loop {
-            let mut penalised = matrix.clone();
-            let mut added = vec![ridge; m];
-            if self.constant {
-                added[0] = 1e-14 * largest;
-            }
-            added.iter().enumerate().for_each(|(i, &value)| penalised.add_to_diagonal(i, value));
-            match penalised.cholesky(self.stop) {
-                Some(factor) => break (factor, added),
-                None if self.stop.is_asked() => return OutputSolution::broken_off(m),
-                // Only numbers that are none are not made definite by a ridge as large as that.
-                None if ridge > LARGEST_RIDGE * largest => return OutputSolution::broken_off(m),
-                None => ridge = (ridge * 10.0).max(1e-14 * largest),
-            }
-        };
+        let unpenalised = usize::from(self.constant);
+        let solvable = factor_with_ridge(&matrix, m, self.ridge, unpenalised, self.stop);
+        let Ok((factor, added)) = solvable else { return OutputSolution::broken_off(m) };
         let target = |i: usize| self.gram.at(m, i) / self.rows;
         let mut weights: Vec<f64> = (0..m).map(target).collect();
         factor.solve(&mut weights);

@@ -11,6 +11,7 @@ use crate::network::scaling::Scaling;
 use crate::network::{
     Architecture, Columns, Drive, GradientOverRecords, GramOverRecords, Layout, RowsOverRecords,
 };
+use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope};
 use crate::options::network::{FitOptions, Regularisation};
 use crate::stop_check::StopCheck;
 
@@ -43,14 +44,6 @@ impl Value {
     pub fn output_weights(&self) -> &[f64] {
         &self.solution.weights
     }
-}
-
-/// Slope and curvature at a point.
-pub(crate) struct Slope {
-    /// Gradient of F, theory.md (3.3).
-    pub gradient: Vec<f64>,
-    /// Gauss-Newton matrix with decay, theory.md (3.4).
-    pub curvature: Curvature,
 }
 
 /// Operations of one evaluation with its slope from which on it is worth to be broken off: about ten
@@ -98,11 +91,6 @@ impl<'a> Objective<'a> {
     /// True if evaluations may be broken off.
     pub(crate) fn is_long(&self) -> bool {
         self.is_long
-    }
-
-    /// What breaks evaluations off.
-    pub(crate) fn stop(&self) -> StopCheck<'a> {
-        self.stop
     }
 
     /// Rows that are compared.
@@ -188,11 +176,7 @@ impl<'a> Objective<'a> {
         gradient
     }
 
-    /// Slope and curvature at a point with its value; `None` once asked to stop.
-    pub(crate) fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
-        if has_few_rows(parameters.len(), self.architecture.output_weights(), self.rows) {
-            return self.slope_of_few_rows(parameters, value);
-        }
+    fn slope_by_matrix(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
         let gram = self.gram(parameters, Some(&value.solution.weights));
         let (mut gradient, mut matrix) =
             self.output_problem(&gram).linearise(&value.solution, parameters.len());
@@ -200,11 +184,10 @@ impl<'a> Objective<'a> {
             gradient[index] += self.regularisation.decay * weight;
             matrix.add_to_diagonal(index, self.regularisation.decay);
         }
-        let slope = Slope { gradient, curvature: Curvature::Matrix(matrix) };
-        (!self.stop.is_asked()).then_some(slope)
+        (!self.stop.is_asked()).then(|| slope(gradient, Curvature::Matrix(matrix)))
     }
 
-    fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope> {
+    fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
         let output = Some(value.solution.weights.as_slice());
         let columns = Columns { architecture: &self.architecture, parameters, output };
         let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
@@ -215,7 +198,7 @@ impl<'a> Objective<'a> {
             return None;
         }
         let rows = curvature::Rows::new(columns, &value.solution, decay, parameters, stop)?;
-        Some(Slope { gradient: rows.gradient(), curvature: Curvature::Rows(rows) })
+        Some(slope(rows.gradient(), Curvature::Rows(rows)))
     }
 
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
@@ -237,6 +220,51 @@ impl<'a> Objective<'a> {
 
     fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
         parameters.iter().enumerate().filter(|(index, _)| self.layout.is_weight(*index))
+    }
+}
+
+/// Gradient of F, theory.md (3.3), and Gauss-Newton matrix with decay, (3.4).
+fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
+    let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
+    Slope { gradient, diagonal, curvature, evaluations: 1 }
+}
+
+impl Problem for Objective<'_> {
+    type Value = Value;
+    type Curvature = Curvature;
+    const RULES: Rules = Rules {
+        damping: (1e-12, 1e12),
+        curvature_memory: 0.9,
+        least_curvature: 1e-4,
+        least_gradient: 1e-14,
+        stall: 1e-6,
+    };
+
+    fn value(&self, parameters: &[f64]) -> Value {
+        self.value(parameters)
+    }
+
+    fn objective(value: &Value) -> f64 {
+        value.objective
+    }
+
+    fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
+        match has_few_rows(parameters.len(), self.architecture.output_weights(), self.rows) {
+            true => self.slope_of_few_rows(parameters, value),
+            false => self.slope_by_matrix(parameters, value),
+        }
+    }
+
+    fn step(&self, slope: &Slope<Curvature>, _: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
+        slope.curvature.step(&slope.gradient, damping, self.stop)
+    }
+
+    fn limit(&self, parameters: &mut [f64]) {
+        self.layout.clamp(parameters);
+    }
+
+    fn stop(&self) -> StopCheck<'_> {
+        self.stop
     }
 }
 
@@ -263,7 +291,7 @@ mod tests {
         assert!(!has_few_rows(p, architecture.output_weights(), rows), "compare with the matrix");
         let point = crate::fit::network::start::random(&objective, 1, 0);
         let value = objective.value(&point);
-        let by_matrix = objective.slope(&point, &value).unwrap();
+        let by_matrix = Problem::slope(&objective, &point, &value).unwrap();
         let by_rows = objective.slope_of_few_rows(&point, &value).unwrap();
         let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         let assert_near = |a: &[f64], b: &[f64], tolerance: f64| {
@@ -274,13 +302,15 @@ mod tests {
             }
         };
         assert_near(&by_matrix.gradient, &by_rows.gradient, 1e-9);
-        let diagonal = |slope: &Slope| (0..p).map(|i| slope.curvature.diagonal(i)).collect::<Vec<f64>>();
+        let diagonal =
+            |slope: &Slope<Curvature>| (0..p).map(|i| slope.curvature.diagonal(i)).collect::<Vec<f64>>();
         assert_near(&diagonal(&by_matrix), &diagonal(&by_rows), 1e-9);
         let scale = largest(&diagonal(&by_matrix));
         for damping in [1e-1, 1e-3] {
             let damping = vec![damping * scale; p];
-            let step =
-                |slope: &Slope| slope.curvature.step(&slope.gradient, &damping, StopCheck::never()).unwrap();
+            let step = |slope: &Slope<Curvature>| {
+                slope.curvature.step(&slope.gradient, &damping, StopCheck::never()).unwrap()
+            };
             assert_near(&step(&by_matrix), &step(&by_rows), 1e-6);
         }
     }
@@ -304,7 +334,7 @@ mod tests {
                 let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
                 let point = crate::fit::network::start::random(&objective, 1, 0);
                 let value = objective.value(&point);
-                let of_slope = objective.slope(&point, &value).unwrap().gradient;
+                let of_slope = Problem::slope(&objective, &point, &value).unwrap().gradient;
                 let size = of_slope.iter().fold(0.0, |size: f64, g| size.max(g.abs()));
                 assert!(size > 1e-4);
                 for (a, b) in of_slope.iter().zip(objective.gradient(&point, &value)) {

@@ -15,12 +15,14 @@ use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::law::linear::{Bounds, FoldSums, Folds, Penalty, Quadratic, Sums, logarithmic, lowest};
+use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
+use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
+use crate::validation::RowFolds;
 
 /// How random stops are fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -128,15 +130,13 @@ fn fit_readout(
     let used = || data.records().iter().filter(|record| record.scored() > 0);
     let drives: Vec<Drive> =
         used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
-    let inputs: Vec<(Vec<f64>, &[f64])> =
-        used().map(|record| (record.inputs()[0].clone(), record.output())).collect();
     let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
     let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
     let sums = fold_sums(
         &Columns { architecture: &architecture, parameters: &parameters, output: None },
         &drives,
         &targets,
-        &Folds::of(&inputs),
+        &RowFolds::of(data),
         stop,
     )?;
 
@@ -172,7 +172,7 @@ fn fold_sums(
     columns: &Columns,
     drives: &[Drive],
     targets: &[Vec<f64>],
-    folds: &Folds,
+    folds: &RowFolds,
     stop: StopCheck<'_>,
 ) -> Result<FoldSums> {
     let of_fold = |fold: usize| {

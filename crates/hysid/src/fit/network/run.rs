@@ -6,17 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::fit::network::encoding::Encoding;
-use crate::fit::network::genetic::{self, Genetic};
-use crate::fit::network::levenberg_marquardt::LevenbergMarquardt;
 use crate::fit::network::objective::{Objective, Value};
-use crate::fit::network::soundness::{Frame, MOST_COUNTED, are_finite, require};
-use crate::fit::network::space_dilation::{DilationOptions, SpaceDilation, Subdifferentiable};
-use crate::fit::network::stall::Stall;
+use crate::fit::network::soundness::{Frame, are_finite, require};
 use crate::fit::network::start;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::network::{Architecture, Layout, Network};
+use crate::optimise::MOST_COUNTED;
+use crate::optimise::genetic::{self, Genetic};
+use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem};
+use crate::optimise::random::mix;
+use crate::optimise::space_dilatation::{DilatationOptions, SpaceDilatation, Subdifferentiable};
+use crate::optimise::stall::Stall;
 use crate::options::network::{FitOptions, Method};
-use crate::random::mix;
 use crate::termination::Termination;
 
 /// Points of a history that are all kept; of more, those at which the error fell by this share.
@@ -56,9 +57,9 @@ pub(crate) struct Point {
 /// The state of the present method.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Search {
-    LevenbergMarquardt(LevenbergMarquardt),
+    LevenbergMarquardt(LevenbergMarquardt<Value>),
     Genetic { search: Genetic, encoding: Encoding, stall: Stall },
-    Subgradient { search: SpaceDilation, stall: Stall },
+    Subgradient { search: SpaceDilatation, stall: Stall },
 }
 
 /// Where a run begins.
@@ -117,7 +118,8 @@ impl TrainingRun {
         require(!left.is_empty() && all.ends_with(&left), "methods of a run")?;
         let search = match &self.search {
             Search::LevenbergMarquardt(search) => {
-                left[0] == Method::LevenbergMarquardt && search.is_sound(frame)
+                left[0] == Method::LevenbergMarquardt
+                    && search.is_sound(&Objective::RULES, |values| frame.are_parameters(values))
             }
             Search::Genetic { search, encoding, stall } => {
                 left[0] == Method::Genetic
@@ -127,7 +129,7 @@ impl TrainingRun {
             }
             Search::Subgradient { search, stall } => {
                 left[0] == Method::Subgradient
-                    && search.is_sound(frame, &dilation_options())
+                    && search.is_sound(frame.layout.len(), &dilatation_options())
                     && stall.is_sound()
             }
         };
@@ -408,13 +410,13 @@ fn begin(
     };
     let scales = scales(objective.layout(), &parameters);
     let mut function = NetworkFunction { objective, lowest: &mut best };
-    let search = SpaceDilation::new(parameters, scales, dilation_options(), &mut function)?;
+    let search = SpaceDilatation::new(parameters, scales, dilatation_options(), &mut function)?;
     let stall = Stall::new(best.objective, options.stall);
     Ok((Search::Subgradient { search, stall }, best))
 }
 
-fn dilation_options() -> DilationOptions {
-    DilationOptions { first_step: 0.1, coefficient: 3.0, ..DilationOptions::default() }
+fn dilatation_options() -> DilatationOptions {
+    DilatationOptions { first_step: 0.1, coefficient: 3.0, ..DilatationOptions::default() }
 }
 
 /// Typical lengths of the parameters: a weight's own magnitude, but no less than a tenth.

@@ -1,4 +1,5 @@
-//! The observer of a fit, asked from any of its threads: between rounds, and in their midst whether to stop.
+//! The one way to share an observer among threads: told of progress between rounds or fits, and asked in their midst
+//! whether to stop.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,12 +17,12 @@ pub(crate) struct SharedObserver<'o, 'a> {
 /// An observer with the progress that it was told last.
 struct Told<'o, 'a> {
     observer: &'o mut Observer<'a>,
-    last: Progress<'static>,
+    last: Option<Progress<'static>>,
 }
 
 impl<'o, 'a> SharedObserver<'o, 'a> {
-    /// `first` is told if it is asked before there is any progress.
-    pub fn new(observer: &'o mut Observer<'a>, first: Progress<'static>) -> Self {
+    /// `first` is told if it is asked before there is any progress; without it, it is not asked then.
+    pub fn new(observer: &'o mut Observer<'a>, first: Option<Progress<'static>>) -> Self {
         Self { observer: Mutex::new(Told { observer, last: first }), is_over: AtomicBool::new(false) }
     }
 
@@ -32,7 +33,7 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
         if self.is_over() {
             return ControlFlow::Break(());
         }
-        told.last = progress.without_state();
+        told.last = Some(progress.without_state());
         let flow = (told.observer)(progress);
         if flow.is_break() {
             self.is_over.store(true, Ordering::Relaxed);
@@ -54,7 +55,7 @@ impl<'o, 'a> SharedObserver<'o, 'a> {
         // Another thread is asking, and will be answered.
         let Ok(mut told) = self.observer.try_lock() else { return self.is_over() };
         let Told { observer, last } = &mut *told;
-        if observer(last).is_break() {
+        if last.as_ref().is_some_and(|last| observer(last).is_break()) {
             self.is_over.store(true, Ordering::Relaxed);
         }
         self.is_over()

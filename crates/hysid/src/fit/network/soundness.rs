@@ -5,9 +5,6 @@ use crate::error::{Error, Result};
 use crate::network::{Architecture, Layout};
 use crate::options::network::FitOptions;
 
-/// Most epochs or evaluations that a state may count.
-pub(super) const MOST_COUNTED: usize = 1 << 50;
-
 /// What a state must fit to.
 pub(super) struct Frame<'a> {
     pub options: &'a FitOptions,
@@ -23,11 +20,6 @@ impl<'a> Frame<'a> {
     /// Parameters within their bounds.
     pub fn are_parameters(&self, values: &[f64]) -> bool {
         self.layout.check(values).is_ok()
-    }
-
-    /// One finite number for each parameter.
-    pub fn is_vector(&self, values: &[f64]) -> bool {
-        values.len() == self.layout.len() && are_finite(values)
     }
 }
 

@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::fit::network::objective::Objective;
 use crate::network::{Architecture, Layout};
-use crate::random::normal;
+use crate::optimise::random::{normal, seed_of};
 
 /// Thresholds start between this share of the largest input and the whole of it.
 const SMALLEST_THRESHOLD: f64 = 0.01;
@@ -25,10 +25,9 @@ pub(crate) struct Capacities {
 /// Capacities that a search starts from.
 const CAPACITIES: Capacities = Capacities { typical: 1000.0, spread: 1.0 };
 
-/// Parameters of start number `start`. Each start has its own generator, so that it does not matter
-/// which thread draws first.
+/// Parameters of start number `start`.
 pub(crate) fn random(objective: &Objective, seed: u64, start: usize) -> Vec<f64> {
-    let seed = seed ^ (start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let seed = seed_of(seed, start as u64);
     draw(objective.architecture(), CAPACITIES, objective.time_scales(), seed)
 }
 

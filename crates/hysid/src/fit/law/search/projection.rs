@@ -1,6 +1,7 @@
 //! Weights of features by least squares, some of them not negative: theory.md (8.1).
 
 use crate::linear_algebra::{Symmetric, dot};
+use crate::optimise::non_negative::Quadratic;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Squared residual of what was not computed to its end.
@@ -54,7 +55,9 @@ impl<'a> Columns<'a> {
             product + if i == j { RIDGE } else { 0.0 }
         });
         let right: Vec<f64> = (0..n).map(|i| scale[i] * dot(&self.columns[i], target)).collect();
-        let mut weights = non_negative_least_squares(&gram, &right, non_negative);
+        let normal = Quadratic { matrix: gram, right };
+        let found = normal.non_negative_minimum(non_negative, &[], StopCheck::never());
+        let mut weights = found.unwrap_or_else(|| vec![0.0; n]);
         for (weight, scale) in weights.iter_mut().zip(&scale) {
             *weight *= scale;
         }
@@ -87,60 +90,6 @@ impl Projection {
     pub fn unfinished() -> Self {
         Self { weights: Vec::new(), residual: Vec::new(), square_residual: UNFINISHED }
     }
-}
-
-/// Minimises `wᵀG w - 2 bᵀw` with `w_i ≥ 0` where asked for, by the active-set method of Lawson and
-/// Hanson on the normal equations; weights without a sign are in the set from the beginning.
-fn non_negative_least_squares(gram: &Symmetric, right: &[f64], non_negative: &[bool]) -> Vec<f64> {
-    let n = right.len();
-    let mut free: Vec<bool> = non_negative.iter().map(|sign| !sign).collect();
-    let mut weights = solve(gram, right, &free);
-    let tolerance = 1e-12 * right.iter().fold(0.0, |largest: f64, b| largest.max(b.abs()));
-    // Each round frees one weight; more rounds than this are circles of rounding.
-    for _ in 0..3 * n {
-        let slope = |i: usize| right[i] - (0..n).map(|j| gram.at(i, j) * weights[j]).sum::<f64>();
-        let steepest = (0..n)
-            .filter(|&i| !free[i])
-            .map(|i| (i, slope(i)))
-            .filter(|(_, slope)| *slope > tolerance)
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((entering, _)) = steepest else { break };
-        free[entering] = true;
-        loop {
-            let wanted = solve(gram, right, &free);
-            // As far as possible towards what is wanted before a sign changes.
-            let blocking = (0..n)
-                .filter(|&i| free[i] && non_negative[i] && wanted[i] <= 0.0)
-                .map(|i| (i, weights[i] / (weights[i] - wanted[i])))
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((leaving, share)) = blocking else {
-                weights = wanted;
-                break;
-            };
-            let share = if share.is_finite() { share } else { 0.0 };
-            for (weight, wanted) in weights.iter_mut().zip(&wanted) {
-                *weight += share * (wanted - *weight);
-            }
-            free[leaving] = false;
-            weights[leaving] = 0.0;
-        }
-    }
-    weights
-}
-
-/// The weights of the free features, the others being 0.
-fn solve(gram: &Symmetric, right: &[f64], free: &[bool]) -> Vec<f64> {
-    let chosen: Vec<usize> = (0..right.len()).filter(|&i| free[i]).collect();
-    let mut weights = vec![0.0; right.len()];
-    let part = Symmetric::from_fn(chosen.len(), |a, b| gram.at(chosen[a], chosen[b]));
-    let mut solution: Vec<f64> = chosen.iter().map(|&i| right[i]).collect();
-    if let Some(factor) = part.cholesky(StopCheck::never()) {
-        factor.solve(&mut solution);
-        for (&i, weight) in chosen.iter().zip(solution) {
-            weights[i] = weight;
-        }
-    }
-    weights
 }
 
 #[cfg(test)]

@@ -10,15 +10,15 @@
 //! narrow valley becomes round. The matrix `B` holds the square of the number of variables; a step
 //! costs about six times that, beside the function.
 //!
-//! [`minimise`] serves anyone; training goes step by step with [`SpaceDilation`], whose whole state can
+//! [`minimise`] serves anyone; training goes step by step with [`SpaceDilatation`], whose whole state can
 //! be stored.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::fit::network::soundness::{Frame, MOST_COUNTED, are_finite};
-use crate::fit::network::stall::Stall;
 use crate::linear_algebra::dot;
+use crate::optimise::MOST_COUNTED;
+use crate::optimise::stall::Stall;
 use crate::termination::Termination;
 
 /// A function and one of its sub-gradients: writes the sub-gradient, returns the value.
@@ -36,7 +36,7 @@ impl<F: FnMut(&[f64], &mut [f64]) -> f64> Subdifferentiable for F {
 /// Along what the space is dilated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Dilation {
+pub enum Dilatation {
     /// Along the difference of two successive sub-gradients: the r-algorithm (Shor and Zhurbenko 1971).
     Difference,
     /// Along the sub-gradient itself (Shor 1970). Its step needs a lower bound of the function.
@@ -45,9 +45,10 @@ pub enum Dilation {
 
 /// Settings of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct DilationOptions {
+pub struct DilatationOptions {
     /// Along what the space is dilated.
-    pub dilation: Dilation,
+    #[serde(rename = "dilation")]
+    pub dilatation: Dilatation,
     /// α, by which the space is dilated; above 1, usually 2 to 4.
     pub coefficient: f64,
     /// h0, the first step: about the distance to the minimum.
@@ -58,14 +59,14 @@ pub struct DilationOptions {
     pub shrinkage: f64,
     /// q2, by which the step is multiplied at every third inner step.
     pub growth: f64,
-    /// A value that the function does not fall below, for [`Dilation::Subgradient`].
+    /// A value that the function does not fall below, for [`Dilatation::Subgradient`].
     pub lower_bound: f64,
 }
 
-impl Default for DilationOptions {
+impl Default for DilatationOptions {
     fn default() -> Self {
         Self {
-            dilation: Dilation::Difference,
+            dilatation: Dilatation::Difference,
             coefficient: 2.5,
             first_step: 1.0,
             shrinkage: 1.0,
@@ -75,7 +76,7 @@ impl Default for DilationOptions {
     }
 }
 
-impl DilationOptions {
+impl DilatationOptions {
     /// # Errors
     /// A setting outside its meaning.
     pub fn check(&self) -> Result<()> {
@@ -102,8 +103,8 @@ const NOISE: f64 = 1e-13;
 
 /// The state of a minimisation; it can be stored and taken up again, to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SpaceDilation {
-    options: DilationOptions,
+pub struct SpaceDilatation {
+    options: DilatationOptions,
     /// Length of each variable's unit; `B` begins as the diagonal matrix of these.
     scales: Vec<f64>,
     x: Vec<f64>,
@@ -130,7 +131,7 @@ pub struct Minimum {
     pub evaluations: usize,
 }
 
-impl SpaceDilation {
+impl SpaceDilatation {
     /// Begins at `x`. `scales` are typical lengths, one for each variable: steps are measured in
     /// them.
     ///
@@ -140,7 +141,7 @@ impl SpaceDilation {
     pub fn new(
         x: Vec<f64>,
         scales: Vec<f64>,
-        options: DilationOptions,
+        options: DilatationOptions,
         f: &mut impl Subdifferentiable,
     ) -> Result<Self> {
         options.check()?;
@@ -172,13 +173,14 @@ impl SpaceDilation {
         })
     }
 
-    /// True if a minimisation with these settings can go on from here.
-    pub(super) fn is_sound(&self, frame: &Frame, options: &DilationOptions) -> bool {
-        let n = self.x.len();
+    /// True if a minimisation of a function of so many variables with these settings can go on from here.
+    pub(crate) fn is_sound(&self, variables: usize, options: &DilatationOptions) -> bool {
+        let n = variables;
+        let are_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         let vectors = [&self.x, &self.scales, &self.gradient, &self.best.x];
         let numbers = [self.value, self.step, self.last_move, self.best.value];
         self.options == *options
-            && vectors.into_iter().all(|vector| frame.is_vector(vector))
+            && vectors.into_iter().all(|vector| vector.len() == n && are_finite(vector))
             && self.scales.iter().all(|scale| *scale > 0.0)
             && self.transformation.len() == n * n
             && are_finite(&self.transformation)
@@ -209,7 +211,7 @@ impl SpaceDilation {
         }
         let along: Vec<f64> = transformed.iter().map(|u| u / length).collect();
         let direction = self.transform(&along);
-        if self.options.dilation == Dilation::Subgradient {
+        if self.options.dilatation == Dilatation::Subgradient {
             let above = (self.value - self.options.lower_bound).max(0.0);
             let alpha = self.options.coefficient;
             self.step = (alpha + 1.0) / alpha * above / length;
@@ -219,9 +221,9 @@ impl SpaceDilation {
             self.gradient = before;
             return Some(Termination::NoFurtherImprovement);
         }
-        let mut xi = match self.options.dilation {
-            Dilation::Subgradient => along,
-            Dilation::Difference => {
+        let mut xi = match self.options.dilatation {
+            Dilatation::Subgradient => along,
+            Dilatation::Difference => {
                 let difference: Vec<f64> =
                     self.gradient.iter().zip(&before).map(|(after, before)| after - before).collect();
                 let xi = self.transform_back(&difference);
@@ -268,7 +270,7 @@ impl SpaceDilation {
                 self.best.x.copy_from_slice(&self.x);
             }
             self.last_move = self.step * unit;
-            if self.options.dilation == Dilation::Subgradient {
+            if self.options.dilatation == Dilatation::Subgradient {
                 return true;
             }
             // Counted before it is compared: the step grows at the third step, not at the first.
@@ -351,7 +353,7 @@ impl Default for Limits {
 /// Minimises a function that need not be smooth, from `x`.
 ///
 /// ```
-/// use hysid::fit::network::space_dilation::{DilationOptions, Limits, minimise};
+/// use hysid::optimise::space_dilatation::{DilatationOptions, Limits, minimise};
 ///
 /// // |x - 3| + 100 |y + 1|: a kink along both axes.
 /// let mut f = |x: &[f64], g: &mut [f64]| {
@@ -360,21 +362,21 @@ impl Default for Limits {
 ///     (x[0] - 3.0).abs() + 100.0 * (x[1] + 1.0).abs()
 /// };
 /// let limits = Limits { iterations: 200, target: 1e-9, ..Limits::default() };
-/// let (minimum, _) = minimise(&mut f, vec![0.0, 0.0], DilationOptions::default(), limits)?;
+/// let (minimum, _) = minimise(&mut f, vec![0.0, 0.0], DilatationOptions::default(), limits)?;
 /// assert!((minimum.x[0] - 3.0).abs() < 1e-8 && (minimum.x[1] + 1.0).abs() < 1e-10);
 /// # Ok::<(), hysid::Error>(())
 /// ```
 ///
 /// # Errors
-/// As [`SpaceDilation::new`].
+/// As [`SpaceDilatation::new`].
 pub fn minimise(
     f: &mut impl Subdifferentiable,
     x: Vec<f64>,
-    options: DilationOptions,
+    options: DilatationOptions,
     limits: Limits,
 ) -> Result<(Minimum, Termination)> {
     let scales = vec![1.0; x.len()];
-    let mut search = SpaceDilation::new(x, scales, options, f)?;
+    let mut search = SpaceDilatation::new(x, scales, options, f)?;
     let mut stall = Stall::new(search.best.value, limits.stall);
     for _ in 0..limits.iterations {
         if search.best.value <= limits.target {

@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::fit::network::soundness::MOST_COUNTED;
+use crate::optimise::MOST_COUNTED;
+use crate::optimise::random::mix;
 use crate::options::network::POPULATIONS;
-use crate::random::mix;
 
 /// Individuals that enter a tournament.
 const TOURNAMENT: usize = 2;
@@ -87,7 +87,7 @@ impl Genetic {
     }
 
     /// True if it is a population of so many within these bounds.
-    pub(super) fn is_sound(&self, bounds: &[(f64, f64)], size: usize) -> bool {
+    pub(crate) fn is_sound(&self, bounds: &[(f64, f64)], size: usize) -> bool {
         let is_gene = |(gene, &(low, high)): (&f64, &(f64, f64))| (low..=high).contains(gene);
         let is_individual = |one: &Individual| {
             one.genes.len() == bounds.len() && one.genes.iter().zip(bounds).all(is_gene) && !one.cost.is_nan()

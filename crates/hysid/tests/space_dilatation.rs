@@ -1,15 +1,15 @@
 //! The minimiser of non-smooth functions, on functions whose minimum is known. The iterations allowed
 //! are about those of an independent implementation, with room for another starting point.
 
-use hysid::fit::network::space_dilation::{
-    Dilation, DilationOptions, Limits, Minimum, SpaceDilation, minimise,
+use hysid::optimise::space_dilatation::{
+    Dilatation, DilatationOptions, Limits, Minimum, SpaceDilatation, minimise,
 };
 use hysid::termination::Termination;
 
 fn solve(
     mut f: impl FnMut(&[f64], &mut [f64]) -> f64,
     x: Vec<f64>,
-    options: DilationOptions,
+    options: DilatationOptions,
     iterations: usize,
     target: f64,
 ) -> Minimum {
@@ -60,8 +60,8 @@ fn rosenbrock(x: &[f64], g: &mut [f64]) -> f64 {
     a * a + 100.0 * b * b
 }
 
-fn options(coefficient: f64, shrinkage: f64) -> DilationOptions {
-    DilationOptions { coefficient, shrinkage, ..DilationOptions::default() }
+fn options(coefficient: f64, shrinkage: f64) -> DilatationOptions {
+    DilatationOptions { coefficient, shrinkage, ..DilatationOptions::default() }
 }
 
 fn ramp(n: usize) -> Vec<f64> {
@@ -78,7 +78,7 @@ fn a_function_is_only_asked_at_points() {
         g[0] = -1.0;
         -1e-200 * x[0]
     };
-    let options = DilationOptions { first_step: 1e100, growth: 10.0, ..DilationOptions::default() };
+    let options = DilatationOptions { first_step: 1e100, growth: 10.0, ..DilatationOptions::default() };
     let limits = Limits { iterations: 20, ..Limits::default() };
     minimise(&mut falling, vec![0.0], options, limits).unwrap();
     assert!(largest > 1e300, "{largest}: the steps did not grow so far");
@@ -122,13 +122,13 @@ fn a_space_begun_anew_keeps_the_step_of_the_undilated_space() {
 #[test]
 fn dilation_along_the_sub_gradient_knows_the_lower_bound() {
     let along =
-        |coefficient| DilationOptions { dilation: Dilation::Subgradient, ..options(coefficient, 1.0) };
+        |coefficient| DilatationOptions { dilatation: Dilatation::Subgradient, ..options(coefficient, 1.0) };
     let found = solve(absolute_values(1e3), vec![1.0; 100], along(2.0), 5000, 1e-6);
     assert!(found.value <= 1e-6, "{}", found.value);
     let found = solve(quadratic(1e6), vec![1.0; 100], along(2.0), 1500, 1e-8);
     assert!(found.value <= 1e-8, "{}", found.value);
     // A bound far too low makes steps that overshoot: the best point is kept all the same.
-    let wrong = DilationOptions { lower_bound: -1e3, ..along(2.0) };
+    let wrong = DilatationOptions { lower_bound: -1e3, ..along(2.0) };
     let found = solve(rosenbrock, vec![-1.2, 1.0], wrong, 200, 1e-8);
     assert!(found.value <= 24.2, "worse than the start: {}", found.value);
 }
@@ -142,10 +142,10 @@ fn units_of_the_variables_do_not_matter_to_scaled_steps() {
         g[0] *= 1e-6;
         value
     };
-    let options = DilationOptions::default();
-    let mut first = SpaceDilation::new(vec![-1.2, 1.0], vec![1.0, 1.0], options, &mut metres).unwrap();
+    let options = DilatationOptions::default();
+    let mut first = SpaceDilatation::new(vec![-1.2, 1.0], vec![1.0, 1.0], options, &mut metres).unwrap();
     let mut second =
-        SpaceDilation::new(vec![-1.2e6, 1.0], vec![1e6, 1.0], options, &mut micrometres).unwrap();
+        SpaceDilatation::new(vec![-1.2e6, 1.0], vec![1e6, 1.0], options, &mut micrometres).unwrap();
     for _ in 0..25 {
         first.advance(&mut metres);
         second.advance(&mut micrometres);
@@ -158,12 +158,13 @@ fn units_of_the_variables_do_not_matter_to_scaled_steps() {
 #[test]
 fn a_search_taken_up_again_goes_on_to_the_last_bit() {
     let mut f = quadratic(1e3);
-    let mut whole = SpaceDilation::new(ramp(7), vec![1.0; 7], DilationOptions::default(), &mut f).unwrap();
+    let mut whole =
+        SpaceDilatation::new(ramp(7), vec![1.0; 7], DilatationOptions::default(), &mut f).unwrap();
     for _ in 0..20 {
         whole.advance(&mut f);
     }
     let stored = serde_json::to_string(&whole).unwrap();
-    let mut again: SpaceDilation = serde_json::from_str(&stored).unwrap();
+    let mut again: SpaceDilatation = serde_json::from_str(&stored).unwrap();
     for _ in 0..20 {
         whole.advance(&mut f);
         again.advance(&mut f);
@@ -175,7 +176,7 @@ fn a_search_taken_up_again_goes_on_to_the_last_bit() {
 fn it_says_why_it_ends() {
     let limits = Limits { iterations: 50, ..Limits::default() };
     let end = |mut f: fn(&[f64], &mut [f64]) -> f64, limits: Limits| {
-        minimise(&mut f, vec![1.0, 2.0], DilationOptions::default(), limits).unwrap().1
+        minimise(&mut f, vec![1.0, 2.0], DilatationOptions::default(), limits).unwrap().1
     };
     let flat: fn(&[f64], &mut [f64]) -> f64 = |_, g| {
         g.fill(0.0);
@@ -194,13 +195,13 @@ fn it_says_why_it_ends() {
         g.copy_from_slice(&[1.0, 2.0 * x[1]]);
         if x[0] < 0.5 { f64::NAN } else { x[0] + x[1] * x[1] }
     };
-    let (minimum, _) = minimise(&mut { wall }, vec![1.0, 2.0], DilationOptions::default(), limits).unwrap();
+    let (minimum, _) = minimise(&mut { wall }, vec![1.0, 2.0], DilatationOptions::default(), limits).unwrap();
     assert!(minimum.x[0] >= 0.5 && minimum.value < 1.0, "{minimum:?}");
 }
 
 #[test]
 fn what_makes_no_sense_is_refused() {
-    let refused = |x: Vec<f64>, options: DilationOptions| {
+    let refused = |x: Vec<f64>, options: DilatationOptions| {
         let limits = Limits::default();
         minimise(&mut rosenbrock, x, options, limits).unwrap_err().to_string()
     };
@@ -210,5 +211,5 @@ fn what_makes_no_sense_is_refused() {
     assert!(refused(vec![1.0, 1.0], options(2.0, 1.5)).contains("shrinkage"));
     assert!(refused(vec![1e300, 1.0], options(2.0, 1.0)).contains("at the start"));
     let mut f = rosenbrock;
-    assert!(SpaceDilation::new(vec![1.0, 1.0], vec![1.0, 0.0], options(2.0, 1.0), &mut f).is_err());
+    assert!(SpaceDilatation::new(vec![1.0, 1.0], vec![1.0, 0.0], options(2.0, 1.0), &mut f).is_err());
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::network::soundness::MOST_COUNTED;
+use crate::optimise::MOST_COUNTED;
 
 /// Relative fall of the best value that counts as an improvement.
 const NOTICEABLE: f64 = 1e-4;

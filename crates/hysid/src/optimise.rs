@@ -1,0 +1,13 @@
+//! Optimisers, one of each kind, that know nothing of hysteresis: what identification and validation are built on.
+
+pub mod genetic;
+pub mod levenberg_marquardt;
+pub(crate) mod multi_start;
+pub(crate) mod non_negative;
+pub(crate) mod random;
+pub(crate) mod ridge;
+pub mod space_dilatation;
+pub(crate) mod stall;
+
+/// Most epochs or evaluations that a stored state may count.
+pub(crate) const MOST_COUNTED: usize = 1 << 50;
