@@ -3,7 +3,8 @@
 use hysid::specimens::Specimen;
 use hysid::{Result, compare};
 
-fn report() -> Result<String> {
+/// What the example prints.
+pub fn report() -> Result<String> {
     let rod = Specimen::named("terfenol-rod").expect("a specimen of the catalogue");
     let models = ["masing", "prandtl-ishlinskii", "modified-prandtl-ishlinskii"];
     let mut text = String::new();

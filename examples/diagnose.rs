@@ -3,7 +3,8 @@
 use hysid::specimens::Specimen;
 use hysid::{Result, diagnose};
 
-fn report() -> Result<String> {
+/// What the example prints.
+pub fn report() -> Result<String> {
     let joint = Specimen::named("reinforced-concrete-joint").expect("a specimen of the catalogue").train();
     let diagnosis = diagnose(&joint)?;
     let verdicts = diagnosis.properties.iter();

@@ -3,7 +3,8 @@
 use hysid::specimens::Specimen;
 use hysid::{Fit, Model, Result};
 
-fn report() -> Result<String> {
+/// What the example prints.
+pub fn report() -> Result<String> {
     // In place of measured columns: `Dataset::from_columns(Some(("t_s", &t)), &[("H", &x)], ("B", &y))`.
     let magnet = Specimen::named("ferromagnet").expect("a specimen of the catalogue");
     let (train, test) = (magnet.train(), magnet.test());

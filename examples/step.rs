@@ -3,7 +3,8 @@
 use hysid::operator::{Operator, Stop};
 use hysid::{Dataset, Fit, Result};
 
-fn report() -> Result<String> {
+/// What the example prints.
+pub fn report() -> Result<String> {
     let x: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k) * (0.1 * f64::from(k)).sin()).collect();
     let friction = Stop::new(1.0)?.run(&x);
     let y: Vec<f64> = x.iter().zip(friction).map(|(x, friction)| 0.2 * x + friction).collect();

@@ -4,7 +4,8 @@
 use hysid::specimens::Specimen;
 use hysid::{Fit, Result};
 
-fn report() -> Result<String> {
+/// What the example prints.
+pub fn report() -> Result<String> {
     let rod = Specimen::named("terfenol-rod").expect("a specimen of the catalogue").train();
     let validation = Fit::new().model("prandtl-ishlinskii").option("operators", 12).validate(&rod)?;
 

@@ -127,8 +127,8 @@ fn row(data: &Data, request: &Request, time_limit: Option<f64>, workers: usize) 
     if interrupt::requested() {
         return of(Err("interrupted".into()));
     }
-    if let Some(hindrance) = request.model().hindrance(&data.train.set, request.rate()) {
-        return of(Err(hindrance));
+    if let Err(error) = request.model().check_data(&data.train.set, request.rate()) {
+        return of(Err(error.to_string()));
     }
     let limit = match request {
         Request::Auto(_) => time_limit.unwrap_or(f64::INFINITY),

@@ -73,9 +73,7 @@ pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -
         Request::Auto(options) => understanding::choice(options),
         Request::Classical(_) => String::new(),
     };
-    if let Some(hindrance) = request.model().hindrance(&data.set, request.rate()) {
-        return Err(Usage(format!("{} {hindrance}", request.model().name())).into());
-    }
+    request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
     let summary = Summary::of(&data.set);
     let understood = understanding::understanding(data, &summary, request, &model);
     let mut warnings = data_warnings(data, &summary);

@@ -61,6 +61,15 @@ pub enum Error {
     /// A sample that a model cannot take.
     #[error(transparent)]
     Sample(#[from] SampleError),
+    /// Options of `auto` that leave no model to try.
+    #[error("no candidate is left by these decisions: take one of them back")]
+    NoCandidate,
+    /// Data that cannot be divided into two folds.
+    #[error("the data are too few to hold any out: at least two records, or one of {rows} rows")]
+    TooFewForFolds {
+        /// Rows that one record needs.
+        rows: usize,
+    },
     /// A data set without records.
     #[error("a data set needs at least one record")]
     NoRecords,

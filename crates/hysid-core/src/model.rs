@@ -324,6 +324,14 @@ impl Model {
         }
     }
 
+    /// The law of a classical model; `None` for another model.
+    pub fn law(&self) -> Option<&Classical> {
+        match &self.body {
+            Body::Law(law) => Some(law),
+            Body::Network { .. } | Body::Ensemble(_) => None,
+        }
+    }
+
     /// The ensemble; `None` for a single model.
     pub fn ensemble(&self) -> Option<&Ensemble> {
         match &self.body {
@@ -444,9 +452,7 @@ impl Model {
 
     fn checked_band(&self, probability: f64) -> Result<&Band> {
         Band::check(probability)?;
-        self.band.as_ref().ok_or_else(|| {
-            Error::NoBand(self.name().name())
-        })
+        self.band.as_ref().ok_or_else(|| Error::NoBand(self.name().name()))
     }
 
     /// The calibrated band, if there is one.

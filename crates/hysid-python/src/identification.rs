@@ -40,9 +40,7 @@ impl Request {
         let is_decided = matches!(rate, RateChoice::Method(_));
         let rate = rate.method(chosen.model(), data.set.has_time());
         let request = chosen.request(rate, is_decided);
-        if let Some(hindrance) = chosen.model().hindrance(&data.set, rate) {
-            return Err(refused(format!("{} {hindrance}", chosen.model().name())));
-        }
+        chosen.model().check_data(&data.set, rate).map_err(refused)?;
         Ok(Self { chosen, request })
     }
 

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use crate::data::metrics::Errors;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::Result;
 use crate::fit::network::Progress;
 use crate::fit::{cross_validate, identify};
 use crate::model::Model;
@@ -123,9 +123,7 @@ impl<'a> Fit<'a> {
         let chosen = self.chosen()?;
         let model = chosen.model();
         let rate = self.rate.method(model, data.has_time());
-        if let Some(why_not) = model.hindrance(data, rate) {
-            return Err(Error::from(OptionError::value("model", model.name(), why_not)));
-        }
+        model.check_data(data, rate)?;
         Ok(chosen.request(rate, matches!(self.rate, RateChoice::Method(_))))
     }
 
@@ -149,20 +147,29 @@ pub struct Compared {
     pub outcome: Result<(Model, Errors)>,
 }
 
-/// Fits every model, each in all its variants, to the same data and evaluates it on data that none has seen; the lowest
-/// error comes first. `auto` is not among them: [`fit`](crate::fit()) is.
-pub fn compare(train: &Dataset, test: &Dataset, seed: u64) -> Vec<Compared> {
+/// Fits models, each in all its variants, to the same data and evaluates them on data that none has seen; the lowest
+/// error comes first. Without names, all models but `auto`, which is [`fit`](crate::fit()); models that cannot be
+/// fitted to data like these are left out then.
+///
+/// # Errors
+/// A name that is no model's.
+pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> Result<Vec<Compared>> {
+    let models: Vec<ModelName> = match models {
+        [] => ModelName::all().collect(),
+        names => names.iter().map(|name| name.parse()).collect::<Result<_>>()?,
+    };
     let rate = |model| RateChoice::Auto.method(model, train.has_time());
-    let requests = ModelName::all().flat_map(|model| Request::of(model, rate(model), seed).variants());
+    let requests = models.into_iter().flat_map(|model| Request::of(model, rate(model), seed).variants());
     let mut all: Vec<Compared> = requests.filter_map(|request| compared(train, test, &request)).collect();
-    let error = |compared: &Compared| compared.outcome.as_ref().map_or(f64::INFINITY, |(_, errors)| errors.rmse);
+    let error =
+        |compared: &Compared| compared.outcome.as_ref().map_or(f64::INFINITY, |(_, errors)| errors.rmse);
     all.sort_by(|a, b| error(a).total_cmp(&error(b)));
-    all
+    Ok(all)
 }
 
 /// A model on these data; `None` if it cannot be fitted to data like these.
 fn compared(train: &Dataset, test: &Dataset, request: &Request) -> Option<Compared> {
-    if request.model().hindrance(train, request.rate()).is_some() {
+    if request.model().check_data(train, request.rate()).is_err() {
         return None;
     }
     let fitted = identify(train, request, &mut |_| ControlFlow::Continue(()));

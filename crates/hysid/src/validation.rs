@@ -201,10 +201,7 @@ impl<'d> CrossValidator<'d> {
     pub fn new(data: &'d Dataset, most_folds: usize) -> Result<Self> {
         let cuts = cuts(data, most_folds);
         if cuts.len() < 2 {
-            return Err(Error::Option(format!(
-                "the data are too few to hold any out: at least two records, or one of {} rows",
-                4 * FEWEST_ROWS
-            )));
+            return Err(Error::TooFewForFolds { rows: 4 * FEWEST_ROWS });
         }
         let output = data.names().output.clone();
         Ok(Self { data, cuts, output, judged: Vec::new(), pooled: PooledErrors::default() })

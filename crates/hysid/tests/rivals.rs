@@ -181,23 +181,22 @@ fn units_are_products_of_powers() {
 #[test]
 fn what_a_model_cannot_be_fitted_to_is_said() {
     let rival = ModelName::Rival(Rival::RateDependentPrandtlIshlinskii);
-    assert!(rival.hindrance(&data(), None).unwrap().contains("rate"));
-    assert_eq!(rival.hindrance(&data(), Some(RateMethod::Central)), None);
+    assert_eq!(rival.check_data(&data(), None), Err(Error::RateNeeded(rival.name())));
+    assert_eq!(rival.check_data(&data(), Some(RateMethod::Central)), Ok(()));
     let two = Record::new("r", vec![vec![0.0, 1.0], vec![1.0, 0.0]], vec![0.0, 1.0]).unwrap();
     let two = Dataset::new(ColumnNames::plain(2), vec![two]).unwrap();
     for name in ModelName::all() {
-        let hindered = name.hindrance(&two, Some(RateMethod::Central)).is_some();
-        assert_eq!(hindered, !name.takes_further_inputs(), "{name:?}");
+        let refused = name.check_data(&two, Some(RateMethod::Central)).is_err();
+        assert_eq!(refused, !name.takes_further_inputs(), "{name:?}");
     }
-    let refused = |request: &Request| match identify(&data(), request, &mut |_| ControlFlow::Continue(())) {
-        Err(Error::Option(text)) => text,
-        other => panic!("{request:?}: {other:?}"),
-    };
-    assert!(refused(&Request::of(rival, None, 1)).contains("rate"));
+    let refused =
+        |request: &Request| identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(refused(&Request::of(rival, None, 1)), Error::RateNeeded(rival.name()));
     for (model, operators) in
         [(Rival::Preisach, 0), (Rival::PrandtlIshlinskii, 0), (Rival::GeneralizedPrandtlIshlinskii, 0)]
     {
         let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
-        assert!(!refused(&Request::Classical(options)).is_empty());
+        let error = refused(&Request::Classical(options));
+        assert!(matches!(&error, Error::Option(error) if error.option == "operators"), "{error}");
     }
 }

@@ -104,8 +104,8 @@ fn every_model_with_every_rate_is_the_same_in_blocks() {
         for model in ModelName::all() {
             let request = small(model, Some(method));
             if model
-                .hindrance(&Dataset::new(ColumnNames::plain(1), train.clone()).unwrap(), Some(method))
-                .is_some()
+                .check_data(&Dataset::new(ColumnNames::plain(1), train.clone()).unwrap(), Some(method))
+                .is_err()
             {
                 continue;
             }

@@ -48,6 +48,11 @@ pub fn samples(excitation: &Excitation<'_>, rate: Option<RateMethod>) -> Result<
     Ok(rows.map(|(row, (&x, rate))| Sample { x, rate, step: step(row) }).collect())
 }
 
+/// Samples of an input without rate and time.
+pub fn samples_of(x: &[f64]) -> Vec<Sample> {
+    x.iter().map(|&x| Sample { x, rate: 0.0, step: 0.0 }).collect()
+}
+
 /// Free run of a law from its virgin state.
 pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
     let mut outputs = vec![0.0; samples.len()];

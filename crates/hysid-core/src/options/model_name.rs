@@ -57,17 +57,20 @@ impl ModelName {
         }
     }
 
-    /// Why the model cannot be fitted to data like these, in words; `None` if it can.
-    pub fn hindrance(self, data: &Dataset, rate: Option<RateMethod>) -> Option<String> {
-        let inputs = data.names().inputs.len();
-        if inputs > 1 && !self.takes_further_inputs() {
-            return Some(format!("takes one input, not {inputs}"));
+    /// Refuses data that the model cannot be fitted to.
+    ///
+    /// # Errors
+    /// Several inputs for a model that takes one, or no rate for a law that is about it.
+    pub fn check_data(self, data: &Dataset, rate: Option<RateMethod>) -> Result<()> {
+        let found = data.names().inputs.len();
+        if found > 1 && !self.takes_further_inputs() {
+            return Err(Error::SeveralInputs { model: self.name(), found });
         }
         match self {
             Self::Rival(rival) if rival.needs_rate() && rate.is_none() => {
-                Some("needs the rate of the input: there is no time".into())
+                Err(Error::RateNeeded(rival.name()))
             }
-            _ => None,
+            _ => Ok(()),
         }
     }
 }

@@ -227,7 +227,12 @@ impl FitOptions {
         ])?;
         check(self.validation.map(|share| ("validation", json!(share))))?;
         if self.thin < FEWEST_ROWS {
-            return Err(OptionError::value("thin", self.thin, format!("at least {FEWEST_ROWS} rows are needed")).into());
+            return Err(OptionError::value(
+                "thin",
+                self.thin,
+                format!("at least {FEWEST_ROWS} rows are needed"),
+            )
+            .into());
         }
         self.shaping.check()?;
         self.penalties().check()

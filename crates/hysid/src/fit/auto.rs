@@ -24,6 +24,8 @@ mod trial;
 mod warm_up;
 mod work;
 
+use serde_json::json;
+
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
 use crate::data::record::Dataset;
@@ -35,7 +37,7 @@ use crate::model::selection::WarmUp;
 use crate::model::{Band, Body, Found, HeldOutRow, Model, Provenance};
 use crate::options::Request;
 use crate::options::auto::AutoOptions;
-use crate::options::auto::MOST_MEMBERS;
+use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds};
 use candidates::{Candidate, candidates, quick};
@@ -77,13 +79,10 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
 /// Data that nothing can be identified from, and decisions that leave no candidate.
 pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     data.check_identifiable(FEWEST_ROWS)?;
-    if options.members == 0 || options.members > MOST_MEMBERS {
-        return Err(Error::Option(format!("{} members: choose 1 to {MOST_MEMBERS}", options.members)));
-    }
+    check([("members", json!(options.members))])?;
     let candidates = wanted(data, options);
     let Some(first) = candidates.first() else {
-        let advice = "no candidate is left by these decisions: take one of them back";
-        return Err(Error::Option(advice.into()));
+        return Err(Error::NoCandidate);
     };
     let few = data.thinned(MOST_ROWS);
     let folds = folds(&few, MOST_FOLDS);

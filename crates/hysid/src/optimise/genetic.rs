@@ -15,7 +15,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::optimise::MOST_COUNTED;
 use crate::optimise::random::mix;
 use crate::options::network::POPULATIONS;
@@ -73,11 +73,11 @@ impl Genetic {
     ) -> Result<Self> {
         if !POPULATIONS.contains(&size) {
             let (fewest, most) = (POPULATIONS.start(), POPULATIONS.end());
-            return Err(Error::Option(format!("a population of {size}: choose {fewest} to {most}")));
+            return Err(OptionError::value("population", size, format!("choose {fewest} to {most}")).into());
         }
         let sound = |&(low, high): &(f64, f64)| low.is_finite() && high.is_finite() && low <= high;
         if problem.bounds.is_empty() || !problem.bounds.iter().all(sound) {
-            return Err(Error::Option("a genetic search needs finite bounds, the lower one first".into()));
+            return Err(Error::Parts("a genetic search needs finite bounds, the lower one first".into()));
         }
         let population = (0..size)
             .into_par_iter()

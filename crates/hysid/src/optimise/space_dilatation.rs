@@ -82,7 +82,7 @@ impl DilatationOptions {
     pub fn check(&self) -> Result<()> {
         let within = |name: &str, value: f64, low: f64, high: f64| match value >= low && value <= high {
             true => Ok(()),
-            false => Err(Error::Option(format!("{name} {value} is not between {low} and {high}"))),
+            false => Err(Error::Parts(format!("{name} {value} is not between {low} and {high}"))),
         };
         within("coefficient of dilatation", self.coefficient, 1.001, 1e3)?;
         within("first step", self.first_step, 1e-100, 1e100)?;
@@ -146,15 +146,15 @@ impl SpaceDilatation {
     ) -> Result<Self> {
         options.check()?;
         if x.is_empty() || x.len() != scales.len() || !x.iter().all(|x| x.is_finite()) {
-            return Err(Error::Option("a minimisation needs finite variables and a scale for each".into()));
+            return Err(Error::Parts("a minimisation needs finite variables and a scale for each".into()));
         }
         if !scales.iter().all(|scale| *scale > 0.0 && scale.is_finite()) {
-            return Err(Error::Option("the scales of the variables must be positive".into()));
+            return Err(Error::Parts("the scales of the variables must be positive".into()));
         }
         let mut gradient = vec![0.0; x.len()];
         let value = f.evaluate(&x, &mut gradient);
         if !is_usable(value, &gradient) {
-            return Err(Error::Option(
+            return Err(Error::Parts(
                 "the function has no finite value and sub-gradient at the start".into(),
             ));
         }

@@ -350,7 +350,7 @@ fn is_allowed(candidate: &Candidate, data: &Dataset, decided: &AutoOptions) -> b
     let relaxes = matches!(request, Request::Network(options) if options.sizes.relaxation > 0);
     let is_random_stops = request.model() == ModelName::Rival(Rival::RandomStops);
     let takes_history = request.model().takes_further_inputs();
-    request.model().hindrance(data, request.rate()).is_none()
+    request.model().check_data(data, request.rate()).is_ok()
         && (!shaping.history || takes_history)
         && decided.deterioration.is_none_or(|wanted| wanted == deteriorates)
         && (!decided.always_rate || request.rate().is_some())

@@ -4,13 +4,15 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::Sample;
 use crate::law::series::Series;
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
@@ -33,7 +35,22 @@ pub struct BoucWenOptions {
 
 impl Default for BoucWenOptions {
     fn default() -> Self {
-        Self { degradation: false, rate: None, starts: 8, epochs: 40, seed: 0 }
+        Self { degradation: false, rate: None, starts: 8, epochs: 40, seed: SEED }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for BoucWenOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            degradation: options.degradation,
+            rate: options.rate,
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
     }
 }
 

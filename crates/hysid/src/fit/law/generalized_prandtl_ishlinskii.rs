@@ -7,12 +7,14 @@
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::series::{Series, slope, work};
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::law::play_weights::MOST_PLAYS;
@@ -43,7 +45,22 @@ pub struct GeneralizedPrandtlIshlinskiiOptions {
 
 impl Default for GeneralizedPrandtlIshlinskiiOptions {
     fn default() -> Self {
-        Self { operators: 10, free_weights: true, starts: 32, epochs: 60, seed: 0 }
+        Self { operators: 10, free_weights: true, starts: 32, epochs: 60, seed: SEED }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for GeneralizedPrandtlIshlinskiiOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            operators: options.operators.unwrap_or(defaults.operators),
+            free_weights: options.free_weights.unwrap_or(defaults.free_weights),
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
     }
 }
 
@@ -58,7 +75,12 @@ impl Identify for GeneralizedPrandtlIshlinskii {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         if options.operators == 0 || options.operators > MOST_PLAYS {
-            return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
+            return Err(OptionError::value(
+                "operators",
+                options.operators,
+                format!("choose 1 to {MOST_PLAYS}"),
+            )
+            .into());
         }
         let series = Series::all(data, None)?;
         let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };

@@ -1,6 +1,6 @@
 //! Thresholds that a fit tries.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::lowest;
 use crate::law::thresholds::check_thresholds;
 
@@ -11,7 +11,7 @@ use crate::law::thresholds::check_thresholds;
 /// No operator, or more than 1000.
 fn spread(count: usize, largest: f64, exponent: f64) -> Result<Vec<f64>> {
     if !(1..=MOST_OPERATORS).contains(&count) {
-        return Err(Error::Option(format!("{count} operators: choose 1 to {MOST_OPERATORS}")));
+        return Err(OptionError::value("operators", count, format!("choose 1 to {MOST_OPERATORS}")).into());
     }
     Ok((1..=count).map(|i| largest * (i as f64 / (count + 1) as f64).powf(exponent)).collect())
 }

@@ -3,12 +3,14 @@
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::series::Series;
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
@@ -29,7 +31,25 @@ pub struct JilesAthertonOptions {
 
 impl Default for JilesAthertonOptions {
     fn default() -> Self {
-        Self { form: JilesAthertonForm::Original, starts: 8, epochs: 40, seed: 0 }
+        Self { form: JilesAthertonForm::Original, starts: 8, epochs: 40, seed: SEED }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for JilesAthertonOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            form: if options.differential_form {
+                JilesAthertonForm::Differential
+            } else {
+                JilesAthertonForm::Original
+            },
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
     }
 }
 

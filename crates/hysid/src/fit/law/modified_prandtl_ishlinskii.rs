@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
@@ -27,7 +27,7 @@ use crate::network::scaling::Scaling;
 use crate::operator::play;
 use crate::optimise::levenberg_marquardt::{self, LevenbergMarquardt, Rules, Slope};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
-use crate::options::classical::Sign;
+use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 
@@ -49,6 +49,20 @@ pub struct ModifiedPrandtlIshlinskiiOptions {
 impl Default for ModifiedPrandtlIshlinskiiOptions {
     fn default() -> Self {
         Self { operators: 20, thresholds: None, sign: None, dead_zones: 6 }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for ModifiedPrandtlIshlinskiiOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            operators: options.operators.unwrap_or(defaults.operators),
+            thresholds: options.thresholds.clone(),
+            sign: options.sign,
+            dead_zones: options.dead_zones.unwrap_or(defaults.dead_zones),
+        })
     }
 }
 
@@ -78,7 +92,9 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let scaling = &rows.scaling;
         if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
             let found = options.dead_zones;
-            return Err(Error::Option(format!("{found} dead zones a side: choose 1 to {MOST_DEAD_ZONES}")));
+            return Err(
+                OptionError::value("dead_zones", found, format!("choose 1 to {MOST_DEAD_ZONES}")).into()
+            );
         }
         options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
         let given: Option<Vec<f64>> =

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
 use crate::law::Law;
 use crate::law::series::Series;
@@ -26,11 +26,13 @@ use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
 use crate::fit::law::Identify;
-use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, NeuroMadelung, argument};
+use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
@@ -38,9 +40,6 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
-/// Most tanh neurons.
-const MOST_NEURONS: usize = 100;
-
 /// How a neuro-Madelung model is trained.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NeuroMadelungOptions {
@@ -58,7 +57,22 @@ pub struct NeuroMadelungOptions {
 
 impl Default for NeuroMadelungOptions {
     fn default() -> Self {
-        Self { hidden: 8, rate: None, starts: 16, epochs: 60, seed: 0 }
+        Self { hidden: 8, rate: None, starts: 16, epochs: 60, seed: SEED }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for NeuroMadelungOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            hidden: options.hidden.unwrap_or(defaults.hidden),
+            rate: options.rate,
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
     }
 }
 
@@ -73,8 +87,9 @@ impl Identify for NeuroMadelung {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let NeuroMadelungOptions { hidden, starts, epochs, seed, .. } = *options;
-        if hidden == 0 || hidden > MOST_NEURONS {
-            return Err(Error::Option(format!("hidden must be from 1 to {MOST_NEURONS}")));
+        if hidden == 0 || hidden > MOST_HIDDEN {
+            let needed = format!("choose 1 to {MOST_HIDDEN}");
+            return Err(OptionError::value("hidden", hidden, needed).into());
         }
         Effort { starts, epochs, seed }.validated()?;
         let frame = frame(data, options)?;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
@@ -14,7 +14,7 @@ use crate::fit::law::linear::logarithmic;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::operator::play;
 use crate::optimise::non_negative::{Bounds, Penalty};
-use crate::options::classical::Sign;
+use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
 /// How a Prandtl-Ishlinskii model is fitted.
@@ -33,6 +33,19 @@ pub struct PrandtlIshlinskiiOptions {
 impl Default for PrandtlIshlinskiiOptions {
     fn default() -> Self {
         Self { operators: 30, thresholds: None, sign: None }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for PrandtlIshlinskiiOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            operators: options.operators.unwrap_or(defaults.operators),
+            thresholds: options.thresholds.clone(),
+            sign: options.sign,
+        })
     }
 }
 

@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::linear::{Choice, FoldSums, Gatherer, TrainingRows, logarithmic};
 use crate::law::preisach::plane::Plane;
@@ -18,7 +18,7 @@ use crate::law::series::Series;
 use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::{Bounds, Penalty};
-use crate::options::classical::Sign;
+use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
@@ -39,6 +39,15 @@ impl Default for PreisachOptions {
     }
 }
 
+impl TryFrom<&ClassicalOptions> for PreisachOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self { intervals: options.operators.unwrap_or(defaults.intervals), sign: options.sign })
+    }
+}
+
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.
 const INTERVALS_FOR_CHOICE: usize = 20;
 
@@ -55,7 +64,9 @@ impl LeastSquaresLaw for Preisach {
         let TrainingRows { series, folds, scaling } = &rows;
         let intervals = options.intervals;
         if !(1..=MOST_INTERVALS).contains(&intervals) {
-            return Err(Error::Option(format!("{intervals} intervals: choose 1 to {MOST_INTERVALS}")));
+            return Err(
+                OptionError::value("operators", intervals, format!("choose 1 to {MOST_INTERVALS}")).into()
+            );
         }
         let density = LineDensity::new(series, data.input_range(0));
         let penalties = logarithmic(1e-9, 1e2, 12);

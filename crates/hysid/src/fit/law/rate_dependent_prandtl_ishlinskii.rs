@@ -4,13 +4,15 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::{Error, OptionError, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, work};
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
@@ -56,8 +58,29 @@ impl Default for RateDependentPrandtlIshlinskiiOptions {
             rate: RateMethod::Central,
             starts: 16,
             epochs: 40,
-            seed: 0,
+            seed: SEED,
         }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for RateDependentPrandtlIshlinskiiOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            operators: options.operators.unwrap_or(defaults.operators),
+            form: if options.logarithmic_thresholds {
+                ThresholdForm::Logarithmic
+            } else {
+                ThresholdForm::Linear
+            },
+            free_weights: options.free_weights.unwrap_or(defaults.free_weights),
+            rate: options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?,
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
     }
 }
 
@@ -72,7 +95,12 @@ impl Identify for RateDependentPrandtlIshlinskii {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         if options.operators == 0 || options.operators > MOST_PLAYS {
-            return Err(Error::Option(format!("operators must be from 1 to {MOST_PLAYS}")));
+            return Err(OptionError::value(
+                "operators",
+                options.operators,
+                format!("choose 1 to {MOST_PLAYS}"),
+            )
+            .into());
         }
         let series = Series::all(data, Some(options.rate))?;
         let family = Plays::new(&series, options);

@@ -20,13 +20,13 @@ use std::sync::Mutex;
 
 use rand::RngExt;
 use rayon::prelude::*;
+use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::law::series::Series;
 use crate::optimise::multi_start::{MultiStart, Plan};
 use crate::optimise::random::generator;
-use crate::options::network::MOST_EPOCHS;
-use crate::options::network::MOST_STARTS;
+use crate::options::table::check;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use descent::Descent;
@@ -145,12 +145,7 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub fn validated(self) -> Result<Self> {
-        if self.starts == 0 || self.starts > MOST_STARTS {
-            return Err(Error::Option(format!("{} starts: choose 1 to {MOST_STARTS}", self.starts)));
-        }
-        if self.epochs > MOST_EPOCHS {
-            return Err(Error::Option(format!("{} epochs are too many: at most {MOST_EPOCHS}", self.epochs)));
-        }
+        check([("starts", json!(self.starts)), ("epochs", json!(self.epochs))])?;
         Ok(self)
     }
 }
