@@ -1,6 +1,24 @@
+use std::time::Instant;
+
 use hysid::data::metrics::ErrorSums;
+use hysid_document::{Page, markdown};
 
 use super::*;
+use crate::chapter::Content;
+
+struct Clock(Instant);
+
+impl Observer for Clock {
+    fn seconds(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+
+    fn is_stopped(&self) -> bool {
+        false
+    }
+
+    fn say(&self, _: &str) {}
+}
 
 /// Errors of so many percent of the output's standard deviation.
 fn errors(percent: f64) -> Errors {
@@ -58,15 +76,23 @@ fn time_that_ends_before_there_is_a_model_reaches_nothing() {
     for seconds in [1e-9, 1e-4, 1e-3] {
         let mut hybrid = repetition_of([1e-12; 4], None).trainings.remove(2);
         hybrid.seconds = seconds;
-        assert_eq!(seconds_to_match(&protocol, 3, &hybrid).unwrap(), None, "{seconds} s");
+        assert_eq!(
+            seconds_to_match(&protocol, 3, &hybrid, &Clock(Instant::now())).unwrap(),
+            None,
+            "{seconds} s"
+        );
     }
 }
 
 #[test]
 fn a_short_comparison_makes_a_chapter() {
     let protocol = Protocol { epochs: 10, ..Protocol::new(3, true) };
-    let chapter = compared(&protocol).unwrap().expect("nobody interrupts");
-    let file = |name: &str| &chapter.files.iter().find(|(other, _)| other == name).unwrap().1;
+    let chapter = compared(&protocol, &Clock(Instant::now())).unwrap();
+    let content = |name: &str| &chapter.files.iter().find(|(other, _)| other == name).unwrap().1;
+    let file = |name: &str| match content(name) {
+        Content::Text(text) => text.clone(),
+        Content::Drawing(chart) => chart.file("Hysid"),
+    };
     let table = file("training-seeds.csv");
     assert_eq!(table.lines().count(), 1 + 5 * TRAINERS.len());
     assert!(table.contains("\n3,genetic,") && table.contains("\n7,levenberg-marquardt,"), "{table}");
@@ -74,7 +100,7 @@ fn a_short_comparison_makes_a_chapter() {
     let history = file("training-history.csv");
     assert!(history.contains(",genetic,10,540,"), "{history}");
     assert!(file("training-seconds.svg").starts_with("<svg"));
-    let text = crate::reproduction::chapter::markdown("t", "made", std::slice::from_ref(&chapter));
+    let text = markdown::page(&Page { title: chapter.verdict, parts: chapter.parts });
     for word in
         ["Synthetic specimen reinforced-concrete-joint", "The paper's claim", "| trainer | MSE, kN² |"]
     {

@@ -4,9 +4,7 @@
 mod page;
 
 use std::ops::ControlFlow;
-use std::time::Instant;
 
-use anyhow::{Context, Result};
 use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
@@ -14,12 +12,11 @@ use hysid::fit::network::fit;
 use hysid::network::Family;
 use hysid::options::network::{FitOptions, Trainer};
 use hysid::plant::Specimen;
+use hysid::{Error, Result};
 
-use super::Settings;
-use super::chapter::Chapter;
-use crate::interrupt;
-use crate::messages::note;
-pub use page::further_files;
+use crate::chapter::Chapter;
+use crate::conditions::{Observer, Settings};
+pub use page::FILES;
 
 /// Stands in for the paper's second example, on which it compares the trainers.
 const SPECIMEN: &str = "reinforced-concrete-joint";
@@ -99,26 +96,24 @@ impl Protocol {
     }
 }
 
-/// Runs the comparison; `None` if interrupted.
-pub fn chapter(settings: Settings) -> Result<Option<Chapter>> {
-    compared(&Protocol::new(settings.seed, settings.quick))
+/// Runs the comparison.
+pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
+    compared(&Protocol::new(settings.seed, settings.quick), observer)
 }
 
-fn compared(protocol: &Protocol) -> Result<Option<Chapter>> {
-    let mut repetitions = Vec::new();
-    for seed in protocol.first_seed..protocol.first_seed + SEEDS {
-        let Some(repetition) = repetition(protocol, seed)? else { return Ok(None) };
-        repetitions.push(repetition);
-    }
-    Ok(Some(page::chapter(protocol, &repetitions)))
+fn compared(protocol: &Protocol, observer: &dyn Observer) -> Result<Chapter> {
+    let seeds = protocol.first_seed..protocol.first_seed + SEEDS;
+    let repetitions: Vec<Repetition> =
+        seeds.map(|seed| repetition(protocol, seed, observer)).collect::<Result<_>>()?;
+    Ok(page::chapter(protocol, &repetitions))
 }
 
-/// All trainers from one seed; `None` if interrupted.
-fn repetition(protocol: &Protocol, seed: u64) -> Result<Option<Repetition>> {
+/// All trainers from one seed.
+fn repetition(protocol: &Protocol, seed: u64, observer: &dyn Observer) -> Result<Repetition> {
     let mut trainings = Vec::new();
     for trainer in TRAINERS {
-        let Some(training) = training(protocol, trainer, seed)? else { return Ok(None) };
-        note(format_args!(
+        let training = training(protocol, trainer, seed, observer)?;
+        observer.say(&format!(
             "  training, seed {seed}: {:<19} {:8.4} % of std, {:6.2} s, {:>6} evaluations",
             trainer.name(),
             training.train.nrmse_std_percent.unwrap_or_default(),
@@ -128,28 +123,28 @@ fn repetition(protocol: &Protocol, seed: u64) -> Result<Option<Repetition>> {
         trainings.push(training);
     }
     let hybrid = trainings.iter().find(|training| training.trainer == Trainer::Hybrid);
-    let hybrid = hybrid.context("the hybrid is among the trainers")?;
-    let seconds_to_match = seconds_to_match(protocol, seed, hybrid)?;
-    Ok((!interrupt::requested()).then_some(Repetition { trainings, seconds_to_match }))
+    let hybrid = hybrid.expect("the hybrid is among the trainers");
+    let seconds_to_match = seconds_to_match(protocol, seed, hybrid, observer)?;
+    if observer.is_stopped() { Err(Error::Stopped) } else { Ok(Repetition { trainings, seconds_to_match }) }
 }
 
-fn training(protocol: &Protocol, trainer: Trainer, seed: u64) -> Result<Option<Training>> {
+fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Observer) -> Result<Training> {
     let mut moments: Vec<Moment> = Vec::new();
-    let began = Instant::now();
+    let began = observer.seconds();
     let fitted = fit(&protocol.train, &protocol.options(trainer, seed), &mut |progress| {
         moments.push(Moment {
             epoch: progress.epoch,
             evaluations: progress.evaluations,
-            seconds: began.elapsed().as_secs_f64(),
+            seconds: observer.seconds() - began,
             nrmse_percent: progress.train_nrmse_percent,
         });
-        if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if observer.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    let seconds = began.elapsed().as_secs_f64();
-    if interrupt::requested() {
-        return Ok(None);
+    let seconds = observer.seconds() - began;
+    if observer.is_stopped() {
+        return Err(Error::Stopped);
     }
-    Ok(Some(Training {
+    Ok(Training {
         trainer,
         seed,
         train: fitted.model.provenance().train.clone(),
@@ -157,16 +152,22 @@ fn training(protocol: &Protocol, trainer: Trainer, seed: u64) -> Result<Option<T
         moments,
         seconds,
         evaluations: fitted.evaluations,
-    }))
+    })
 }
 
 /// Levenberg-Marquardt from one start after another until it is as low as the hybrid was at its end.
-fn seconds_to_match(protocol: &Protocol, seed: u64, hybrid: &Training) -> Result<Option<f64>> {
-    let target = hybrid.train.nrmse_std_percent.context("the specimen's output varies")?;
-    let began = Instant::now();
+fn seconds_to_match(
+    protocol: &Protocol,
+    seed: u64,
+    hybrid: &Training,
+    observer: &dyn Observer,
+) -> Result<Option<f64>> {
+    let target = hybrid.train.nrmse_std_percent.expect("the specimen's output varies");
+    let began = observer.seconds();
+    let elapsed = || observer.seconds() - began;
     let mut reached = None;
     for start in 0.. {
-        let over = || began.elapsed().as_secs_f64() > hybrid.seconds || interrupt::requested();
+        let over = || elapsed() > hybrid.seconds || observer.is_stopped();
         if reached.is_some() || over() {
             break;
         }
@@ -174,14 +175,14 @@ fn seconds_to_match(protocol: &Protocol, seed: u64, hybrid: &Training) -> Result
         let options = protocol.options(Trainer::LevenbergMarquardt, seed + start * 1_000_003);
         let fitted = fit(&protocol.train, &options, &mut |progress| {
             if progress.train_nrmse_percent <= target {
-                reached = Some(began.elapsed().as_secs_f64());
+                reached = Some(elapsed());
             }
             if reached.is_some() || over() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         match fitted {
             // The time of the hybrid ended before this start had a model.
-            Ok(_) | Err(hysid::Error::Stopped) => {}
-            Err(error) => return Err(error.into()),
+            Ok(_) | Err(Error::Stopped) => {}
+            Err(error) => return Err(error),
         }
     }
     Ok(reached)

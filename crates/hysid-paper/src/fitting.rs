@@ -1,9 +1,7 @@
 //! How the networks of all experiments but that on training are trained: one architecture, one way.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
 
-use anyhow::Result;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
@@ -12,10 +10,10 @@ use hysid::network::{Family, Sizes};
 use hysid::options::Request;
 use hysid::options::network::{FitOptions, Trainer};
 use hysid::significant::Significant;
+use hysid::{Error, Result};
+use hysid_document::{Piece, Text};
 
-use super::Settings;
-use crate::interrupt;
-use crate::messages::note;
+use crate::conditions::{Observer, Settings};
 
 /// The one architecture for everything, as the paper claims there is. Chosen by looking at all specimens
 /// together: among 10 and 20 stops with 10, 15 and 20 tanh neurons, 10 tanh neurons leave 1.4 to 1.9 times the
@@ -56,12 +54,14 @@ pub fn network(family: Family, data: &Dataset, settings: Settings) -> FitOptions
 }
 
 /// The architecture and its training, in words.
-pub fn words(settings: Settings) -> String {
+pub fn words(settings: Settings) -> Text {
     let (starts, epochs) = if settings.quick { QUICK_EFFORT } else { EFFORT };
-    format!(
-        "{} stops and {} tanh neurons, inputs x and, where records differ in rate or where it lowers the error on data held out of training, x'; Levenberg-Marquardt from {starts} random starts, {epochs} iterations each, ridge 1e-8 and decay 1e-9 because there is no noise. The paper trains by its hybrid of genetic algorithm and sub-gradient method; the experiment `training` compares the two. Nothing unseen was trained on, but it was not blind: architecture, penalties, some specimens and their paths were settled while errors on unseen data were looked at.",
+    let words = format!(
+        "XPNN: {} stops and {} tanh neurons, inputs x and, where records differ in rate or where it lowers the error on data held out of training, x'; Levenberg-Marquardt from {starts} random starts, {epochs} iterations each, ridge 1e-8 and decay 1e-9 because there is no noise. The paper trains by its hybrid of genetic algorithm and sub-gradient method; the experiment ",
         ARCHITECTURE.stops, ARCHITECTURE.hidden
-    )
+    );
+    let rest = " compares the two. Nothing unseen was trained on, but it was not blind: architecture, penalties, some specimens and their paths were settled while errors on unseen data were looked at.";
+    Text::from(words).with(Piece::Code("training".into())).with(Piece::Plain(rest.into()))
 }
 
 /// A rival's request with the starts and iterations of these settings.
@@ -75,21 +75,22 @@ pub fn rival(request: Request, settings: Settings) -> Request {
     }
 }
 
-/// Fits a model and says so; `None` if interrupted.
-pub fn fit(what: &str, data: &Dataset, request: &Request) -> Result<Option<Fit>> {
-    let began = Instant::now();
-    let fit = identify(data, request, &mut |_| {
-        if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+/// Fits a model and says so.
+pub fn fit(what: &str, data: &Dataset, request: &Request, observer: &dyn Observer) -> Result<Fit> {
+    let began = observer.seconds();
+    let fit = identify(data, request, &mut |_| match observer.is_stopped() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
     })?;
-    if interrupt::requested() {
-        return Ok(None);
+    if observer.is_stopped() {
+        return Err(Error::Stopped);
     }
     let error = fit.model.provenance().train.nrmse_std_percent.unwrap_or_default();
-    note(format_args!(
+    observer.say(&format!(
         "  {what}: {} {:.3} % of std, {:.1} s",
         fit.model.name().name(),
         Significant(error),
-        began.elapsed().as_secs_f64()
+        observer.seconds() - began
     ));
-    Ok(Some(fit))
+    Ok(fit)
 }

@@ -3,7 +3,7 @@
 pub mod catalogue;
 mod figures;
 
-use anyhow::{Context, Result};
+use hysid::Result;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::model::Model;
@@ -11,11 +11,11 @@ use hysid::network::Family;
 use hysid::options::network::FitOptions;
 use hysid::options::{ModelName, Request};
 use hysid::plant::Specimen;
+use hysid_document::{Cell, Part, Table, capitalised, convergence, count, number, unit};
 
-use super::chapter::{Cell, Chapter, Part, Table, Target, capitalised, stands_in};
-use super::{Settings, fitting};
-use crate::page::{count, number};
-use crate::report::unit_of;
+use crate::chapter::{Chapter, Target, stands_in};
+use crate::conditions::{Observer, Settings};
+use crate::fitting;
 use catalogue::{Case, Example, Figure, Opponent};
 
 /// What a model makes of a set of data.
@@ -47,24 +47,21 @@ struct Played<'a> {
     has_rate: bool,
 }
 
-/// Runs an example; `None` if interrupted.
-pub fn chapter(example: &Example, settings: Settings) -> Result<Option<Chapter>> {
-    let mut played = Vec::new();
-    for case in example.cases {
-        let Some(case) = play(example, case, settings)? else { return Ok(None) };
-        played.push(case);
-    }
-    let mut parts = vec![Part::Paragraph(format!("The paper reports {}", example.paper))];
+/// Runs an example.
+pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
+    let played = example.cases.iter().map(|case| play(example, case, settings, observer));
+    let played: Vec<Played> = played.collect::<Result<_>>()?;
+    let mut parts = vec![Part::paragraph(format!("The paper reports {}", example.paper))];
     parts.extend(played.iter().flat_map(|played| played.parts(example)));
-    parts.push(Part::Note(format!("XPNN: {}", fitting::words(settings))));
-    Ok(Some(Chapter {
+    parts.push(Part::Note(fitting::words(settings)));
+    Ok(Chapter {
         name: example.name.into(),
         title: format!("the paper's {}: {}", spaced(example.name), example.title),
         verdict: played.iter().map(Played::verdict).collect::<Vec<String>>().join(" "),
         parts,
         targets: played.iter().flat_map(Played::targets).collect(),
         files: Vec::new(),
-    }))
+    })
 }
 
 /// `example 3` for `example3`.
@@ -72,21 +69,21 @@ fn spaced(name: &str) -> String {
     name.replace("example", "example ")
 }
 
-fn play<'a>(example: &Example, case: &'a Case, settings: Settings) -> Result<Option<Played<'a>>> {
-    let specimen = Specimen::named(case.specimen).context("the specimen is in the catalogue")?;
+fn play<'a>(
+    example: &Example,
+    case: &'a Case,
+    settings: Settings,
+    observer: &dyn Observer,
+) -> Result<Played<'a>> {
+    let specimen = Specimen::named(case.specimen).expect("the specimen is in the catalogue");
     let (train, unseen) = (specimen.train(), specimen.test());
-    let fit = |request: Request| -> Result<Option<Model>> {
-        let what = format!("{}, {}", example.name, case.specimen);
-        Ok(fitting::fit(&what, &train, &request)?.map(|fit| fit.model))
-    };
+    let what = format!("{}, {}", example.name, case.specimen);
+    let fit =
+        |request: Request| -> Result<Model> { Ok(fitting::fit(&what, &train, &request, observer)?.model) };
     let xpnn = fitting::network(Family::Xpnn, &train, settings);
-    let Some(without_rate) = fit(Request::Network(FitOptions { rate: None, ..xpnn.clone() }))? else {
-        return Ok(None);
-    };
-    let mut candidates = vec![without_rate];
+    let mut candidates = vec![fit(Request::Network(FitOptions { rate: None, ..xpnn.clone() }))?];
     if xpnn.rate.is_some() {
-        let Some(with_rate) = fit(Request::Network(xpnn))? else { return Ok(None) };
-        candidates.push(with_rate);
+        candidates.push(fit(Request::Network(xpnn))?);
     }
     let validation: Vec<f64> = candidates.iter().map(validation).collect();
     // Records at several rates need the rate; within one slow record it tells no more than the direction.
@@ -97,14 +94,12 @@ fn play<'a>(example: &Example, case: &'a Case, settings: Settings) -> Result<Opt
         Opponent::Nobody => None,
         Opponent::WithoutRate => Some(("XPNN without x'".to_string(), candidates.swap_remove(0))),
         Opponent::Network(family) => {
-            let request = Request::Network(fitting::network(family, &train, settings));
-            let Some(model) = fit(request)? else { return Ok(None) };
+            let model = fit(Request::Network(fitting::network(family, &train, settings)))?;
             Some((family.name().to_uppercase(), model))
         }
         Opponent::Law(law) => {
             let request = Request::of(ModelName::Rival(law), None, settings.seed);
-            let Some(model) = fit(fitting::rival(request, settings))? else { return Ok(None) };
-            Some(("GPIM".to_string(), model))
+            Some(("GPIM".to_string(), fit(fitting::rival(request, settings))?))
         }
     };
     models.extend(rival);
@@ -112,7 +107,7 @@ fn play<'a>(example: &Example, case: &'a Case, settings: Settings) -> Result<Opt
         Ok(Contestant { train: run(&model, &train)?, unseen: run(&model, &unseen)?, name, model })
     };
     let contestants = models.into_iter().map(contestant).collect::<Result<_>>()?;
-    Ok(Some(Played { case, specimen, train, unseen, contestants, validation, has_rate }))
+    Ok(Played { case, specimen, train, unseen, contestants, validation, has_rate })
 }
 
 /// Error on what was held out of the training data, in % of std.
@@ -122,10 +117,9 @@ fn validation(model: &Model) -> f64 {
 }
 
 fn run(model: &Model, data: &Dataset) -> Result<Run> {
-    let simulated: hysid::Result<Vec<Vec<f64>>> =
-        data.records().iter().map(|record| model.simulate(record)).collect();
-    let simulated = simulated?;
-    let errors = errors(data, &simulated, |_| true).context("there is nothing to score")?;
+    let simulated: Vec<Vec<f64>> =
+        data.records().iter().map(|record| model.simulate(record)).collect::<Result<_>>()?;
+    let errors = errors(data, &simulated, |_| true).expect("specimens have outputs");
     Ok(Run { simulated, errors })
 }
 
@@ -217,17 +211,17 @@ impl Played<'_> {
     fn parts(&self, example: &Example) -> Vec<Part> {
         let specimen = self.specimen;
         let mut parts = vec![
-            Part::Heading(specimen.name.into()),
-            Part::Paragraph(format!("{}. {}.", capitalised(specimen.summary), capitalised(self.case.shows))),
+            Part::heading(specimen.name),
+            Part::paragraph(format!("{}. {}.", capitalised(specimen.summary), capitalised(self.case.shows))),
             Part::Table(self.errors_table(example)),
         ];
         parts.extend(self.records_table(example).map(Part::Table));
-        parts.push(Part::Note(self.choice_of_rate()));
-        parts.push(Part::Note(format!(
+        parts.push(Part::note(self.choice_of_rate()));
+        parts.push(Part::note(format!(
             "Training: {}. Unseen: {}. Published: {}. Designed: {}.",
             specimen.training, specimen.testing, specimen.published, specimen.designed
         )));
-        parts.push(Part::Figures(vec![
+        parts.push(Part::Charts(vec![
             figures::loops("training", &self.train, &self.lines(|contestant| &contestant.train)),
             figures::loops("unseen", &self.unseen, &self.lines(|contestant| &contestant.unseen)),
         ]));
@@ -238,7 +232,7 @@ impl Played<'_> {
             (&self.unseen, self.lines(|contestant| &contestant.unseen)),
         ];
         parts.push(Part::Figure(figures::relative_errors(&sets)));
-        parts.extend(crate::report::convergence_svg(&self.xpnn().model).map(Part::Figure));
+        parts.extend(convergence::chart(&self.xpnn().model.provenance().runs).map(Part::Figure));
         parts
     }
 
@@ -272,7 +266,7 @@ impl Played<'_> {
     }
 
     fn errors_table(&self, example: &Example) -> Table {
-        let unit = unit_of(&self.train.names().output);
+        let unit = unit::of(&self.train.names().output);
         let columns = [
             "model".to_string(),
             "parameters".into(),
@@ -281,14 +275,14 @@ impl Played<'_> {
             "NRMSE (% of std)".into(),
             "largest error (% of largest output)".into(),
         ];
-        let mut rows: Vec<Vec<Cell>> = Vec::new();
+        let mut table = Table::new(columns).headed(self.heading(example, "errors of free runs"));
         for contestant in &self.contestants {
             for (set, data, run) in
                 [("training", &self.train, &contestant.train), ("unseen", &self.unseen, &contestant.unseen)]
             {
-                rows.push(vec![
+                table.push([
                     format!("{}, {set}", contestant.name).into(),
-                    contestant.model.parameters().to_string().into(),
+                    contestant.model.parameters().into(),
                     format!(
                         "{} in {}",
                         count(run.errors.samples, "sample"),
@@ -301,7 +295,7 @@ impl Played<'_> {
                 ]);
             }
         }
-        Table { heading: self.heading(example, "errors of free runs"), columns: columns.into(), rows }
+        table
     }
 
     /// Errors on each unseen record, if there are several.
@@ -319,10 +313,9 @@ impl Played<'_> {
             };
             std::iter::once(name.into()).chain(self.contestants.iter().map(of)).collect()
         };
-        Some(Table {
-            heading: self.heading(example, "unseen records one by one"),
-            columns: std::iter::once("unseen record".to_string()).chain(names).collect(),
-            rows: records.iter().map(|record| row(record.name())).collect(),
-        })
+        let table = Table::new(std::iter::once("unseen record".to_string()).chain(names))
+            .headed(self.heading(example, "unseen records one by one"))
+            .with_rows(records.iter().map(|record| row(record.name())));
+        Some(table)
     }
 }

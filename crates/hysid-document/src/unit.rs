@@ -2,7 +2,7 @@
 
 /// The quantity and its unit, if the column name ends with one, as a page shows it.
 pub fn split(column: &str) -> (String, Option<String>) {
-    let (quantity, unit) = hysid::data::unit::split(column);
+    let (quantity, unit) = hysid_core::data::unit::split(column);
     (quantity.to_string(), unit.map(|unit| written(&unit)))
 }
 

@@ -1,11 +1,11 @@
 //! Loops, histories and errors of several models on the same data.
 
 use hysid::data::record::Dataset;
+use hysid_document::chart::thin::{Point, thin, thin_path};
+use hysid_document::chart::{SMALL, WIDE};
+use hysid_document::{Axis, Chart, Colour, Curve, unit};
 
 use super::largest;
-use crate::plot::thin::{Point, thin, thin_path};
-use crate::plot::{Axis, Chart, Colour, Curve};
-use crate::report::unit_label;
 
 /// Points of a curve in a chart of a history.
 const POINTS: usize = 1600;
@@ -83,7 +83,7 @@ impl Scored {
 }
 
 /// Loops of the specimen and of the models.
-pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> String {
+pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> Chart {
     let scored = Scored::of(data, lines);
     let names = data.names();
     let most = (LOOP_POINTS.0 / scored.begins.len().max(1)).max(LOOP_POINTS.1);
@@ -96,56 +96,42 @@ pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> String {
                 .extend(rows.into_iter().map(|row| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]))));
             points.push((f64::NAN, f64::NAN));
         }
-        Curve { points, colour, width }
+        Curve::new(points, colour, width)
     };
     let mut curves = vec![path(&scored.output, Colour::Measured, 2.2)];
     // The XPNN lies over its rival.
     let models = scored.simulated.iter().enumerate().rev();
     curves.extend(models.map(|(index, values)| path(values, colour(index), 1.1)));
-    let (x, y) = (unit_label(&names.inputs[0]), unit_label(&names.output));
-    Chart {
-        description: format!("Loops of {y} over {x}, {set} data, specimen and models"),
-        title: set.to_string(),
-        size: (400.0, 290.0),
-        x: Axis::linear(x, scored.input.iter().copied()),
-        y: Axis::linear(y, scored.output.iter().copied()),
-        labels: Vec::new(),
-        legend: Vec::new(),
-        curves,
-    }
-    .svg()
+    let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
+    let description = format!("Loops of {y} over {x}, {set} data, specimen and models");
+    let x = Axis::linear(x, scored.input.iter().copied());
+    let y = Axis::linear(y, scored.output.iter().copied());
+    Chart { title: set.into(), size: SMALL, x, y, ..Chart::new(description, "", "", curves) }
 }
 
 /// Outputs over the samples of the unseen data.
-pub fn history(data: &Dataset, lines: &[Line]) -> String {
+pub fn history(data: &Dataset, lines: &[Line]) -> Chart {
     let scored = Scored::of(data, lines);
     let curve = |values: &[f64], colour: Colour, width: f64| {
         let shown = values.iter().take(LONGEST_HISTORY).enumerate();
         let points: Vec<Point> = shown.map(|(row, &y)| (row as f64, y)).collect();
-        Curve { points: thin(&points, POINTS), colour, width }
+        Curve::new(thin(&points, POINTS), colour, width)
     };
     let mut curves = vec![curve(&scored.output, Colour::Measured, 2.4)];
     let models = scored.simulated.iter().enumerate().rev();
     curves.extend(models.map(|(index, values)| curve(values, colour(index), 1.1)));
-    let label = unit_label(&data.names().output);
+    let label = unit::label(&data.names().output);
     let all = scored.output.len();
     let from = if all > LONGEST_HISTORY { format!(", the first of {all}") } else { String::new() };
-    Chart {
-        description: format!("{label} over the unseen samples, specimen and models"),
-        title: String::new(),
-        size: (860.0, 230.0),
-        x: Axis::linear(format!("unseen sample{from}"), curves[0].points.iter().map(|point| point.0)),
-        y: Axis::linear(label, scored.output.iter().take(LONGEST_HISTORY).copied()),
-        labels: Vec::new(),
-        legend: legend(lines),
-        curves,
-    }
-    .svg()
+    let description = format!("{label} over the unseen samples, specimen and models");
+    let y = Axis::linear(label, scored.output.iter().take(LONGEST_HISTORY).copied());
+    let chart = Chart::new(description, &format!("unseen sample{from}"), "", curves).sized(WIDE.0, 230.0);
+    Chart { y, legend: legend(lines), ..chart }
 }
 
 /// Magnitude of the error in percent of the largest output over all samples, those of training first, then
 /// the unseen, each as a curve of its own.
-pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> String {
+pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> Chart {
     let mut curves: Vec<Curve> = Vec::new();
     let mut begun = 0;
     for (data, lines) in sets {
@@ -160,22 +146,14 @@ pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> String {
                 .enumerate()
                 .map(|(row, percent)| ((begun + row) as f64, percent.max(LOWEST_PERCENT)))
                 .collect();
-            curves.push(Curve { points: thin(&points, POINTS / 2), colour: colour(index), width: 0.9 });
+            curves.push(Curve::new(thin(&points, POINTS / 2), colour(index), 0.9));
         }
         begun += scored.output.len();
     }
     let unseen_from = curves.last().and_then(|curve| curve.points.first()).map_or(0.0, |point| point.0);
     let points = || curves.iter().flat_map(|curve| &curve.points);
-    Chart {
-        description: "Error in percent of the largest output over all samples, training first, then unseen"
-            .into(),
-        title: String::new(),
-        size: (860.0, 260.0),
-        x: Axis::linear(format!("sample; unseen from {unseen_from}"), points().map(|point| point.0)),
-        y: Axis::logarithmic("error (% of largest)", points().map(|point| point.1)),
-        labels: Vec::new(),
-        legend: legend(&sets[0].1).split_off(1),
-        curves,
-    }
-    .svg()
+    let y = Axis::logarithmic("error (% of largest)", points().map(|point| point.1));
+    let description = "Error in percent of the largest output over all samples, training first, then unseen";
+    let chart = Chart::new(description, &format!("sample; unseen from {unseen_from}"), "", curves);
+    Chart { y, legend: legend(&sets[0].1).split_off(1), ..chart.sized(WIDE.0, 260.0) }
 }

@@ -1,12 +1,67 @@
-//! Plain text for a terminal: paragraphs wrapped to its width, and tables with aligned columns.
+//! Documents as plain text for a terminal: paragraphs wrapped to its width, tables with aligned columns, no charts.
 
-use crate::terminal::{clipped, visible};
+use crate::part::{Card, Item, Part};
+use crate::table::{Cell, Table};
+use crate::visible::{clipped, visible};
 
 /// Letters in a line.
 pub const WIDTH: usize = 80;
 
 /// A longer word is the name of a column or a record: it is cut.
 const LONGEST_WORD: usize = 300;
+
+/// The parts one below the other, with an empty line between them.
+pub fn rendered(parts: &[Part]) -> String {
+    blocks(parts).join("\n\n") + "\n"
+}
+
+fn blocks(parts: &[Part]) -> Vec<String> {
+    parts.iter().flat_map(block).collect()
+}
+
+/// A part, and what is in it, without empty lines at the ends.
+fn block(part: &Part) -> Vec<String> {
+    let below = |heading: &str, parts: &[Part]| [vec![visible(heading).into_owned()], blocks(parts)].concat();
+    match part {
+        Part::Section(_, parts) if parts.is_empty() => Vec::new(),
+        Part::Section(heading, parts) | Part::Folded(heading, parts) => below(heading, parts),
+        Part::Heading(text) => vec![visible(&text.plain()).into_owned()],
+        Part::Lead(text) | Part::Paragraph(text) | Part::Note(text) => vec![paragraph(&text.plain())],
+        Part::Command(command) => vec![format!("  {}", visible(command))],
+        Part::List(items) => vec![list(items.iter().map(|Item { text, .. }| text.plain()))],
+        Part::Verdicts(verdicts) => vec![list(verdicts.iter().map(|verdict| verdict.plain()))],
+        Part::Definitions(pairs) => vec![list(pairs.iter().map(|(name, value)| format!("{name}: {value}")))],
+        Part::Table(content) => vec![table(content)],
+        Part::Figure(_) | Part::Chart(_) | Part::Charts(_) => Vec::new(),
+        Part::Cards(cards) => {
+            let card = |card: &Card| below(&card.heading.plain(), &card.parts);
+            cards.iter().flat_map(card).collect()
+        }
+    }
+}
+
+fn paragraph(text: &str) -> String {
+    wrapped(text, WIDTH).join("\n")
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    items.map(|item| paragraph(&format!("- {item}"))).collect::<Vec<String>>().join("\n")
+}
+
+/// A table in aligned columns below its heading.
+fn table(table: &Table) -> String {
+    let heading = match table.heading.as_str() {
+        "" => Vec::new(),
+        heading => wrapped(&format!("{heading}."), WIDTH),
+    };
+    heading.into_iter().chain(columns(table, Cell::shown)).collect::<Vec<String>>().join("\n")
+}
+
+/// The lines of a table without its heading, each cell shown in this way.
+pub fn columns(table: &Table, shown: impl Fn(&Cell) -> String) -> Vec<String> {
+    let rows = table.rows.iter().map(|row| row.iter().map(&shown).collect());
+    aligned(&std::iter::once(table.columns.clone()).chain(rows).collect::<Vec<_>>())
+}
 
 /// The words in lines of at most `width` letters; a longer word has a line of its own. Control characters are shown.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {

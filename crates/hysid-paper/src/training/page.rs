@@ -2,12 +2,11 @@
 
 use hysid::options::network::Trainer;
 use hysid::significant::Significant;
-use hysid_files::Kind;
+use hysid_document::chart::WIDE;
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
 
-use super::super::chapter::{Cell, Chapter, Part, Table, stands_in};
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
-use crate::page::{count, number};
-use crate::plot::{self, Axis, Chart, Colour, Curve};
+use crate::chapter::{Chapter, Content, stands_in};
 
 /// Heading of every table: what the figures are of.
 fn heading(protocol: &Protocol) -> String {
@@ -27,24 +26,22 @@ const SEEDS_HEADER: &str =
     "seed,trainer,train_mse,train_nrmse_std_percent,test_mse,test_nrmse_std_percent,seconds,evaluations\n";
 const HISTORY_HEADER: &str = "seed,trainer,epoch,evaluations,seconds,train_nrmse_std_percent\n";
 
-/// Names of the files beside page and tables, and what they are.
-pub fn further_files() -> Vec<(&'static str, Kind)> {
-    vec![
-        (SEEDS_TABLE, Kind::Beginning(SEEDS_HEADER.into())),
-        (HISTORY_TABLE, Kind::Beginning(HISTORY_HEADER.into())),
-        (EPOCHS_CHART, Kind::Drawing),
-        (SECONDS_CHART, Kind::Drawing),
-    ]
-}
+/// Names of the files beside page and tables, and the header lines of those that are no drawings.
+pub const FILES: [(&str, Option<&str>); 4] = [
+    (SEEDS_TABLE, Some(SEEDS_HEADER)),
+    (HISTORY_TABLE, Some(HISTORY_HEADER)),
+    (EPOCHS_CHART, None),
+    (SECONDS_CHART, None),
+];
 
 /// The chapter on all repetitions.
 pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
     let files = [
-        (SEEDS_TABLE, csv(repetitions)),
-        (HISTORY_TABLE, history(repetitions)),
-        (EPOCHS_CHART, plot::standalone(&epochs)),
-        (SECONDS_CHART, plot::standalone(&seconds)),
+        (SEEDS_TABLE, Content::Text(csv(repetitions))),
+        (HISTORY_TABLE, Content::Text(history(repetitions))),
+        (EPOCHS_CHART, Content::Drawing(epochs.clone())),
+        (SECONDS_CHART, Content::Drawing(seconds.clone())),
     ];
     let specimen = protocol.specimen;
     let mut parts = vec![
@@ -52,17 +49,17 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
         Part::Table(table(protocol, repetitions, "lowest to highest of the seeds", |(low, _, high)| {
             format!("{} to {}", number(low, 3), number(high, 3)).into()
         })),
-        Part::Paragraph(matched(repetitions)),
-        Part::Note(WORDS.into()),
+        Part::paragraph(matched(repetitions)),
+        Part::note(WORDS),
     ];
     if protocol.epochs < EPOCHS {
-        parts.push(Part::Note("A quick run: a tenth of the paper's epochs.".into()));
+        parts.push(Part::note("A quick run: a tenth of the paper's epochs."));
     }
     parts.extend([
-        Part::Heading("Convergence".into()),
+        Part::heading("Convergence"),
         Part::Figure(epochs),
         Part::Figure(seconds),
-        Part::Note(format!(
+        Part::note(format!(
             "The specimen: {}. Published: {}. Designed: {}.",
             specimen.summary, specimen.published, specimen.designed
         )),
@@ -110,11 +107,9 @@ fn table(
         ]
     };
     let seeds = count(repetitions.len(), "seed");
-    Table {
-        heading: format!("{}; {of_seeds} ({seeds} from {})", heading(protocol), protocol.first_seed),
-        columns: columns.collect(),
-        rows: TRAINERS.map(row).into(),
-    }
+    Table::new(columns)
+        .headed(format!("{}; {of_seeds} ({seeds} from {})", heading(protocol), protocol.first_seed))
+        .with_rows(TRAINERS.map(row))
 }
 
 /// Lowest, median and highest.
@@ -209,31 +204,26 @@ enum Abscissa {
 }
 
 /// Error against epochs or seconds, every training.
-fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> String {
+fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
     let x = |moment: &Moment| match abscissa {
         Abscissa::Epochs => moment.epoch as f64,
         Abscissa::Seconds => moment.seconds,
     };
-    let curve = |training: &Training| Curve {
-        points: kept(&training.moments).map(|moment| (x(moment), moment.nrmse_percent)).collect(),
-        colour: colour(training.trainer),
-        width: 1.4,
+    let curve = |training: &Training| {
+        let points = kept(&training.moments).map(|moment| (x(moment), moment.nrmse_percent));
+        Curve::new(points.collect(), colour(training.trainer), 1.4)
     };
     let trainings = repetitions.iter().flat_map(|repetition| &repetition.trainings);
     let curves: Vec<Curve> = trainings.map(curve).collect();
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let label = if abscissa == Abscissa::Epochs { "epoch" } else { "time (s)" };
-    Chart {
-        labels: Vec::new(),
-        description: format!("Training error against {label}, one line for each trainer and seed"),
-        title: String::new(),
-        size: (860.0, 360.0),
-        x: Axis::logarithmic(label, points().map(|point| point.0)),
-        y: Axis::logarithmic("training error (% of std)", points().map(|point| point.1)),
-        legend: TRAINERS.map(|trainer| (colour(trainer), trainer.name().to_string())).into(),
-        curves,
-    }
-    .svg()
+    let x = Axis::logarithmic(label, points().map(|point| point.0));
+    let y = Axis::logarithmic("training error (% of std)", points().map(|point| point.1));
+    let description = format!("Training error against {label}, one line for each trainer and seed");
+    let chart = Chart::new(description, "", "", curves)
+        .sized(WIDE.0, 360.0)
+        .with_legend(TRAINERS.map(|trainer| (colour(trainer), trainer.name())));
+    Chart { x, y, ..chart }
 }
 
 /// Moments that can be told apart in a drawing: about a hundred in a decade of epochs.

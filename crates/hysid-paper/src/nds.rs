@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use hysid::operator::{DeterioratingStop, Operator};
+use hysid_document::chart::{SMALL, WIDE};
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
-use super::chapter::{Cell, Chapter, Part, Table};
-use crate::page::number;
-use crate::plot::{Axis, Chart, Colour, Curve};
+use crate::chapter::Chapter;
 
 /// A neuron: the stop of `weight x + rate_weight x'` with threshold 1, which deteriorates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,14 +113,14 @@ pub fn chapter() -> Chapter {
         verdict: "One neuron makes static, rate-dependent and deteriorating loops by three numbers alone: a static loop needs |w_x| above 1 at unit input, rate dependence needs w_x' other than 0, and a finite β wears the loop out with every slide.".into(),
         parts: vec![
             Part::Table(table()),
-            Part::Note(format!(
+            Part::note(format!(
                 "The neuron is the stop of w_x x + w_x' x' with threshold 1 and capacity β. K is the width of the loop at rate 0, half-way up; P is what the width at a rate has more than that, and less if negative: both are measured on the first full cycle of a simulation from the virgin state under sin 2πft. The paper names K and P without defining them; these definitions are ours. Rates are designed. The paper lists β 25 for the third demonstration and discusses it as 50; the last row has that. A dead neuron gives 0 from then on, which has no width (–); life is in cycles at {} Hz.",
                 RATES[0]
             )),
-            Part::Heading("The input, and the six loops".into()),
+            Part::heading("The input, and the six loops"),
             Part::Figure(input_chart()),
-            Part::Figures(DEMONSTRATIONS.iter().enumerate().map(|(index, (neuron, _))| loops(index, *neuron)).collect()),
-            Part::Note("In the figures the three rates follow each other without a rest, so deterioration goes on from one to the next.".into()),
+            Part::Charts(DEMONSTRATIONS.iter().enumerate().map(|(index, (neuron, _))| loops(index, *neuron)).collect()),
+            Part::note("In the figures the three rates follow each other without a rest, so deterioration goes on from one to the next."),
         ],
         targets: Vec::new(),
         files: Vec::new(),
@@ -133,19 +133,16 @@ fn table() -> Table {
     let row = |(name, (neuron, shows)): (String, (Neuron, &str))| {
         let zero = neuron.width(0.0);
         let more = |rate: f64| neuron.width(rate).zip(zero).map(|(width, zero)| tidy(width - zero));
-        let mut cells = vec![Cell::Words(format!("{name}: {}", neuron.name())), zero.map(tidy).into()];
+        let mut cells = vec![format!("{name}: {}", neuron.name()).into(), zero.map(tidy).into()];
         cells.extend(RATES.map(|rate| more(rate).into()));
-        cells.push(neuron.life(RATES[0]).map_or("no end".into(), Cell::Number));
+        cells.push(neuron.life(RATES[0]).map_or("no end".into(), Cell::from));
         cells.push(shows.into());
         cells
     };
     let numbered = DEMONSTRATIONS.into_iter().enumerate().map(|(index, it)| ((index + 1).to_string(), it));
-    Table {
-        heading: "K and P of one neuron, simulated: no specimen is needed, neither measured nor synthetic"
-            .into(),
-        columns: columns.chain(["life, cycles".to_string(), "shows".into()]).collect(),
-        rows: numbered.chain([("3, β 50".to_string(), VARIANT)]).map(row).collect(),
-    }
+    Table::new(columns.chain(["life, cycles".to_string(), "shows".into()]))
+        .headed("K and P of one neuron, simulated: no specimen is needed, neither measured nor synthetic")
+        .with_rows(numbered.chain([("3, β 50".to_string(), VARIANT)]).map(row))
 }
 
 /// A width of rounding errors is none.
@@ -169,54 +166,32 @@ fn in_turn(neuron: Neuron) -> Vec<(f64, f64, f64, usize)> {
     path
 }
 
-fn input_chart() -> String {
+fn input_chart() -> Chart {
     let path = in_turn(DEMONSTRATIONS[0].0);
     let curve = |index: usize| {
         let rows = path.iter().filter(|row| row.3 == index);
-        Curve {
-            points: rows.map(|row| (row.0, row.1)).step_by(20).collect(),
-            colour: Colour::Series(index),
-            width: 1.4,
-        }
+        Curve::new(rows.map(|row| (row.0, row.1)).step_by(20).collect(), Colour::Series(index), 1.4)
     };
-    let curves: Vec<Curve> = (0..RATES.len()).map(curve).collect();
-    let points = || curves.iter().flat_map(|curve| &curve.points);
-    Chart {
-        description: "The input over time: three sines of growing rate".into(),
-        title: String::new(),
-        size: (860.0, 220.0),
-        x: Axis::linear("time (s)", points().map(|point| point.0)),
-        y: Axis::linear("input x", points().map(|point| point.1)),
-        labels: Vec::new(),
-        legend: RATES
-            .iter()
-            .enumerate()
-            .map(|(index, rate)| (Colour::Series(index), format!("{rate} Hz")))
-            .collect(),
-        curves,
-    }
-    .svg()
+    let curves = (0..RATES.len()).map(curve).collect();
+    Chart::new("The input over time: three sines of growing rate", "time (s)", "input x", curves)
+        .sized(WIDE.0, 220.0)
+        .with_legend(
+            RATES.iter().enumerate().map(|(index, rate)| (Colour::Series(index), format!("{rate} Hz"))),
+        )
 }
 
-fn loops(index: usize, neuron: Neuron) -> String {
+fn loops(index: usize, neuron: Neuron) -> Chart {
     let path = in_turn(neuron);
     let curve = |rate: usize| {
         let rows = path.iter().filter(|row| row.3 == rate);
-        let points = rows.step_by(8).map(|row| (row.1, row.2)).collect();
-        Curve { points, colour: Colour::Series(rate), width: 1.2 }
+        Curve::new(rows.step_by(8).map(|row| (row.1, row.2)).collect(), Colour::Series(rate), 1.2)
     };
     let title = format!("{}: {}", index + 1, neuron.name());
-    Chart {
-        description: format!("Loops of neuron {title} at three rates"),
-        title,
-        size: (400.0, 290.0),
-        x: Axis::linear("input x", [-1.0, 1.0].into_iter()),
-        y: Axis::linear("output", [-1.0, 1.0].into_iter()),
-        labels: Vec::new(),
-        legend: Vec::new(),
-        curves: (0..RATES.len()).map(curve).collect(),
-    }
-    .svg()
+    let range = || [-1.0, 1.0].into_iter();
+    let curves = (0..RATES.len()).map(curve).collect();
+    let chart = Chart::new(format!("Loops of neuron {title} at three rates"), "", "", curves);
+    let (x, y) = (Axis::linear("input x", range()), Axis::linear("output", range()));
+    Chart { title, size: SMALL, x, y, ..chart }
 }
 
 #[cfg(test)]

@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use hysid::significant::Significant;
+use hysid_core::significant::Significant;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint};
 use plotters::prelude::Ranged;
+use serde::{Deserialize, Serialize};
 
 /// Share of the range left free at each end.
 const MARGIN: f64 = 0.04;
@@ -13,14 +14,16 @@ const MARGIN: f64 = 0.04;
 const MOST_DECADES: f64 = 9.0;
 
 /// An axis of a chart.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// What is measured along it, with its unit.
     pub label: String,
     logarithmic: bool,
     low: f64,
     high: f64,
+    #[serde(skip)]
     ticks: Vec<f64>,
+    #[serde(skip)]
     step: f64,
 }
 
@@ -45,11 +48,20 @@ impl Axis {
     }
 
     fn new(label: String, logarithmic: bool, low: f64, high: f64) -> Self {
-        Self { label, logarithmic, low, high, ticks: Vec::new(), step: 1.0 }
+        Self { label, logarithmic, low, high, ticks: Vec::new(), step: 0.0 }
+    }
+
+    /// True if it has a range that can be drawn.
+    pub(super) fn is_sound(&self) -> bool {
+        let most = if self.logarithmic { 400.0 } else { f64::MAX };
+        self.low < self.high
+            && self.low.abs() <= most
+            && self.high.abs() <= most
+            && (self.high - self.low).is_finite()
     }
 
     /// The axis with about this many ticks, at least two.
-    pub fn with_ticks(mut self, count: usize) -> Self {
+    pub(super) fn with_ticks(mut self, count: usize) -> Self {
         let wanted = (self.high - self.low) / count.max(2) as f64;
         if self.logarithmic {
             self.ticks = self.decades(count);
@@ -82,7 +94,7 @@ impl Axis {
     }
 
     /// What is written at a tick.
-    pub fn text(&self, tick: f64) -> String {
+    pub(super) fn text(&self, tick: f64) -> String {
         let largest = self.low.abs().max(self.high.abs());
         let text = if self.logarithmic {
             format!("{:.1}", Significant(tick))
@@ -97,7 +109,7 @@ impl Axis {
     }
 
     /// Letters of the longest tick.
-    pub fn longest_text(&self) -> usize {
+    pub(super) fn longest_text(&self) -> usize {
         self.ticks.iter().map(|&tick| self.text(tick).chars().count()).max().unwrap_or(0)
     }
 
