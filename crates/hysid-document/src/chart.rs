@@ -78,13 +78,10 @@ pub struct Chart {
 }
 
 /// Width and height of a chart over the width of the page, in pixels.
-pub const WIDE: (f64, f64) = (860.0, 300.0);
-
-/// The same of a chart of loops.
-pub const LOOPS: (f64, f64) = (560.0, 400.0);
+const WIDE: (f64, f64) = (860.0, 300.0);
 
 /// The same of one of several small charts.
-pub const SMALL: (f64, f64) = (400.0, 290.0);
+const SMALL: (f64, f64) = (400.0, 290.0);
 
 /// Largest side of a chart, width of a line and distance of a text that make sense, in pixels.
 const LARGEST: f64 = 4000.0;
@@ -107,21 +104,35 @@ impl Chart {
     /// A wide chart with linear axes over all points of the curves, and nothing else.
     pub fn new(description: impl Into<String>, x: &str, y: &str, curves: Vec<Curve>) -> Self {
         let points = || curves.iter().flat_map(|curve| &curve.points);
-        Self {
-            description: description.into(),
-            title: String::new(),
-            size: WIDE,
-            x: Axis::linear(x, points().map(|point| point.0)),
-            y: Axis::linear(y, points().map(|point| point.1)),
-            curves,
-            labels: Vec::new(),
-            legend: Vec::new(),
-        }
+        let x = Axis::linear(x, points().map(|point| point.0));
+        let y = Axis::linear(y, points().map(|point| point.1));
+        Self::on_axes(description, x, y, curves)
+    }
+
+    /// The same with these axes.
+    pub fn on_axes(description: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
+        let (description, title) = (description.into(), String::new());
+        Self { description, title, size: WIDE, x, y, curves, labels: Vec::new(), legend: Vec::new() }
     }
 
     /// The chart in this size.
     pub fn sized(self, width: f64, height: f64) -> Self {
         Self { size: (width, height), ..self }
+    }
+
+    /// The chart in this height.
+    pub fn with_height(self, height: f64) -> Self {
+        Self { size: (self.size.0, height), ..self }
+    }
+
+    /// One of several small charts, with a title.
+    pub fn small(self, title: impl Into<String>) -> Self {
+        Self { size: SMALL, title: title.into(), ..self }
+    }
+
+    /// True for one over the width of the page.
+    pub fn is_wide(&self) -> bool {
+        self.size.0 >= WIDE.0
     }
 
     /// The chart with what its colours mean.

@@ -20,11 +20,10 @@ pub fn chart(runs: &[Run]) -> Option<Chart> {
     }
     let mut curves: Vec<Curve> = runs.iter().map(curve).collect();
     curves.sort_by_key(|curve| curve.colour != Colour::Faint);
-    let label = "training error (% of std)";
-    let errors = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
-    let y = Axis::logarithmic(label, errors);
-    let chart = Chart::new("Training error against epoch", "epoch", label, curves).with_legend(legend(runs));
-    Some(Chart { y, ..chart })
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let x = Axis::linear("epoch", points().map(|point| point.0));
+    let y = Axis::logarithmic("training error (% of std)", points().map(|point| point.1));
+    Some(Chart::on_axes("Training error against epoch", x, y, curves).with_legend(legend(runs)))
 }
 
 fn curve(run: &Run) -> Curve {

@@ -49,7 +49,7 @@ fn part(part: &Part) -> String {
             format!("<dl>\n{}</dl>\n", pairs.iter().map(definition).collect::<String>())
         }
         Part::Table(content) => table(content),
-        Part::Figure(chart) => figure(chart, "class=\"wide scroll\" tabindex=\"0\""),
+        Part::Chart(chart) if chart.is_wide() => figure(chart, "class=\"wide scroll\" tabindex=\"0\""),
         Part::Chart(chart) => charts("charts", std::slice::from_ref(chart)),
         Part::Charts(content) => charts("charts small", content),
         Part::Cards(cards) => {

@@ -27,7 +27,7 @@ fn part(part: &Part) -> String {
             list(pairs.iter().map(pair).collect::<Vec<_>>().iter())
         }
         Part::Table(content) => table(content),
-        Part::Figure(_) | Part::Chart(_) | Part::Charts(_) => String::new(),
+        Part::Chart(_) | Part::Charts(_) => String::new(),
         Part::Cards(cards) => cards.iter().map(card).collect(),
         Part::Folded(summary, content) => format!("### {summary}\n\n{}", parts(content)),
     }

@@ -39,10 +39,8 @@ pub enum Part {
     Definitions(Vec<(String, String)>),
     /// A table.
     Table(Table),
-    /// A chart over the width of the page.
-    Figure(Chart),
-    /// A chart of loops: as wide as the text.
-    Chart(Chart),
+    /// A chart by itself.
+    Chart(Box<Chart>),
     /// Small charts side by side.
     Charts(Vec<Chart>),
     /// Cards side by side.
@@ -92,6 +90,11 @@ impl Part {
         Part::Note(text.into())
     }
 
+    /// A chart by itself.
+    pub fn chart(chart: Chart) -> Self {
+        Part::Chart(Box::new(chart))
+    }
+
     /// A list of warnings.
     pub fn warnings(warnings: &[String]) -> Self {
         let item = |warning: &String| Item { text: warning.as_str().into(), is_warning: true };
@@ -101,7 +104,7 @@ impl Part {
     /// The charts in it.
     pub fn charts(&self) -> Vec<&Chart> {
         match self {
-            Part::Figure(chart) | Part::Chart(chart) => vec![chart],
+            Part::Chart(chart) => vec![chart.as_ref()],
             Part::Charts(charts) => charts.iter().collect(),
             Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().flat_map(Part::charts).collect(),
             Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).flat_map(Part::charts).collect(),

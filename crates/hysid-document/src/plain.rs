@@ -32,7 +32,7 @@ fn block(part: &Part) -> Vec<String> {
         Part::Verdicts(verdicts) => vec![list(verdicts.iter().map(|verdict| verdict.plain()))],
         Part::Definitions(pairs) => vec![list(pairs.iter().map(|(name, value)| format!("{name}: {value}")))],
         Part::Table(content) => vec![table(content)],
-        Part::Figure(_) | Part::Chart(_) | Part::Charts(_) => Vec::new(),
+        Part::Chart(_) | Part::Charts(_) => Vec::new(),
         Part::Cards(cards) => {
             let card = |card: &Card| below(&card.heading.plain(), &card.parts);
             cards.iter().flat_map(card).collect()

@@ -43,10 +43,15 @@ pub enum Badge {
 }
 
 impl Text {
-    /// The text with a piece behind it.
+    /// The text with a piece directly behind it.
     pub fn with(mut self, piece: Piece) -> Self {
         self.0.push(piece);
         self
+    }
+
+    /// The text with a piece behind it as the next word.
+    pub fn and(self, piece: Piece) -> Self {
+        self.with(Piece::Plain(" ".into())).with(piece)
     }
 
     /// The text without any style.

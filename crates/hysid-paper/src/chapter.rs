@@ -27,7 +27,16 @@ pub enum Content {
     /// A table as CSV.
     Text(String),
     /// A chart, to be drawn.
-    Drawing(Chart),
+    Drawing(Box<Chart>),
+}
+
+/// A file that an experiment has beside its chapter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FurtherFile {
+    /// Name of the file.
+    pub name: &'static str,
+    /// Header line of a table; `None` for a drawing.
+    pub header: Option<&'static str>,
 }
 
 /// A figure that was to be reached.

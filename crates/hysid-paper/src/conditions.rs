@@ -1,5 +1,7 @@
 //! What experiments are run with.
 
+use std::time::Duration;
+
 /// What decides about all figures but those in seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Settings {
@@ -11,8 +13,8 @@ pub struct Settings {
 
 /// Whoever runs an experiment. Several may run at the same time with one observer.
 pub trait Observer: Sync {
-    /// Seconds since some moment, always the same: experiments that compare times take differences.
-    fn seconds(&self) -> f64;
+    /// The time since some moment, always the same: experiments that compare times take differences.
+    fn clock(&self) -> Duration;
 
     /// True once experiments are to stop: they then end with [`hysid::Error::Stopped`].
     fn is_stopped(&self) -> bool;

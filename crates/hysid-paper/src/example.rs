@@ -225,14 +225,13 @@ impl Played<'_> {
             figures::loops("training", &self.train, &self.lines(|contestant| &contestant.train)),
             figures::loops("unseen", &self.unseen, &self.lines(|contestant| &contestant.unseen)),
         ]));
-        parts
-            .push(Part::Figure(figures::history(&self.unseen, &self.lines(|contestant| &contestant.unseen))));
+        parts.push(Part::chart(figures::history(&self.unseen, &self.lines(|contestant| &contestant.unseen))));
         let sets = [
             (&self.train, self.lines(|contestant| &contestant.train)),
             (&self.unseen, self.lines(|contestant| &contestant.unseen)),
         ];
-        parts.push(Part::Figure(figures::relative_errors(&sets)));
-        parts.extend(convergence::chart(&self.xpnn().model.provenance().runs).map(Part::Figure));
+        parts.push(Part::chart(figures::relative_errors(&sets)));
+        parts.extend(convergence::chart(&self.xpnn().model.provenance().runs).map(Part::chart));
         parts
     }
 

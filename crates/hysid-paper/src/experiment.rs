@@ -1,6 +1,6 @@
 //! The experiments by their names.
 
-use crate::chapter::{Chapter, Content};
+use crate::chapter::{Chapter, Content, FurtherFile};
 use crate::conditions::{Observer, Settings};
 use crate::example::catalogue::{EXAMPLES, Example};
 use crate::{example, nds, table2, training};
@@ -16,15 +16,6 @@ pub enum Experiment {
     Table2,
     /// The trainers compared.
     Training,
-}
-
-/// A file that an experiment has beside its chapter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FurtherFile {
-    /// Name of the file.
-    pub name: &'static str,
-    /// Header line of a table; `None` for a drawing.
-    pub header: Option<&'static str>,
 }
 
 impl Experiment {
@@ -50,12 +41,10 @@ impl Experiment {
     }
 
     /// The files that only this experiment has.
-    pub fn further_files(self) -> Vec<FurtherFile> {
+    pub fn further_files(self) -> &'static [FurtherFile] {
         match self {
-            Experiment::Training => {
-                training::FILES.map(|(name, header)| FurtherFile { name, header }).to_vec()
-            }
-            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 => Vec::new(),
+            Experiment::Training => &training::FILES,
+            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 => &[],
         }
     }
 
@@ -75,9 +64,8 @@ impl Experiment {
     /// True for a chapter as this experiment makes them. One that was stored may have been changed in its file, and
     /// names of files are used as they are.
     pub fn is_sound(self, chapter: &Chapter) -> bool {
-        let files = self.further_files();
         let is_known = |(name, content): &(String, Content)| {
-            let file = files.iter().find(|file| file.name == name);
+            let file = self.further_files().iter().find(|file| file.name == name);
             file.is_some_and(|file| match (content, file.header) {
                 (Content::Text(text), Some(header)) => text.starts_with(header),
                 (Content::Drawing(chart), None) => chart.is_sound(),

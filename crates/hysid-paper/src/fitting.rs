@@ -77,7 +77,7 @@ pub fn rival(request: Request, settings: Settings) -> Request {
 
 /// Fits a model and says so.
 pub fn fit(what: &str, data: &Dataset, request: &Request, observer: &dyn Observer) -> Result<Fit> {
-    let began = observer.seconds();
+    let began = observer.clock();
     let fit = identify(data, request, &mut |_| match observer.is_stopped() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
@@ -90,7 +90,7 @@ pub fn fit(what: &str, data: &Dataset, request: &Request, observer: &dyn Observe
         "  {what}: {} {:.3} % of std, {:.1} s",
         fit.model.name().name(),
         Significant(error),
-        observer.seconds() - began
+        (observer.clock() - began).as_secs_f64()
     ));
     Ok(fit)
 }

@@ -10,8 +10,8 @@
 //! struct Silent;
 //!
 //! impl Observer for Silent {
-//!     fn seconds(&self) -> f64 {
-//!         0.0
+//!     fn clock(&self) -> std::time::Duration {
+//!         std::time::Duration::ZERO
 //!     }
 //!     fn is_stopped(&self) -> bool {
 //!         false
@@ -34,6 +34,6 @@ mod nds;
 mod table2;
 mod training;
 
-pub use chapter::{Chapter, Content, Target, targets};
+pub use chapter::{Chapter, Content, FurtherFile, Target, targets};
 pub use conditions::{Observer, Settings};
-pub use experiment::{Experiment, FurtherFile};
+pub use experiment::Experiment;

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use hysid::operator::{DeterioratingStop, Operator};
-use hysid_document::chart::{SMALL, WIDE};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
 use crate::chapter::Chapter;
@@ -118,7 +117,7 @@ pub fn chapter() -> Chapter {
                 RATES[0]
             )),
             Part::heading("The input, and the six loops"),
-            Part::Figure(input_chart()),
+            Part::chart(input_chart()),
             Part::Charts(DEMONSTRATIONS.iter().enumerate().map(|(index, (neuron, _))| loops(index, *neuron)).collect()),
             Part::note("In the figures the three rates follow each other without a rest, so deterioration goes on from one to the next."),
         ],
@@ -174,7 +173,7 @@ fn input_chart() -> Chart {
     };
     let curves = (0..RATES.len()).map(curve).collect();
     Chart::new("The input over time: three sines of growing rate", "time (s)", "input x", curves)
-        .sized(WIDE.0, 220.0)
+        .with_height(220.0)
         .with_legend(
             RATES.iter().enumerate().map(|(index, rate)| (Colour::Series(index), format!("{rate} Hz"))),
         )
@@ -189,9 +188,8 @@ fn loops(index: usize, neuron: Neuron) -> Chart {
     let title = format!("{}: {}", index + 1, neuron.name());
     let range = || [-1.0, 1.0].into_iter();
     let curves = (0..RATES.len()).map(curve).collect();
-    let chart = Chart::new(format!("Loops of neuron {title} at three rates"), "", "", curves);
     let (x, y) = (Axis::linear("input x", range()), Axis::linear("output", range()));
-    Chart { title, size: SMALL, x, y, ..chart }
+    Chart::on_axes(format!("Loops of neuron {title} at three rates"), x, y, curves).small(title)
 }
 
 #[cfg(test)]

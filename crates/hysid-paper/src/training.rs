@@ -130,17 +130,17 @@ fn repetition(protocol: &Protocol, seed: u64, observer: &dyn Observer) -> Result
 
 fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Observer) -> Result<Training> {
     let mut moments: Vec<Moment> = Vec::new();
-    let began = observer.seconds();
+    let began = observer.clock();
     let fitted = fit(&protocol.train, &protocol.options(trainer, seed), &mut |progress| {
         moments.push(Moment {
             epoch: progress.epoch,
             evaluations: progress.evaluations,
-            seconds: observer.seconds() - began,
+            seconds: (observer.clock() - began).as_secs_f64(),
             nrmse_percent: progress.train_nrmse_percent,
         });
         if observer.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    let seconds = observer.seconds() - began;
+    let seconds = (observer.clock() - began).as_secs_f64();
     if observer.is_stopped() {
         return Err(Error::Stopped);
     }
@@ -163,8 +163,8 @@ fn seconds_to_match(
     observer: &dyn Observer,
 ) -> Result<Option<f64>> {
     let target = hybrid.train.nrmse_std_percent.expect("the specimen's output varies");
-    let began = observer.seconds();
-    let elapsed = || observer.seconds() - began;
+    let began = observer.clock();
+    let elapsed = || (observer.clock() - began).as_secs_f64();
     let mut reached = None;
     for start in 0.. {
         let over = || elapsed() > hybrid.seconds || observer.is_stopped();

@@ -2,7 +2,6 @@
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
-use hysid_document::chart::WIDE;
 use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
@@ -36,10 +35,10 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
     );
     parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
     if !fitted.is_empty() {
-        parts.push(Part::section("Error against size", [Part::Figure(size_chart(&fitted, data))]));
+        parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
         let loops =
             fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown)).collect::<Result<_>>()?;
-        let overlay = Part::Chart(overlay(&fitted, shown)?);
+        let overlay = Part::chart(overlay(&fitted, shown)?);
         let content = [overlay, Part::heading("Model by model"), Part::Charts(loops)];
         parts.push(Part::section(format!("Loops on {data}"), content));
     }
@@ -87,7 +86,7 @@ fn size_chart(fitted: &[(&str, &Fitted)], data: &str) -> Chart {
     let labels = labels(fitted.iter().map(|(name, _)| *name).zip(points.iter().copied()));
     let curves = points.iter().map(|&point| Curve::new(vec![point], Colour::Simulated, 3.0)).collect();
     let description = format!("Error on {data} against number of parameters, a dot for each model");
-    Chart { x, y, labels, ..Chart::new(description, "", "", curves) }.sized(WIDE.0, 400.0)
+    Chart { labels, ..Chart::on_axes(description, x, y, curves) }.with_height(400.0)
 }
 
 /// The names beside their points; where two would overlap, the later stands higher.

@@ -18,9 +18,8 @@ pub const EXPLANATION: &str = "The index measures how far what should coincide d
 pub fn verdicts(findings: &[Finding]) -> Part {
     let verdict = |finding: &Finding| {
         let anchor = finding.property.name().to_string();
-        Text::from(badge(finding.verdict))
-            .with(Piece::Link { anchor, text: heading(finding) })
-            .with(Piece::Aside(finding.statement.clone()))
+        let link = Piece::Link { anchor, text: heading(finding) };
+        Text::from(badge(finding.verdict)).and(link).and(Piece::Aside(finding.statement.clone()))
     };
     Part::Verdicts(findings.iter().map(verdict).collect())
 }
@@ -33,15 +32,14 @@ pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Find
 fn card(finding: &Finding, quantities: &Quantities, place: &str) -> Card {
     let mut parts = vec![Part::note(format!("Yes means: {}.", meaning(finding.property)))];
     let picture = finding.picture.as_ref().filter(|picture| is_drawn(picture));
-    parts.extend(picture.map(|picture| Part::Chart(chart(finding, picture, quantities))));
+    parts.extend(picture.map(|picture| Part::chart(chart(finding, picture, quantities))));
     parts.push(Part::paragraph(sentence(&finding.statement)));
     parts.extend(finding.experiment.as_ref().map(|experiment| {
-        let text = Piece::Plain(format!(" {}", sentence(experiment)));
-        Part::Paragraph(Text::from(Piece::Strong("To tell:".into())).with(text))
+        Part::Paragraph(Text::from(Piece::Strong("To tell:".into())).and(Piece::Plain(sentence(experiment))))
     }));
     let place = if place.is_empty() { String::new() } else { format!(" Seen in {place}.") };
     parts.push(Part::note(numbers(finding) + &place));
-    let heading = Text::from(badge(finding.verdict)).with(Piece::Plain(format!(" {}", heading(finding))));
+    let heading = Text::from(badge(finding.verdict)).and(Piece::Plain(heading(finding)));
     Card { anchor: finding.property.name().into(), heading, parts }
 }
 

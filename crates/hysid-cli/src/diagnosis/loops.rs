@@ -2,7 +2,6 @@
 
 use hysid::diagnosis::Cycle;
 use hysid::significant::Significant;
-use hysid_document::chart::WIDE;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::plain::aligned;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};
@@ -76,7 +75,7 @@ pub fn cycles_section(cycles: &[Cycle], quantities: &Quantities, several_records
                  remanent output are half the distance of the branches where the output, or the input, is 0; secant stiffness is the slope \
                  from tip to tip. Rows count from 1 in their record.";
     let parts = [
-        Part::Figure(energy_chart(cycles, quantities)),
+        Part::chart(energy_chart(cycles, quantities)),
         Part::Table(cycles_table(cycles, quantities, largest, several_records)),
         Part::note(words),
     ];
@@ -92,8 +91,8 @@ fn energy_chart(cycles: &[Cycle], quantities: &Quantities) -> Chart {
         curves.push(Curve::dots(points.iter().copied(), Colour::Simulated, 3.0));
     }
     let y = Axis::linear(label, points.iter().map(|point| point.1).chain([0.0]));
-    let chart = Chart::new("Energy of each cycle in the order of the record", "cycle", "", curves);
-    Chart { y, ..chart }.sized(WIDE.0, 260.0)
+    let x = Axis::linear("cycle", points.iter().map(|point| point.0));
+    Chart::on_axes("Energy of each cycle in the order of the record", x, y, curves).with_height(260.0)
 }
 
 fn cycles_table(cycles: &[Cycle], quantities: &Quantities, largest: usize, several_records: bool) -> Table {

@@ -3,7 +3,6 @@
 use hysid::data::record::Dataset;
 use hysid::diagnosis::Diagnosis;
 use hysid_document::chart::thin::{Point, thin, thin_path};
-use hysid_document::chart::{LOOPS, WIDE};
 use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 
 use super::quantities::Quantities;
@@ -35,7 +34,7 @@ impl<'a> Overview<'a> {
 
     /// Loops and ways.
     pub fn section(&self) -> Part {
-        let mut parts = vec![Part::Chart(self.loops())];
+        let mut parts = vec![Part::chart(self.loops())];
         let records = self.data.records();
         let mut longest: Vec<usize> = (0..records.len()).collect();
         longest.sort_by_key(|&record| std::cmp::Reverse(records[record].len()));
@@ -45,7 +44,7 @@ impl<'a> Overview<'a> {
             if records.len() > 1 {
                 parts.push(Part::heading(records[*record].name()));
             }
-            parts.push(Part::Figure(self.way(*record)));
+            parts.push(Part::chart(self.way(*record)));
         }
         let mut words =
             "The backbone joins the tips that go beyond all before them; dots are turning points of the input.".to_string();
@@ -79,12 +78,11 @@ impl<'a> Overview<'a> {
         curves.push(dots(shown.iter().flat_map(|&index| self.tips(index)).collect()));
         let (x, y) = (unit::label(&self.quantities.input), unit::label(&self.quantities.output));
         let description = format!("Loops of {y} over {x}, with backbone and turning points");
-        let chart = Chart::new(description, &x, &y, curves).with_legend([
+        Chart::new(description, &x, &y, curves).sized(560.0, 400.0).with_legend([
             (Colour::Measured, "measured"),
             (Colour::Simulated, "backbone"),
             (Colour::Error, "turning points"),
-        ]);
-        Chart { size: LOOPS, ..chart }
+        ])
     }
 
     /// Input and output where the input turns.
@@ -110,7 +108,7 @@ impl<'a> Overview<'a> {
         let description = format!("{input} over {label}, record {}", record.name());
         let curves = vec![Curve::new(thin(&way, WAY_POINTS), Colour::Input, 1.2), dots(turning)];
         Chart::new(description, &label, &input, curves)
-            .sized(WIDE.0, 200.0)
+            .with_height(200.0)
             .with_legend([(Colour::Input, "input"), (Colour::Error, "turning points")])
     }
 }

@@ -6,7 +6,6 @@ use hysid::model::{Model, Provenance};
 use hysid::options::Request;
 use hysid::options::network::Method;
 use hysid_document::chart::thin::thin_path;
-use hysid_document::chart::{LOOPS, SMALL};
 use hysid_document::{Chart, Colour, Curve, Part, convergence, count, unit};
 
 use super::ReportSet;
@@ -23,7 +22,7 @@ const MOST_MULTIPLES: usize = 12;
 /// Charts of a set's loops.
 pub fn loops_section(set: &ReportSet) -> Part {
     let records = set.data.records();
-    let mut parts = vec![Part::Chart(loops(set))];
+    let mut parts = vec![Part::chart(loops(set))];
     if (2..=MOST_MULTIPLES).contains(&records.len()) {
         let charts = (0..records.len()).map(|index| record_loops(set, index)).collect();
         parts.extend([Part::heading("Record by record"), Part::Charts(charts)]);
@@ -79,9 +78,10 @@ fn loop_chart(set: &ReportSet, shown: &[usize], title: &str, points: usize) -> C
     let description = format!("Loops of {y} over {x}, measured and simulated: {of}");
     let chart = Chart::new(description, &x, &y, all);
     match title {
-        "" => Chart { size: LOOPS, ..chart }
+        "" => chart
+            .sized(560.0, 400.0)
             .with_legend([(Colour::Measured, "measured"), (Colour::Simulated, "model")]),
-        title => Chart { size: SMALL, title: title.into(), ..chart },
+        title => chart.small(title),
     }
 }
 
@@ -111,7 +111,7 @@ fn scored_rows(record: &Record) -> std::ops::Range<usize> {
 pub fn convergence_section(model: &Model) -> Option<Part> {
     let provenance = model.provenance();
     let parts =
-        [Part::Figure(convergence::chart(&provenance.runs)?), Part::note(convergence_words(provenance))];
+        [Part::chart(convergence::chart(&provenance.runs)?), Part::note(convergence_words(provenance))];
     Some(Part::section("Convergence", parts))
 }
 

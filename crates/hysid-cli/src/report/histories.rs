@@ -1,7 +1,6 @@
 //! Output, error and input over time.
 
 use hysid::model::Prediction;
-use hysid_document::chart::WIDE;
 use hysid_document::chart::thin::{Point, outline, thin};
 use hysid_document::{Axis, Chart, Colour, Curve, Part, Piece, Text, number, unit};
 
@@ -72,7 +71,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
         true => "no measured output".to_string(),
         false => format!("RMSE {}", unit::with(&number(rmse, 3), &names.output)),
     };
-    let name = Text::from(record.name()).with(Piece::Plain(" ".into())).with(Piece::Aside(rmse));
+    let name = Text::from(record.name()).and(Piece::Aside(rmse));
     let mut parts = vec![Part::Heading(name)];
     parts.push(panel.figure(
         &output,
@@ -146,8 +145,7 @@ impl Panel<'_> {
         let curves = band.into_iter().chain(lines).collect();
         let description = format!("{label} over {}, record {}", self.time_label, self.record);
         let x = Axis::linear(self.time_label.as_str(), self.time.iter().copied());
-        let chart = Chart::new(description, "", "", curves).sized(WIDE.0, height);
-        Part::Figure(Chart { x, y, legend, ..chart })
+        Part::chart(Chart::on_axes(description, x, y, curves).with_height(height).with_legend(legend))
     }
 }
 

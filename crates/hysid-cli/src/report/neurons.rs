@@ -4,7 +4,6 @@ use hysid::data::record::{Dataset, Record};
 use hysid::network::scaling::Scaling;
 use hysid::network::{Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator};
-use hysid_document::chart::WIDE;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};
 
 use super::{Report, seen_label};
@@ -52,7 +51,7 @@ pub fn section(report: &Report) -> Option<Part> {
     let mut parts = vec![
         Part::paragraph(words),
         Part::heading("Stops"),
-        Part::Figure(threshold_chart(report, &stops)),
+        Part::chart(threshold_chart(report, &stops)),
         Part::Table(stop_table(report, &stops)),
         stop_note(report, &stops),
     ];
@@ -186,13 +185,13 @@ fn threshold_chart(report: &Report, stops: &[Stop]) -> Chart {
     }));
     let thresholds = stops.iter().map(shown).chain([largest]);
     let x = Axis::logarithmic(format!("threshold of {}", seen_label(report)), thresholds);
+    let y = Axis::linear("stops by threshold", [0.5, top].into_iter());
     let description = format!("Thresholds of the {} stops", stops.len());
-    let chart = Chart::new(description, "", "stops by threshold", curves).sized(WIDE.0, 240.0).with_legend([
+    Chart::on_axes(description, x, y, curves).with_height(240.0).with_legend([
         (Colour::Simulated, "stop"),
         (Colour::Faint, "never slips"),
         (Colour::Input, "largest input in training"),
-    ]);
-    Chart { x, ..chart }
+    ])
 }
 
 fn relaxation_parts(report: &Report) -> Vec<Part> {

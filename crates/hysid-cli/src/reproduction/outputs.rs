@@ -45,8 +45,8 @@ impl Outputs<'_> {
 
     /// A file that only this experiment has; `None` if it has none of this name.
     pub fn further(&self, experiment: Experiment, name: &str) -> Option<Destination> {
-        let file = experiment.further_files().into_iter().find(|file| file.name == name)?;
-        Some(self.further_file(&file))
+        let file = experiment.further_files().iter().find(|file| file.name == name)?;
+        Some(self.further_file(file))
     }
 
     /// All files of an experiment.

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use hysid_document::{Part, Text, capitalised, markdown, plain};
@@ -53,8 +53,8 @@ struct Terminal {
 }
 
 impl Observer for Terminal {
-    fn seconds(&self) -> f64 {
-        self.began.elapsed().as_secs_f64()
+    fn clock(&self) -> Duration {
+        self.began.elapsed()
     }
 
     fn is_stopped(&self) -> bool {
@@ -98,12 +98,12 @@ fn finished(
         while !interrupt::requested() {
             let next = left.lock().expect("no thread panics with the lock").pop_front();
             let Some((place, experiment)) = next else { break };
-            let began = terminal.seconds();
+            let began = Instant::now();
             let chapter = match pool.install(|| experiment.chapter(settings, &terminal)) {
                 Err(hysid::Error::Stopped) => break,
                 chapter => chapter?,
             };
-            let seconds = terminal.seconds() - began;
+            let seconds = began.elapsed().as_secs_f64();
             let one = Finished::new(settings, date::today(), seconds, chapter);
             one.keep(outputs)?;
             let mut places = places.lock().expect("no thread panics with the lock");

@@ -31,8 +31,8 @@ fn all_parts() -> Vec<Part> {
         Part::Verdicts(vec![styled]),
         Part::Definitions(vec![(HOSTILE.into(), HOSTILE.into())]),
         Part::Table(table),
-        Part::Figure(chart.clone()),
-        Part::Chart(chart.clone()),
+        Part::chart(chart.clone()),
+        Part::chart(chart.clone().sized(560.0, 400.0)),
         Part::Charts(vec![chart.clone(), chart]),
     ];
     let card = Card { anchor: HOSTILE.into(), heading: text(), parts: content.clone() };

@@ -2,7 +2,6 @@
 
 use hysid::data::record::Dataset;
 use hysid_document::chart::thin::{Point, thin, thin_path};
-use hysid_document::chart::{SMALL, WIDE};
 use hysid_document::{Axis, Chart, Colour, Curve, unit};
 
 use super::largest;
@@ -106,7 +105,7 @@ pub fn loops(set: &str, data: &Dataset, lines: &[Line]) -> Chart {
     let description = format!("Loops of {y} over {x}, {set} data, specimen and models");
     let x = Axis::linear(x, scored.input.iter().copied());
     let y = Axis::linear(y, scored.output.iter().copied());
-    Chart { title: set.into(), size: SMALL, x, y, ..Chart::new(description, "", "", curves) }
+    Chart::on_axes(description, x, y, curves).small(set)
 }
 
 /// Outputs over the samples of the unseen data.
@@ -124,9 +123,9 @@ pub fn history(data: &Dataset, lines: &[Line]) -> Chart {
     let all = scored.output.len();
     let from = if all > LONGEST_HISTORY { format!(", the first of {all}") } else { String::new() };
     let description = format!("{label} over the unseen samples, specimen and models");
+    let x = Axis::linear(format!("unseen sample{from}"), curves[0].points.iter().map(|point| point.0));
     let y = Axis::linear(label, scored.output.iter().take(LONGEST_HISTORY).copied());
-    let chart = Chart::new(description, &format!("unseen sample{from}"), "", curves).sized(WIDE.0, 230.0);
-    Chart { y, legend: legend(lines), ..chart }
+    Chart::on_axes(description, x, y, curves).with_height(230.0).with_legend(legend(lines))
 }
 
 /// Magnitude of the error in percent of the largest output over all samples, those of training first, then
@@ -152,8 +151,8 @@ pub fn relative_errors(sets: &[(&Dataset, Vec<Line>); 2]) -> Chart {
     }
     let unseen_from = curves.last().and_then(|curve| curve.points.first()).map_or(0.0, |point| point.0);
     let points = || curves.iter().flat_map(|curve| &curve.points);
+    let x = Axis::linear(format!("sample; unseen from {unseen_from}"), points().map(|point| point.0));
     let y = Axis::logarithmic("error (% of largest)", points().map(|point| point.1));
     let description = "Error in percent of the largest output over all samples, training first, then unseen";
-    let chart = Chart::new(description, &format!("sample; unseen from {unseen_from}"), "", curves);
-    Chart { y, legend: legend(&sets[0].1).split_off(1), ..chart.sized(WIDE.0, 260.0) }
+    Chart::on_axes(description, x, y, curves).with_height(260.0).with_legend(legend(&sets[0].1).split_off(1))
 }

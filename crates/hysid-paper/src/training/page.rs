@@ -2,11 +2,10 @@
 
 use hysid::options::network::Trainer;
 use hysid::significant::Significant;
-use hysid_document::chart::WIDE;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
 
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
-use crate::chapter::{Chapter, Content, stands_in};
+use crate::chapter::{Chapter, Content, FurtherFile, stands_in};
 
 /// Heading of every table: what the figures are of.
 fn heading(protocol: &Protocol) -> String {
@@ -26,12 +25,12 @@ const SEEDS_HEADER: &str =
     "seed,trainer,train_mse,train_nrmse_std_percent,test_mse,test_nrmse_std_percent,seconds,evaluations\n";
 const HISTORY_HEADER: &str = "seed,trainer,epoch,evaluations,seconds,train_nrmse_std_percent\n";
 
-/// Names of the files beside page and tables, and the header lines of those that are no drawings.
-pub const FILES: [(&str, Option<&str>); 4] = [
-    (SEEDS_TABLE, Some(SEEDS_HEADER)),
-    (HISTORY_TABLE, Some(HISTORY_HEADER)),
-    (EPOCHS_CHART, None),
-    (SECONDS_CHART, None),
+/// The files beside page and tables.
+pub const FILES: [FurtherFile; 4] = [
+    FurtherFile { name: SEEDS_TABLE, header: Some(SEEDS_HEADER) },
+    FurtherFile { name: HISTORY_TABLE, header: Some(HISTORY_HEADER) },
+    FurtherFile { name: EPOCHS_CHART, header: None },
+    FurtherFile { name: SECONDS_CHART, header: None },
 ];
 
 /// The chapter on all repetitions.
@@ -40,8 +39,8 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     let files = [
         (SEEDS_TABLE, Content::Text(csv(repetitions))),
         (HISTORY_TABLE, Content::Text(history(repetitions))),
-        (EPOCHS_CHART, Content::Drawing(epochs.clone())),
-        (SECONDS_CHART, Content::Drawing(seconds.clone())),
+        (EPOCHS_CHART, Content::Drawing(epochs.clone().into())),
+        (SECONDS_CHART, Content::Drawing(seconds.clone().into())),
     ];
     let specimen = protocol.specimen;
     let mut parts = vec![
@@ -57,8 +56,8 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
     }
     parts.extend([
         Part::heading("Convergence"),
-        Part::Figure(epochs),
-        Part::Figure(seconds),
+        Part::chart(epochs),
+        Part::chart(seconds),
         Part::note(format!(
             "The specimen: {}. Published: {}. Designed: {}.",
             specimen.summary, specimen.published, specimen.designed
@@ -220,10 +219,8 @@ fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
     let x = Axis::logarithmic(label, points().map(|point| point.0));
     let y = Axis::logarithmic("training error (% of std)", points().map(|point| point.1));
     let description = format!("Training error against {label}, one line for each trainer and seed");
-    let chart = Chart::new(description, "", "", curves)
-        .sized(WIDE.0, 360.0)
-        .with_legend(TRAINERS.map(|trainer| (colour(trainer), trainer.name())));
-    Chart { x, y, ..chart }
+    let legend = TRAINERS.map(|trainer| (colour(trainer), trainer.name()));
+    Chart::on_axes(description, x, y, curves).with_height(360.0).with_legend(legend)
 }
 
 /// Moments that can be told apart in a drawing: about a hundred in a decade of epochs.

@@ -1,4 +1,4 @@
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use hysid::data::metrics::ErrorSums;
 use hysid_document::{Page, markdown};
@@ -9,8 +9,8 @@ use crate::chapter::Content;
 struct Clock(Instant);
 
 impl Observer for Clock {
-    fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
+    fn clock(&self) -> Duration {
+        self.0.elapsed()
     }
 
     fn is_stopped(&self) -> bool {
