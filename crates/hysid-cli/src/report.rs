@@ -69,6 +69,15 @@ pub fn page(report: &Report) -> Page {
     Page { title: report.title.clone(), parts }
 }
 
+/// The label of the axis of time: rows where there is no time.
+pub fn time_label(data: &Dataset) -> String {
+    match (&data.names().time, data.has_time()) {
+        (Some(name), true) => unit::label(name),
+        (None, true) => "time".into(),
+        (_, false) => "row".into(),
+    }
+}
+
 /// The first input as the model sees it, with its unit: spread about zero, maybe.
 fn seen_label(report: &Report) -> String {
     let input = &report.model.names().inputs[0];

@@ -1,6 +1,6 @@
 //! Documents as Markdown. Charts are left out.
 
-use crate::part::{Card, Item, Page, Part};
+use crate::part::{Card, Page, Part};
 use crate::table::{Cell, Table};
 use crate::text::{Piece, Text};
 
@@ -20,11 +20,8 @@ fn part(part: &Part) -> String {
         Part::Heading(heading) => format!("### {}\n\n", text(heading)),
         Part::Lead(words) | Part::Paragraph(words) | Part::Note(words) => format!("{}\n\n", text(words)),
         Part::Command(command) => format!("```\n{command}\n```\n\n"),
-        Part::List(items) => list(items.iter().map(|Item { text, .. }| text)),
-        Part::Verdicts(verdicts) => list(verdicts.iter()),
-        Part::Definitions(pairs) => {
-            let pair = |(name, value): &(String, String)| Text::from(format!("{name}: {value}"));
-            list(pairs.iter().map(pair).collect::<Vec<_>>().iter())
+        Part::List(_) | Part::Verdicts(_) | Part::Definitions(_) => {
+            part.items().iter().map(|item| format!("- {}\n", text(item))).collect::<String>() + "\n"
         }
         Part::Table(content) => table(content),
         Part::Chart(_) | Part::Charts(_) => String::new(),
@@ -35,10 +32,6 @@ fn part(part: &Part) -> String {
 
 fn card(card: &Card) -> String {
     format!("### {}\n\n{}", text(&card.heading), parts(&card.parts))
-}
-
-fn list<'a>(items: impl Iterator<Item = &'a Text>) -> String {
-    items.map(|item| format!("- {}\n", text(item))).collect::<String>() + "\n"
 }
 
 fn text(text: &Text) -> String {

@@ -101,14 +101,33 @@ impl Part {
         Part::List(warnings.iter().map(item).collect())
     }
 
+    /// The items of a list, of verdicts or of definitions.
+    pub(crate) fn items(&self) -> Vec<Text> {
+        match self {
+            Part::List(items) => items.iter().map(|item| item.text.clone()).collect(),
+            Part::Verdicts(verdicts) => verdicts.clone(),
+            Part::Definitions(pairs) => {
+                pairs.iter().map(|(name, value)| format!("{name}: {value}").into()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The parts in it: of a section, of what is folded, of cards.
+    fn inner(&self) -> Vec<&Part> {
+        match self {
+            Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().collect(),
+            Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).collect(),
+            _ => Vec::new(),
+        }
+    }
+
     /// The charts in it.
     pub fn charts(&self) -> Vec<&Chart> {
         match self {
             Part::Chart(chart) => vec![chart.as_ref()],
             Part::Charts(charts) => charts.iter().collect(),
-            Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().flat_map(Part::charts).collect(),
-            Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).flat_map(Part::charts).collect(),
-            _ => Vec::new(),
+            other => other.inner().into_iter().flat_map(Part::charts).collect(),
         }
     }
 
@@ -116,9 +135,7 @@ impl Part {
     pub fn tables(&self) -> Vec<&Table> {
         match self {
             Part::Table(table) => vec![table],
-            Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().flat_map(Part::tables).collect(),
-            Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).flat_map(Part::tables).collect(),
-            _ => Vec::new(),
+            other => other.inner().into_iter().flat_map(Part::tables).collect(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Documents as plain text for a terminal: paragraphs wrapped to its width, tables with aligned columns, no charts.
 
-use crate::part::{Card, Item, Part};
+use crate::part::{Card, Part};
 use crate::table::{Cell, Table};
 use crate::visible::{clipped, visible};
 
@@ -28,9 +28,10 @@ fn block(part: &Part) -> Vec<String> {
         Part::Heading(text) => vec![visible(&text.plain()).into_owned()],
         Part::Lead(text) | Part::Paragraph(text) | Part::Note(text) => vec![paragraph(&text.plain())],
         Part::Command(command) => vec![format!("  {}", visible(command))],
-        Part::List(items) => vec![list(items.iter().map(|Item { text, .. }| text.plain()))],
-        Part::Verdicts(verdicts) => vec![list(verdicts.iter().map(|verdict| verdict.plain()))],
-        Part::Definitions(pairs) => vec![list(pairs.iter().map(|(name, value)| format!("{name}: {value}")))],
+        Part::List(_) | Part::Verdicts(_) | Part::Definitions(_) => {
+            let items = part.items().into_iter().map(|item| paragraph(&format!("- {}", item.plain())));
+            vec![items.collect::<Vec<String>>().join("\n")]
+        }
         Part::Table(content) => vec![table(content)],
         Part::Chart(_) | Part::Charts(_) => Vec::new(),
         Part::Cards(cards) => {
@@ -42,10 +43,6 @@ fn block(part: &Part) -> Vec<String> {
 
 fn paragraph(text: &str) -> String {
     wrapped(text, WIDTH).join("\n")
-}
-
-fn list(items: impl Iterator<Item = String>) -> String {
-    items.map(|item| paragraph(&format!("- {item}"))).collect::<Vec<String>>().join("\n")
 }
 
 /// A table in aligned columns below its heading.

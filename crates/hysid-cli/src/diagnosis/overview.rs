@@ -6,6 +6,7 @@ use hysid_document::chart::thin::{Point, thin, thin_path};
 use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 
 use super::quantities::Quantities;
+use crate::report::time_label;
 
 /// Points of all loops together.
 const LOOP_POINTS: usize = 8000;
@@ -99,11 +100,7 @@ impl<'a> Overview<'a> {
         let x = &record.inputs()[0];
         let way: Vec<Point> = (0..x.len()).map(|row| (time(row), x[row])).collect();
         let turning = self.diagnosis.turning_rows[index].iter().map(|&row| way[row]).collect();
-        let label = match (record.time(), &self.data.names().time) {
-            (Some(_), Some(name)) => unit::label(name),
-            (Some(_), None) => "time".into(),
-            (None, _) => "row".into(),
-        };
+        let label = time_label(self.data);
         let input = unit::label(&self.quantities.input);
         let description = format!("{input} over {label}, record {}", record.name());
         let curves = vec![Curve::new(thin(&way, WAY_POINTS), Colour::Input, 1.2), dots(turning)];

@@ -4,7 +4,7 @@ use hysid::model::Prediction;
 use hysid_document::chart::thin::{Point, outline, thin};
 use hysid_document::{Axis, Chart, Colour, Curve, Part, Piece, Text, number, unit};
 
-use super::{BAND, ReportSet};
+use super::{BAND, ReportSet, time_label};
 
 /// Most records drawn; of more, those with the largest errors.
 const MOST_RECORDS: usize = 6;
@@ -59,7 +59,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
         Some(time) => time.to_vec(),
         None => (1..=record.len()).map(|row| row as f64).collect(),
     };
-    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set), points };
+    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set.data), points };
     let output = unit::label(&names.output);
     let error = match unit::split(&names.output).1 {
         Some(unit) => format!("error ({unit})"),
@@ -91,14 +91,6 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
         parts.push(panel.figure(&unit::label(name), 165.0, &[line], None));
     }
     parts
-}
-
-fn time_label(set: &ReportSet) -> String {
-    match (&set.data.names().time, set.data.has_time()) {
-        (Some(name), true) => unit::label(name),
-        (None, true) => "time".into(),
-        (_, false) => "row".into(),
-    }
 }
 
 /// What the charts of a record have in common.

@@ -1,31 +1,37 @@
 //! Chapters as documents and as CSV.
 
 use anyhow::Result;
-use hysid_document::{Cell, Page, Part, Piece, Table, Text};
+use hysid_document::{Cell, Page, Part, Piece, Table, Text, capitalised};
 use hysid_paper::{Chapter, targets};
 
 /// Header line of [`csv`].
 pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
 
-/// A page of one chapter, or of several with a table of targets before them. `made` says when and by what.
-pub fn page(title: &str, made: &Text, chapters: &[Chapter]) -> Page {
-    let lead = |chapter: &Chapter| Part::Lead(chapter.verdict.as_str().into());
-    let remark = Part::Note(made.clone());
-    let targets = targets(chapters).map(|targets| Part::section("Targets", [Part::Table(targets)]));
-    let parts = match chapters {
-        [chapter] => {
-            let results = Part::section("Results", chapter.parts.as_slice());
-            [lead(chapter), remark].into_iter().chain(targets).chain([results]).collect()
-        }
-        _ => {
-            let sections = chapters.iter().map(|chapter| {
-                let parts = [&[lead(chapter)], chapter.parts.as_slice()].concat();
-                Part::section(format!("{}: {}", chapter.name, chapter.title), parts)
-            });
-            std::iter::once(remark).chain(targets).chain(sections).collect()
-        }
-    };
-    Page { title: title.into(), parts }
+/// A page of one chapter. `made` says when and by what.
+pub fn page(made: Text, chapter: &Chapter) -> Page {
+    let mut parts = vec![lead(chapter), Part::Note(made)];
+    parts.extend(targets_section(std::slice::from_ref(chapter)));
+    parts.push(Part::section("Results", chapter.parts.as_slice()));
+    Page { title: capitalised(&chapter.title), parts }
+}
+
+/// A page of all chapters, with a table of targets before them.
+pub fn together(made: Text, chapters: &[Chapter]) -> Page {
+    let mut parts = vec![Part::Note(made)];
+    parts.extend(targets_section(chapters));
+    parts.extend(chapters.iter().map(|chapter| {
+        let content = [&[lead(chapter)], chapter.parts.as_slice()].concat();
+        Part::section(format!("{}: {}", chapter.name, chapter.title), content)
+    }));
+    Page { title: "The paper reproduced".into(), parts }
+}
+
+fn lead(chapter: &Chapter) -> Part {
+    Part::Lead(chapter.verdict.as_str().into())
+}
+
+fn targets_section(chapters: &[Chapter]) -> Option<Part> {
+    targets(chapters).map(|targets| Part::section("Targets", [Part::Table(targets)]))
 }
 
 /// When, by what and how the chapters were made; `conditions` is what follows the command.
@@ -39,9 +45,8 @@ pub fn made(conditions: &str) -> Text {
 pub fn summary(chapter: &Chapter) -> Vec<Part> {
     let shown = chapter.parts.iter().filter(|part| matches!(part, Part::Table(_) | Part::Heading(_)));
     let targets = targets(std::slice::from_ref(chapter)).map(Part::Table);
-    let verdict = Part::Lead(chapter.verdict.as_str().into());
     let heading = Part::heading(chapter.title.as_str());
-    std::iter::once(heading).chain(shown.cloned()).chain(targets).chain([verdict]).collect()
+    std::iter::once(heading).chain(shown.cloned()).chain(targets).chain([lead(chapter)]).collect()
 }
 
 /// All tables, a line for each cell, numbers with all their digits.

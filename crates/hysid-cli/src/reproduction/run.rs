@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use hysid_document::{Part, Text, capitalised, markdown, plain};
+use hysid_document::{Page, Part, Text, markdown, plain};
 use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings, targets};
 
@@ -138,8 +138,8 @@ fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
 fn write_one(experiment: Experiment, one: &Finished, settings: Settings, outputs: Outputs) -> Result<()> {
     let chapter = &one.chapter;
     let made = made(std::slice::from_ref(one), settings, "");
-    let title = capitalised(&chapter.title);
-    write_all(outputs.rendered(experiment.name()), &title, &made, std::slice::from_ref(chapter))?;
+    let page = rendering::page(made, chapter);
+    write_all(outputs.rendered(experiment.name()), &page, std::slice::from_ref(chapter))?;
     for (name, content) in &chapter.files {
         if let Some(destination) = outputs.further(experiment, name) {
             match content {
@@ -160,20 +160,14 @@ fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -
         false => String::new(),
     };
     let made = made(finished, settings, &further);
-    write_all(outputs.rendered(TOGETHER), "The paper reproduced", &made, &chapters)?;
+    write_all(outputs.rendered(TOGETHER), &rendering::together(made, &chapters), &chapters)?;
     let targets = targets(&chapters).map(|table| plain::rendered(&[Part::Table(table)]) + "\n");
     let page = files::shown(outputs.page(TOGETHER).path());
     results(&(targets.unwrap_or_default() + &format!("page    {page}\n")))
 }
 
-fn write_all(
-    [page, markdown, tables]: [Destination; 3],
-    title: &str,
-    made: &Text,
-    chapters: &[Chapter],
-) -> Result<()> {
-    let content = rendering::page(title, made, chapters);
-    files::write_page(&page, &content)?;
-    files::write(&markdown, markdown::page(&content).as_bytes())?;
+fn write_all([html, text, tables]: [Destination; 3], page: &Page, chapters: &[Chapter]) -> Result<()> {
+    files::write_page(&html, page)?;
+    files::write(&text, markdown::page(page).as_bytes())?;
     files::write(&tables, rendering::csv(chapters)?.as_bytes())
 }
