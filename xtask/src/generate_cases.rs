@@ -9,7 +9,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use hysid::data::record::{Dataset, Record};
-use hysid::plant::cases::{Case, generated, one_loop};
+use hysid::specimens::cases::{Case, generated, one_loop};
 
 pub use request::Request;
 

@@ -13,7 +13,7 @@ use hysid::model::BAND_PROBABILITIES;
 use hysid::options::ModelName;
 use hysid::options::chosen::RateChoice;
 use hysid::options::network::SEED;
-use hysid::plant::Specimen;
+use hysid::specimens::Specimen;
 
 use crate::reproduction::Experiment;
 pub use model_options::{ModelOptions, flag};

@@ -58,7 +58,7 @@ mod tests {
 
     use clap::Parser;
     use hysid::data::record::ColumnNames;
-    use hysid::plant::{Specimen, with_noise};
+    use hysid::specimens::{Specimen, with_noise};
 
     use super::*;
     use crate::arguments::{Arguments, Command};

@@ -10,9 +10,8 @@ mod overview;
 mod quantities;
 
 pub use data::DataDiagnosis;
+use hysid_document::plain::{WIDTH, wrapped};
 pub use model::DiagnosedModel;
-
-use crate::lines::{WIDTH, wrapped};
 
 /// The text in lines that fit a terminal.
 fn paragraph(text: &str) -> String {

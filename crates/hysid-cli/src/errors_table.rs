@@ -1,9 +1,8 @@
 //! Errors as a small table, in the user's units.
 
-use std::fmt::Write;
-
 use hysid::data::metrics::Errors;
 use hysid::significant::Significant;
+use hysid_document::plain::aligned;
 
 use hysid::data::unit;
 
@@ -11,6 +10,9 @@ use crate::terminal::clipped;
 
 /// Heading of errors without the rows of a warm-up.
 pub const AFTER_WARM_UP: &str = "after warm-up";
+
+/// Letters of a column, at least.
+const COLUMN: usize = 13;
 
 /// What stands in a row of the table.
 type Measure = fn(&Errors) -> String;
@@ -28,20 +30,12 @@ pub fn errors_table(sets: &[(&str, &Errors)]) -> String {
         (format!("largest error{unit}"), |errors| number(errors.max_abs_error)),
         ("rows scored".into(), |errors| errors.samples.to_string()),
     ];
-    let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-    let mut text = " ".repeat(width);
-    for (name, _) in sets {
-        let _ = write!(text, "  {name:>13}");
-    }
-    text.push('\n');
-    for (label, measure) in &rows {
-        let _ = write!(text, "{label:<width$}");
-        for (_, errors) in sets {
-            let _ = write!(text, "  {:>13}", measure(errors));
-        }
-        text.push('\n');
-    }
-    text
+    let heading = |&(name, _): &(&str, &Errors)| format!("{name:>COLUMN$}");
+    let mut table = vec![std::iter::once(String::new()).chain(sets.iter().map(heading)).collect()];
+    table.extend(rows.map(|(label, measure)| {
+        std::iter::once(label).chain(sets.iter().map(|(_, errors)| measure(errors))).collect()
+    }));
+    aligned(&table).join("\n") + "\n"
 }
 
 fn number(value: f64) -> String {

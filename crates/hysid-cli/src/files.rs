@@ -6,8 +6,9 @@ use std::io::Read;
 use std::path::{self, Path};
 
 use anyhow::{Result, anyhow, bail};
+use hysid_document::{Page, html};
 pub use hysid_files::reason;
-use hysid_files::{Destination, Failure};
+use hysid_files::{Destination, Failure, PAGE_MARK};
 
 use crate::messages::{Usage, note};
 use crate::terminal;
@@ -37,6 +38,16 @@ pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
         Err(failure) => return Err(explained(failure)),
     }
     Ok(())
+}
+
+/// Writes a page, as [`write`] does.
+pub fn write_page(destination: &Destination, page: &Page) -> Result<()> {
+    write(destination, page_text(page).as_bytes())
+}
+
+/// A page with the mark by which Hysid knows its own.
+pub fn page_text(page: &Page) -> String {
+    html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION")))
 }
 
 /// Writes a file that took long to compute. If that fails, it is put elsewhere, and the error says where.

@@ -12,17 +12,18 @@ use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::{Model, Prediction, Provenance};
 use hysid::options::Request;
-use hysid_files::Destination;
+use hysid_document::Page;
+use hysid_document::plain::{WIDTH, wrapped};
+use hysid_files::{Destination, GENERATOR};
 use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
 use crate::data::Data;
 use crate::errors_table::AFTER_WARM_UP;
-use crate::lines::{WIDTH, wrapped};
 use crate::messages::{Usage, note, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
-use crate::{errors_table, files, interrupt, plot, understanding};
+use crate::{errors_table, files, interrupt, understanding};
 
 /// A model and what was said and spent on the way to it.
 pub struct Identified {
@@ -130,11 +131,10 @@ impl Identified {
 
     /// Writes the report on the model, which is written already.
     pub fn write_report(&self, page: &Destination, model: &Path, sets: &[(&str, &Dataset)]) -> Result<()> {
-        let text = self.report(model, sets)?;
-        files::write(page, text.as_bytes()).context("the model is written, its report is not")
+        files::write_page(page, &self.report(model, sets)?).context("the model is written, its report is not")
     }
 
-    fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<String> {
+    fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
         let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Ok(report::page(&Report {
             title,
@@ -149,7 +149,7 @@ impl Identified {
 
     /// Measured and simulated loops on a set of data, as an SVG file.
     pub fn loops(&self, name: &str, data: &Dataset) -> Result<String> {
-        Ok(plot::standalone(&report::loops_svg(&self.set(name, data)?)))
+        Ok(report::loops(&self.set(name, data)?).file(GENERATOR))
     }
 
     fn set<'a>(&self, name: &str, data: &'a Dataset) -> Result<ReportSet<'a>> {

@@ -8,12 +8,14 @@ mod histories;
 mod neurons;
 mod parameters;
 mod provenance;
-mod unit;
 mod usage;
 
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
 use hysid::model::{Model, Prediction};
+use hysid_document::{Page, number, unit};
+
+pub use figures::{loops, small_loops};
 
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;
@@ -51,50 +53,29 @@ pub struct ReportSet<'a> {
 }
 
 /// The whole page.
-pub fn page(report: &Report) -> String {
-    let sections = [
-        errors::section(report),
-        provenance::notes(report),
-        ensemble::section(report),
-        band::section(report),
-        report.sets.iter().map(figures::loops_section).collect(),
-        report.sets.iter().map(histories::section).collect(),
-        figures::convergence_section(report.model),
-        neurons::section(report),
-        parameters::section(report),
-        provenance::understood(report),
-        provenance::warnings(report),
-        provenance::section(report),
-        usage::section(report),
-    ]
-    .concat();
-    crate::page::whole(&report.title, &(errors::verdict(report) + &sections))
+pub fn page(report: &Report) -> Page {
+    let mut parts = vec![errors::verdict(report), errors::section(report)];
+    parts.extend(provenance::notes(report));
+    parts.extend(ensemble::section(report));
+    parts.extend(band::section(report));
+    parts.extend(report.sets.iter().map(figures::loops_section));
+    parts.extend(report.sets.iter().map(histories::section));
+    parts.extend(figures::convergence_section(report.model));
+    parts.extend(neurons::section(report));
+    parts.extend(parameters::section(report));
+    parts.extend(provenance::understood(report));
+    parts.extend([provenance::warnings(report), provenance::section(report)]);
+    parts.extend(usage::sections(report));
+    Page { title: report.title.clone(), parts }
 }
 
-/// Measured and simulated loops of a set in one chart, an `svg` element.
-/// [`plot::standalone`] makes a file of it.
-pub fn loops_svg(set: &ReportSet) -> String {
-    figures::loops(set)
-}
-
-/// Measured and simulated loops of a set in a small chart with this title.
-pub fn small_loops(set: &ReportSet, title: String) -> String {
-    figures::small_loops(set, title)
-}
-
-/// Training error against epoch, an `svg` element; `None` for a model that was not searched for.
-pub fn convergence_svg(model: &Model) -> Option<String> {
-    figures::convergence(model)
-}
-
-/// The unit of a column, or words for it.
-pub fn unit_of(column: &str) -> String {
-    unit::of(column)
-}
-
-/// A column's name as the label of an axis.
-pub fn unit_label(column: &str) -> String {
-    unit::label(column)
+/// The label of the axis of time: rows where there is no time.
+pub fn time_label(data: &Dataset) -> String {
+    match (&data.names().time, data.has_time()) {
+        (Some(name), true) => unit::label(name),
+        (None, true) => "time".into(),
+        (_, false) => "row".into(),
+    }
 }
 
 /// The first input as the model sees it, with its unit: spread about zero, maybe.
@@ -103,7 +84,7 @@ fn seen_label(report: &Report) -> String {
     match report.model.preprocessing().companding {
         None => unit::label(input),
         Some(scale) => {
-            let scale = unit::with(&crate::page::number(scale, 3), input);
+            let scale = unit::with(&number(scale, 3), input);
             format!("asinh({} / {scale})", unit::split(input).0)
         }
     }

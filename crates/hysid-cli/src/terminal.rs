@@ -3,37 +3,15 @@
 use std::borrow::Cow;
 
 use anyhow::Result;
-use hysid::error::escaped;
+use hysid_document::visible::is_hidden;
+pub use hysid_document::visible::{clipped, visible};
 use serde::Serialize;
-
-/// Letters of a name or a cell that are shown.
-const MOST_LETTERS: usize = 60;
 
 /// Letters of a line that are shown, at its beginning and at its end.
 const LONGEST_LINE: (usize, usize) = (1500, 400);
 
 /// Names that are shown of many.
 const MOST_NAMES: usize = 6;
-
-/// True for what a terminal obeys instead of showing it: control characters, and those that turn the direction of the
-/// text or take no room.
-fn is_hidden(letter: char) -> bool {
-    letter.is_control()
-        || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
-        || matches!(letter, '\u{2060}'..='\u{206f}' | '\u{feff}')
-}
-
-/// The text with visible signs in the place of control characters, such as `\n` and `\x1b`: always one line.
-pub fn visible(text: &str) -> Cow<'_, str> {
-    escaped(text, is_hidden)
-}
-
-/// A name or a cell of a file: visible, and cut where it is long.
-pub fn clipped(text: &str) -> Cow<'_, str> {
-    let Some((end, _)) = text.char_indices().nth(MOST_LETTERS) else { return visible(text) };
-    let letters = text[end..].chars().count() + MOST_LETTERS;
-    format!("{}… ({letters} characters)", visible(&text[..end])).into()
-}
 
 /// A line with names and words: visible, and without its middle where it is very long.
 pub fn line(text: &str) -> Cow<'_, str> {
@@ -87,17 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn control_characters_are_seen_and_not_obeyed() {
-        assert_eq!(visible("force (kN), µm"), "force (kN), µm");
-        assert_eq!(visible("a\nb\r\t\x1b[2J\x7f\u{9b}31m"), r"a\nb\r\t\x1b[2J\x7f\u{9b}31m");
-        assert_eq!(visible("abc\u{202e}def\u{200b}"), r"abc\u{202e}def\u{200b}");
-    }
-
-    #[test]
     fn long_text_is_cut_and_says_how_long_it_was() {
-        let text = "µ".repeat(61);
-        assert_eq!(clipped(&text[..120]), text[..120]);
-        assert_eq!(clipped(&text), format!("{}… (61 characters)", "µ".repeat(60)));
         let long = format!("begin{}\nend", "x".repeat(5000));
         let cut = line(&long);
         assert!(cut.starts_with("begin") && cut.ends_with(r"x\nend") && cut.chars().count() < 2000, "{cut}");

@@ -8,10 +8,10 @@ use hysid::options::auto::AutoOptions;
 use hysid::significant::Significant;
 
 use crate::data::Data;
-use crate::lines::{WIDTH, wrapped};
 use crate::messages::note;
 use crate::terminal::{clipped, listed, listed_paths};
 use hysid::data::unit;
+use hysid_document::plain::{WIDTH, wrapped};
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;

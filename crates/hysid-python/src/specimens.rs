@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use hysid::plant::{Specimen, with_noise};
+use hysid::specimens::{Specimen, with_noise};
 use pyo3::prelude::*;
 
 use crate::data::Dataset;

@@ -19,7 +19,7 @@ use hysid::law::turning_point_stack::TurningPointStack;
 use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
 use hysid::options::classical::Sign;
-use hysid::plant::Ferromagnet;
+use hysid::specimens::Ferromagnet;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
 use hysid::operator::{Operator, Stop};
-use hysid::plant::{Ferromagnet, Specimen, with_noise};
+use hysid::specimens::{Ferromagnet, Specimen, with_noise};
 
 /// Springs and sliders: a Prandtl-Ishlinskii law, as a force.
 fn sliders(x: &[f64]) -> Vec<f64> {

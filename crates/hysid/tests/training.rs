@@ -13,7 +13,7 @@ use hysid::operator::{DeterioratingStop, Operator, Stop};
 use hysid::options::Request;
 use hysid::options::network::FitOptions;
 use hysid::options::network::Regularisation;
-use hysid::plant::with_noise;
+use hysid::specimens::with_noise;
 use hysid::termination::Termination;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus as Generator;

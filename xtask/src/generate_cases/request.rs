@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use hysid::plant::cases::KINDS;
+use hysid::specimens::cases::KINDS;
 
 use crate::Usage;
 

@@ -14,11 +14,13 @@ const LONGEST_SOURCE: usize = 800;
 const EMPTY_NAMES: [&str; 7] = ["utils", "util", "helpers", "helper", "manager", "common", "misc"];
 
 /// The crates of the library.
-const LIBRARY: [&str; 4] = [
+const LIBRARY: [&str; 6] = [
     "crates/hysid-core/src/",
     "crates/hysid/src/",
     "crates/hysid-diagnosis/src/",
     "crates/hysid-specimens/src/",
+    "crates/hysid-document/src/",
+    "crates/hysid-paper/src/",
 ];
 
 /// What the code of the library does not contain, and why.

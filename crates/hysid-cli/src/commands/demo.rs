@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use clap::Parser;
 use hysid::data::record::Dataset;
-use hysid::plant::Specimen;
+use hysid::specimens::Specimen;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;

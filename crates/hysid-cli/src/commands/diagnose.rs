@@ -6,6 +6,7 @@ use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::options::chosen::RateChoice;
+use hysid_document::Page;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
@@ -23,7 +24,7 @@ use crate::understanding;
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
     text: String,
-    page: Option<String>,
+    page: Option<Page>,
 }
 
 /// Runs the command.
@@ -43,9 +44,9 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
         (None, _) => of_data(arguments, &contents)?,
     };
     results(&told.text)?;
-    if let (Some(page), Some(text)) = (&page, &told.page) {
-        files::write(page, text.as_bytes())?;
-        note(format_args!("page    {}", files::shown(page.path())));
+    if let (Some(destination), Some(page)) = (&page, &told.page) {
+        files::write_page(destination, page)?;
+        note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)
 }

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use anyhow::Result;
 use hysid::data::record::{ColumnNames, Dataset};
-use hysid::plant::{Specimen, with_noise};
+use hysid::specimens::{Specimen, with_noise};
+use hysid_document::count;
+use hysid_document::plain::indented;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Generate;
 use crate::csv_text::csv_text;
 use crate::files::{self, check_outputs};
-use crate::lines::indented;
 use crate::messages::{Usage, json_results, note, raw_results, results};
-use crate::page::count;
 
 /// Runs the command.
 pub fn run(arguments: &Generate) -> Result<Outcome> {

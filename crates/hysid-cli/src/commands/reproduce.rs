@@ -1,10 +1,11 @@
 //! `hysid reproduce`: the paper's experiments, our figures beside its own.
 
 use anyhow::Result;
+use hysid_paper::Settings;
 
 use crate::Outcome;
 use crate::arguments::Reproduce;
-use crate::reproduction::{self, Outputs, Settings};
+use crate::reproduction::{self, Outputs};
 use crate::{files, interrupt};
 
 /// Runs the command.

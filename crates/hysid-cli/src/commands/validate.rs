@@ -8,6 +8,7 @@ use hysid::model::Model;
 use hysid::significant::Significant;
 use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
+use hysid_document::plain::{WIDTH, aligned, wrapped};
 
 use crate::Outcome;
 use crate::arguments::Validate;
@@ -16,7 +17,6 @@ use crate::commands::fit::{request, warn_of_ignored};
 use crate::data::{Data, read_tables};
 use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
-use crate::lines::{WIDTH, aligned, wrapped};
 use crate::messages::{json_results, note, results};
 use crate::progress::Follower;
 

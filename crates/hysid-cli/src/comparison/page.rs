@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 use hysid::data::record::Dataset;
+use hysid_document::chart::thin::thin;
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
 use super::{Fitted, HEADINGS, Row, cells, stopped_note};
-use crate::page::{figure, note, section, table, verdict, whole};
-use crate::plot::{Axis, Chart, Colour, Curve, Label};
 use crate::report::{ReportSet, small_loops};
 
 /// Most records drawn into one chart.
@@ -15,7 +15,7 @@ const MOST_RECORDS: usize = 200;
 const OVERLAID: usize = 3;
 
 /// The whole page.
-pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) -> Result<String> {
+pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) -> Result<Page> {
     let labels: Vec<String> = rows.iter().map(Row::label).collect();
     let fitted: Vec<(&str, &Fitted)> = rows
         .iter()
@@ -24,53 +24,49 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
         .collect();
     let shown = test.unwrap_or(train);
     let data = if test.is_some() { "unseen data" } else { "the training data" };
-    let mut content = fitted.first().map_or_else(String::new, |(name, best)| {
+    let mut parts = Vec::new();
+    parts.extend(fitted.first().map(|(name, best)| {
         let error = super::percent(best.judged());
-        verdict(&format!("On {data}, {name} is best: {error} % of the output’s standard deviation."))
-    });
-    content += &section(
-        "Errors",
-        &(rows_table(rows)
-            + &note(&format!(
-                "NRMSE in percent of the output’s standard deviation, of free runs. Fits ran on one thread each, several at a time. {}",
-                stopped_note(rows)
-            ))),
+        Part::Lead(format!("On {data}, {name} is best: {error} % of the output’s standard deviation.").into())
+    }));
+    let words = format!(
+        "NRMSE in percent of the output’s standard deviation, of free runs. Fits ran on one thread each, several at a time. {}",
+        stopped_note(rows)
     );
+    parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
     if !fitted.is_empty() {
-        content += &section("Error against size", &figure(&size_chart(&fitted, data), true));
-        let mut loops =
-            format!("<div class=\"charts\">\n{}</div>\n", figure(&overlay(&fitted, shown)?, false));
-        let mut multiples = String::new();
-        for (name, fitted) in &fitted {
-            let simulated: Result<Vec<Vec<f64>>, hysid::Error> =
-                shown.records().iter().map(|record| fitted.model.simulate(record)).collect();
-            let errors = fitted.judged().clone();
-            let set =
-                ReportSet { name: data.into(), data: shown, simulated: simulated?, predicted: None, errors };
-            let title = format!("{name}: {} %", super::percent(fitted.judged()));
-            multiples += &figure(&small_loops(&set, title), false);
-        }
-        loops += &format!("<h3>Model by model</h3>\n<div class=\"charts small\">\n{multiples}</div>\n");
-        content += &section(&format!("Loops on {data}"), &loops);
+        parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
+        let loops =
+            fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown)).collect::<Result<_>>()?;
+        let overlay = Part::chart(overlay(&fitted, shown)?);
+        let content = [overlay, Part::heading("Model by model"), Part::Charts(loops)];
+        parts.push(Part::section(format!("Loops on {data}"), content));
     }
-    Ok(whole(title, &content))
+    Ok(Page { title: title.into(), parts })
 }
 
-fn rows_table(rows: &[Row]) -> String {
-    let cells_of = |row: &Row| {
-        let mut line = vec![row.label()];
-        match &row.outcome {
-            Ok(fitted) => line.extend(cells(fitted)),
-            Err(why) => line.push(why.clone()),
-        }
-        line
+/// Measured and simulated loops of one model.
+fn loops(name: &str, fitted: &Fitted, data: &str, shown: &Dataset) -> Result<Chart> {
+    let simulated = shown.records().iter().map(|record| fitted.model.simulate(record));
+    let simulated = simulated.collect::<hysid::Result<_>>()?;
+    let errors = fitted.judged().clone();
+    let set = ReportSet { name: data.into(), data: shown, simulated, predicted: None, errors };
+    Ok(small_loops(&set, &format!("{name}: {} %", super::percent(fitted.judged()))))
+}
+
+fn rows_table(rows: &[Row]) -> Table {
+    let cells_of = |row: &Row| -> Vec<Cell> {
+        let cells = match &row.outcome {
+            Ok(fitted) => cells(fitted).to_vec(),
+            Err(why) => vec![why.clone()],
+        };
+        std::iter::once(row.label()).chain(cells).map(Cell::from).collect()
     };
-    let rows: Vec<Vec<String>> = rows.iter().map(cells_of).collect();
-    table(&HEADINGS.map(String::from), &rows)
+    Table::new(HEADINGS).with_rows(rows.iter().map(cells_of))
 }
 
 /// Error against number of parameters, a dot for each model.
-fn size_chart(fitted: &[(&str, &Fitted)], data: &str) -> String {
+fn size_chart(fitted: &[(&str, &Fitted)], data: &str) -> Chart {
     let point = |fitted: &Fitted| {
         let error = fitted.judged().nrmse_std_percent.unwrap_or(f64::NAN);
         (fitted.model.parameters() as f64, error)
@@ -84,21 +80,13 @@ fn size_chart(fitted: &[(&str, &Fitted)], data: &str) -> String {
     };
     let points: Vec<(f64, f64)> =
         points.into_iter().map(|(n, error)| (n, error.min(30.0 * median))).collect();
-    Chart {
-        description: format!("Error on {data} against number of parameters, a dot for each model"),
-        title: String::new(),
-        size: (860.0, 400.0),
-        // Room for the text to the right of the last point.
-        x: Axis::logarithmic("parameters", points.iter().flat_map(|point| [point.0, 4.0 * point.0])),
-        y: Axis::logarithmic(format!("error on {data} (% of std)"), points.iter().map(|point| point.1)),
-        curves: points
-            .iter()
-            .map(|&point| Curve { points: vec![point], colour: Colour::Simulated, width: 3.0 })
-            .collect(),
-        labels: labels(fitted.iter().map(|(name, _)| *name).zip(points.iter().copied())),
-        legend: Vec::new(),
-    }
-    .svg()
+    // Room for the text to the right of the last point.
+    let x = Axis::logarithmic("parameters", points.iter().flat_map(|point| [point.0, 4.0 * point.0]));
+    let y = Axis::logarithmic(format!("error on {data} (% of std)"), points.iter().map(|point| point.1));
+    let labels = labels(fitted.iter().map(|(name, _)| *name).zip(points.iter().copied()));
+    let curves = points.iter().map(|&point| Curve::new(vec![point], Colour::Simulated, 3.0)).collect();
+    let description = format!("Error on {data} against number of parameters, a dot for each model");
+    Chart { labels, ..Chart::on_axes(description, x, y, curves) }.with_height(400.0)
 }
 
 /// The names beside their points; where two would overlap, the later stands higher.
@@ -126,7 +114,7 @@ fn labels<'a>(named: impl Iterator<Item = (&'a str, (f64, f64))>) -> Vec<Label> 
 }
 
 /// Measured loops, and those of the best models over them.
-fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<String> {
+fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<Chart> {
     let names = data.names();
     let (mut curves, mut legend) = (Vec::new(), vec![(Colour::Measured, "measured".to_string())]);
     let path = |x: &[f64], y: &[f64], shown: &[f64]| -> Vec<(f64, f64)> {
@@ -137,34 +125,20 @@ fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<String> {
     let records = || data.records().iter().step_by(every);
     for record in records() {
         let x = &record.inputs()[0];
-        curves.push(Curve {
-            points: path(x, record.output(), record.output()),
-            colour: Colour::Measured,
-            width: 2.4,
-        });
+        curves.push(Curve::new(path(x, record.output(), record.output()), Colour::Measured, 2.4));
     }
     for (index, (name, fitted)) in fitted.iter().take(OVERLAID).enumerate() {
         legend.push((Colour::Series(index), name.to_string()));
         for record in records() {
             let simulated = fitted.model.simulate(record)?;
             let points = path(&record.inputs()[0], &simulated, record.output());
-            curves.push(Curve { points, colour: Colour::Series(index), width: 1.1 });
+            curves.push(Curve::new(points, Colour::Series(index), 1.1));
         }
     }
     for curve in &mut curves {
-        curve.points = crate::plot::thin::thin(&curve.points, 3000);
+        curve.points = thin(&curve.points, 3000);
     }
-    let points = || curves.iter().flat_map(|curve| &curve.points);
-    let (x, y) = (crate::report::unit_label(&names.inputs[0]), crate::report::unit_label(&names.output));
-    Ok(Chart {
-        description: format!("Loops of {y} over {x}, measured and of the best models"),
-        title: String::new(),
-        size: (700.0, 460.0),
-        x: Axis::linear(x, points().map(|point| point.0)),
-        y: Axis::linear(y, points().map(|point| point.1)),
-        labels: Vec::new(),
-        legend,
-        curves,
-    }
-    .svg())
+    let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
+    let description = format!("Loops of {y} over {x}, measured and of the best models");
+    Ok(Chart::new(description, &x, &y, curves).sized(700.0, 460.0).with_legend(legend))
 }

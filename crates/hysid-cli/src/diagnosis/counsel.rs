@@ -1,11 +1,10 @@
 //! What the data doctor complains of, and which model is advised.
 
 use hysid::diagnosis::{Advice, Complaint, Severity, Verdict};
+use hysid_document::plain::indented;
+use hysid_document::{Item, Part};
 
 use super::cards::sentence;
-use crate::lines::indented;
-use crate::page::{self, section};
-use crate::plot::escape;
 
 /// How far words stand in under their heading.
 const INDENT: usize = 4;
@@ -61,27 +60,23 @@ fn needs(advice: &Advice) -> String {
     sentence(&parts.into_iter().flatten().collect::<Vec<String>>().join("; "))
 }
 
-/// The sentence that a reader of the page should take away.
-pub fn verdict(advice: &Advice) -> String {
+/// The sentence that a reader of the page should take away, and what else is advised.
+pub fn verdict(advice: &Advice) -> [Part; 2] {
     let mut said = advice.statement.iter().map(|line| sentence(line));
     let first = said.next().unwrap_or_default();
     let rest: Vec<String> = std::iter::once(needs(advice)).chain(said).collect();
-    page::verdict(&first) + &page::note(&rest.join(" "))
+    [Part::Lead(first.into()), Part::note(rest.join(" "))]
 }
 
 /// The complaints on a page.
-pub fn doctor_section(complaints: &[Complaint]) -> String {
-    let item = |complaint: &Complaint| {
-        let class = match complaint.severity {
-            Severity::Warning => " class=\"warnings\"",
-            Severity::Note => "",
-        };
-        format!("<li{class}>{}</li>\n", escape(&sentence(&labelled(complaint))))
+pub fn doctor_section(complaints: &[Complaint]) -> Part {
+    let item = |complaint: &Complaint| Item {
+        text: sentence(&labelled(complaint)).into(),
+        is_warning: complaint.severity == Severity::Warning,
     };
-    let items: String = complaints.iter().map(item).collect();
-    let content = match complaints.len() {
-        0 => "<p>Nothing to complain of.</p>\n".to_string(),
-        _ => format!("<ul>\n{items}</ul>\n"),
+    let said = match complaints.len() {
+        0 => Part::paragraph("Nothing to complain of."),
+        _ => Part::List(complaints.iter().map(item).collect()),
     };
-    section("What the data doctor says", &content)
+    Part::section("What the data doctor says", [said])
 }

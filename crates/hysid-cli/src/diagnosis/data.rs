@@ -3,6 +3,7 @@
 use anyhow::Result;
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions};
 use hysid::significant::Significant;
+use hysid_document::{Page, Part, count};
 use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, verdicts};
@@ -10,7 +11,6 @@ use super::overview::Overview;
 use super::quantities::Quantities;
 use super::{counsel, findings, loops, paragraph};
 use crate::data::Data;
-use crate::page::{self, count, definitions, note, section};
 use crate::terminal::{self, clipped};
 
 /// A diagnosis of measured data, and what is told with it.
@@ -81,25 +81,23 @@ impl<'a> DataDiagnosis<'a> {
     }
 
     /// The page: verdicts at a glance, the data, each property with its picture, and the loops in numbers.
-    pub fn page(&self) -> String {
+    pub fn page(&self) -> Page {
         let Self { data, diagnosis, quantities, understood, .. } = self;
         let several = data.set.records().len() > 1;
         let found = &diagnosis.properties;
         let overview = Overview::new(&data.set, diagnosis, quantities);
         let cards = cards(found, quantities, |finding| findings::place(&finding.evidence, several));
-        let content = [
-            counsel::verdict(&diagnosis.advice),
-            section("Verdicts", &verdicts(found)),
+        let mut parts = counsel::verdict(&diagnosis.advice).to_vec();
+        parts.extend([
+            Part::section("Verdicts", [verdicts(found)]),
             counsel::doctor_section(&diagnosis.doctor),
             overview.section(),
-            section("Property by property", &(cards + &note(EXPLANATION))),
-            loops::cycles_section(&diagnosis.cycles, quantities, several),
-            section(
-                "What was understood of the data",
-                &(definitions(understood) + &page::paragraph(&self.noise())),
-            ),
-        ];
-        page::whole(&format!("Diagnosis: {}", data.source.tables[0].file), &content.concat())
+            Part::section("Property by property", [cards, Part::note(EXPLANATION)]),
+        ]);
+        parts.extend(loops::cycles_section(&diagnosis.cycles, quantities, several));
+        let understood = [Part::Definitions(understood.to_vec()), Part::paragraph(self.noise())];
+        parts.push(Part::section("What was understood of the data", understood));
+        Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
     }
 }
 

@@ -2,8 +2,7 @@
 
 use hysid::diagnosis::{Evidence, Finding, Property};
 use hysid::significant::Significant;
-
-use crate::lines::{aligned, indented};
+use hysid_document::plain::{aligned, indented};
 
 const HEADINGS: [&str; 5] =
     ["property           verdict", "index %", "threshold %", "noise %", "comparisons"];

@@ -2,13 +2,11 @@
 
 use hysid::diagnosis::Cycle;
 use hysid::significant::Significant;
+use hysid_document::chart::thin::{Point, thin};
+use hysid_document::plain::aligned;
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};
 
 use super::quantities::{Quantities, text_label};
-use crate::lines::aligned;
-use crate::page::{count, figure, note, number, section, table};
-use crate::plot::thin::{Point, thin};
-use crate::plot::{Axis, Chart, Colour, Curve};
-use crate::report::unit_label;
 use crate::terminal::clipped;
 
 /// Cycles shown at each end of a long table.
@@ -70,71 +68,62 @@ pub fn text(cycles: &[Cycle], quantities: &Quantities) -> String {
     format!("{heading}\n{}\n", aligned(&rows).join("\n"))
 }
 
-/// Energy over the number of the cycle, and the table.
-pub fn cycles_section(cycles: &[Cycle], quantities: &Quantities, several_records: bool) -> String {
-    let Some(largest) = largest(cycles) else { return String::new() };
+/// Energy over the number of the cycle, and the table; `None` without cycles.
+pub fn cycles_section(cycles: &[Cycle], quantities: &Quantities, several_records: bool) -> Option<Part> {
+    let largest = largest(cycles)?;
     let words = "Energy is the area ∮ y dx, positive if the loop is passed clockwise. Width is measured half way up; coercive input and \
                  remanent output are half the distance of the branches where the output, or the input, is 0; secant stiffness is the slope \
                  from tip to tip. Rows count from 1 in their record.";
-    let content = figure(&energy_chart(cycles, quantities), true)
-        + &cycles_table(cycles, quantities, largest, several_records)
-        + &note(words);
-    section(&format!("Loops: {}", count(cycles.len(), "cycle")), &content)
+    let parts = [
+        Part::chart(energy_chart(cycles, quantities)),
+        Part::Table(cycles_table(cycles, quantities, largest, several_records)),
+        Part::note(words),
+    ];
+    Some(Part::section(format!("Loops: {}", count(cycles.len(), "cycle")), parts))
 }
 
-fn energy_chart(cycles: &[Cycle], quantities: &Quantities) -> String {
+fn energy_chart(cycles: &[Cycle], quantities: &Quantities) -> Chart {
     let points: Vec<Point> =
         cycles.iter().enumerate().map(|(number, cycle)| ((number + 1) as f64, cycle.energy)).collect();
-    let label = unit_label(&quantities.as_energy("energy"));
-    let mut curves = vec![Curve { points: thin(&points, 2000), colour: Colour::Faint, width: 1.0 }];
+    let label = unit::label(&quantities.as_energy("energy"));
+    let mut curves = vec![Curve::new(thin(&points, 2000), Colour::Faint, 1.0)];
     if cycles.len() <= MOST_DOTS {
-        // A gap after each point makes dots of them.
-        let dots = points.iter().flat_map(|&point| [point, (f64::NAN, f64::NAN)]).collect();
-        curves.push(Curve { points: dots, colour: Colour::Simulated, width: 3.0 });
+        curves.push(Curve::dots(points.iter().copied(), Colour::Simulated, 3.0));
     }
-    Chart {
-        description: "Energy of each cycle in the order of the record".into(),
-        title: String::new(),
-        size: (860.0, 260.0),
-        x: Axis::linear("cycle", points.iter().map(|point| point.0)),
-        y: Axis::linear(label, points.iter().map(|point| point.1).chain([0.0])),
-        curves,
-        labels: Vec::new(),
-        legend: Vec::new(),
-    }
-    .svg()
+    let y = Axis::linear(label, points.iter().map(|point| point.1).chain([0.0]));
+    let x = Axis::linear("cycle", points.iter().map(|point| point.0));
+    Chart::on_axes("Energy of each cycle in the order of the record", x, y, curves).with_height(260.0)
 }
 
-fn cycles_table(cycles: &[Cycle], quantities: &Quantities, largest: usize, several_records: bool) -> String {
+fn cycles_table(cycles: &[Cycle], quantities: &Quantities, largest: usize, several_records: bool) -> Table {
     let measures = known(quantities, cycles);
     let mut headings = vec!["cycle".to_string()];
     if several_records {
         headings.push("record".into());
     }
     headings.push("rows".into());
-    headings.extend(measures.iter().map(|measure| unit_label(&measure.name)));
+    headings.extend(measures.iter().map(|measure| unit::label(&measure.name)));
     let row = |place: usize| {
         let cycle = &cycles[place];
         let mark = if place == largest { " (largest)" } else { "" };
-        let mut cells = vec![format!("{}{mark}", place + 1)];
+        let mut cells = vec![Cell::from(format!("{}{mark}", place + 1))];
         if several_records {
-            cells.push(cycle.record.clone());
+            cells.push(cycle.record.as_str().into());
         }
-        cells.push(format!("{} to {}", cycle.rows.0 + 1, cycle.rows.1 + 1));
-        let value = |measure: &Measure| (measure.of)(cycle).map_or("–".into(), |value| number(value, 4));
-        cells.extend(measures.iter().map(value));
+        cells.push(format!("{} to {}", cycle.rows.0 + 1, cycle.rows.1 + 1).into());
+        cells.extend(measures.iter().map(|measure| Cell::number((measure.of)(cycle), 4)));
         cells
     };
-    let mut rows = Vec::new();
+    let mut table = Table::new(headings);
     let mut next = 0;
     for place in shown(cycles.len(), largest) {
         if place > next {
-            rows.push(vec!["…".to_string(), format!("{} more", count(place - next, "cycle"))]);
+            table.push(["…".into(), format!("{} more", count(place - next, "cycle")).into()]);
         }
-        rows.push(row(place));
+        table.push(row(place));
         next = place + 1;
     }
-    table(&headings, &rows)
+    table
 }
 
 /// The cycles that a table shows: all of a few, otherwise the first, the last and the largest.

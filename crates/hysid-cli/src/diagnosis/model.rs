@@ -8,14 +8,14 @@ use hysid::diagnosis::model::{Basis, Claim, Criterion, ModelDiagnosis, NeuronKin
 use hysid::diagnosis::{Finding, Property, Verdict};
 use hysid::model::Model;
 use hysid::significant::Significant;
+use hysid_document::plain::{columns, indented};
+use hysid_document::unit::label as unit_label;
+use hysid_document::{Cell, Page, Part, Table};
 use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::quantities::{Quantities, text_label};
 use super::{findings, paragraph};
-use crate::lines::{aligned, indented};
-use crate::page::{self, definitions, note, number, section};
-use crate::report::unit_label;
 use crate::terminal::{self, listed};
 
 /// Neurons in the table of a page; of more, those that matter most.
@@ -86,10 +86,12 @@ impl<'a> DiagnosedModel<'a> {
     pub fn text(&self) -> String {
         let mut parts = vec![findings::text(&self.diagnosis.properties)];
         let inside = self.inside();
-        if inside.len() > 1 {
+        if !inside.rows.is_empty() {
             let mut text = String::from("what equations and weights say (! where probing says otherwise)\n");
             let statements = self.inside_statements();
-            for (line, statement) in aligned(&inside).iter().zip(std::iter::once(None).chain(statements)) {
+            for (line, statement) in
+                columns(&inside, Cell::ascii).iter().zip(std::iter::once(None).chain(statements))
+            {
                 text += &format!("{line}\n{}", statement.map_or_else(String::new, |text| indented(&text, 4)));
             }
             parts.push(text);
@@ -103,8 +105,8 @@ impl<'a> DiagnosedModel<'a> {
             });
             parts.push(format!("neurons\n{}", kinds.collect::<String>()));
         }
-        let widths: String =
-            aligned(&self.widths(text_label)).iter().map(|line| format!("{line}\n")).collect();
+        let widths = self.widths(text_label).map_or_else(Vec::new, |widths| columns(&widths, Cell::ascii));
+        let widths: String = widths.iter().map(|line| format!("{line}\n")).collect();
         parts.push(paragraph(&self.widths_heading()) + &widths);
         let claims = self.claims();
         let claims = claims.iter().map(|(name, text)| indented(&format!("{name}: {text}"), 2));
@@ -124,45 +126,42 @@ impl<'a> DiagnosedModel<'a> {
     }
 
     /// The page.
-    pub fn page(&self) -> String {
+    pub fn page(&self) -> Page {
         let found = &self.diagnosis.properties;
         let cards = cards(found, &self.quantities, |_: &Finding| String::new());
         let claims: Vec<(String, String)> =
             self.claims().into_iter().map(|(name, text)| (name.to_string(), sentence(&text))).collect();
-        let content = [
-            section("Verdicts", &verdicts(found)),
-            section("Memory", &definitions(&claims)),
-            section("Property by property", &(cards + &note(EXPLANATION))),
-            self.inside_section(),
-            self.neurons_section(),
-            section(
-                "Widths of the loop",
-                &(page::paragraph(&sentence(&self.widths_heading())) + &rows(&self.widths(unit_label))),
-            ),
-            section("What was driven, and how", &definitions(&self.understood())),
+        let mut widths = vec![Part::paragraph(sentence(&self.widths_heading()))];
+        widths.extend(self.widths(unit_label).map(Part::Table));
+        let mut parts = vec![
+            Part::section("Verdicts", [verdicts(found)]),
+            Part::section("Memory", [Part::Definitions(claims)]),
+            Part::section("Property by property", [cards, Part::note(EXPLANATION)]),
         ];
-        page::whole(&format!("Diagnosis: {}", self.file), &content.concat())
+        parts.extend(self.inside_section());
+        parts.extend(self.neurons_section());
+        parts.push(Part::section("Widths of the loop", widths));
+        parts.push(Part::section("What was driven, and how", [Part::Definitions(self.understood())]));
+        Page { title: format!("Diagnosis: {}", self.file), parts }
     }
 
-    /// What equations promise and weights say of each property, with headings.
-    fn inside(&self) -> Vec<Vec<String>> {
-        let headings = ["property", "equations", "weights", "value", "threshold"];
-        let mut table = vec![headings.map(String::from).to_vec()];
+    /// What equations promise and weights say of each property.
+    fn inside(&self) -> Table {
+        let mut table = Table::new(["property", "equations", "weights", "value", "threshold"]);
         for property in self.inside_properties() {
             let said = |said: Option<(Verdict, Option<bool>)>| {
-                said.map_or("-".into(), |(verdict, agrees)| {
-                    format!("{verdict}{}", if agrees == Some(false) { " !" } else { "" })
+                said.map_or(Cell::Missing, |(verdict, agrees)| {
+                    format!("{verdict}{}", if agrees == Some(false) { " !" } else { "" }).into()
                 })
             };
             let promise = self.diagnosis.promises.iter().find(|promise| promise.property == property);
             let criterion = self.criterion(property);
-            let value = |value: Option<f64>| value.map_or("-".into(), |v| format!("{:.3}", Significant(v)));
-            table.push(vec![
-                property.name().to_string(),
+            table.push([
+                property.name().into(),
                 said(promise.map(|promise| (promise.verdict, promise.agrees))),
                 said(criterion.map(|criterion| (criterion.verdict, criterion.agrees))),
-                value(criterion.map(|criterion| criterion.value)),
-                value(criterion.map(|criterion| criterion.threshold)),
+                criterion.map(|criterion| criterion.value).into(),
+                criterion.map(|criterion| criterion.threshold).into(),
             ]);
         }
         table
@@ -187,10 +186,10 @@ impl<'a> DiagnosedModel<'a> {
             .map(|property| self.criterion(property).map(|criterion| criterion.statement.clone()))
     }
 
-    fn inside_section(&self) -> String {
+    fn inside_section(&self) -> Option<Part> {
         let table = self.inside();
-        if table.len() == 1 {
-            return String::new();
+        if table.rows.is_empty() {
+            return None;
         }
         let properties = self.inside_properties().map(|property| property.name().to_string());
         let statements = properties.zip(self.inside_statements());
@@ -198,18 +197,18 @@ impl<'a> DiagnosedModel<'a> {
             statements.filter_map(|(property, statement)| Some((property, sentence(&statement?)))).collect();
         let words = "Equations decide some properties whatever the parameters; the weights of a network tell more. An ! marks where \
                      probing says otherwise.";
-        section("What equations and weights say", &(rows(&table) + &definitions(&statements) + &note(words)))
+        let parts = [Part::Table(table), Part::Definitions(statements), Part::note(words)];
+        Some(Part::section("What equations and weights say", parts))
     }
 
-    fn neurons_section(&self) -> String {
-        let Some(weights) = &self.diagnosis.weights else { return String::new() };
+    fn neurons_section(&self) -> Option<Part> {
+        let weights = self.diagnosis.weights.as_ref()?;
         let mut order: Vec<usize> = (0..weights.neurons.len()).collect();
         order.sort_by(|&a, &b| weights.neurons[b].influence.total_cmp(&weights.neurons[a].influence));
         let more = order.len().saturating_sub(MOST_NEURONS);
         order.truncate(MOST_NEURONS);
-        let cell = |value: Option<f64>| value.map_or("–".into(), |value| number(value, 3));
         let time = named_time(self.model.names().time.as_deref());
-        let headings = [
+        let mut table = Table::new([
             "neuron",
             "without it, %",
             "moved by the input",
@@ -217,21 +216,19 @@ impl<'a> DiagnosedModel<'a> {
             "wear, %",
             &time,
             "what it does",
-        ];
-        let mut table = vec![headings.map(String::from).to_vec()];
-        table.extend(order.iter().map(|&place| {
-            let neuron = &weights.neurons[place];
+        ]);
+        for neuron in order.iter().map(|&place| &weights.neurons[place]) {
             let kinds: Vec<&str> = neuron.kinds.iter().map(|&kind| kind_name(kind)).collect();
-            vec![
-                neuron.name.clone(),
-                number(100.0 * neuron.influence, 3),
-                cell(neuron.input_swing),
-                cell(neuron.rate_swing),
-                cell(neuron.wear.map(|wear| 100.0 * wear)),
-                cell(neuron.relaxation_time),
-                kinds.join(", "),
-            ]
-        }));
+            table.push([
+                neuron.name.as_str().into(),
+                (100.0 * neuron.influence).into(),
+                neuron.input_swing.into(),
+                neuron.rate_swing.into(),
+                neuron.wear.map(|wear| 100.0 * wear).into(),
+                neuron.relaxation_time.into(),
+                kinds.join(", ").into(),
+            ]);
+        }
         let mut words = "“Without it” is how much the output changes without the neuron, in percent of its range. Input and rate move a stop \
                          so many times its threshold; beyond 2 it slips at rest. Wear is the slip of 25 loops over the whole range, in percent of \
                          what the stop can bear."
@@ -239,7 +236,7 @@ impl<'a> DiagnosedModel<'a> {
         if more > 0 {
             words += &format!(" {more} neurons of less influence are not shown.");
         }
-        section("Neurons", &(rows(&table) + &note(&words)))
+        Some(Part::section("Neurons", [Part::Table(table), Part::note(words)]))
     }
 
     fn widths_heading(&self) -> String {
@@ -254,23 +251,20 @@ impl<'a> DiagnosedModel<'a> {
         format!("width of the loop over the whole range, {speed}: {width}{at_speed}")
     }
 
-    /// The paper's P at each speed, with headings; none for a model that does not see the speed.
-    fn widths(&self, label: fn(&str) -> String) -> Vec<Vec<String>> {
+    /// The paper's P at each speed; `None` for a model that does not see the speed.
+    fn widths(&self, label: fn(&str) -> String) -> Option<Table> {
         let widths = &self.diagnosis.loop_widths;
-        let shown =
-            |value: Option<f64>| value.map_or("-".into(), |value| format!("{:.4}", Significant(value)));
         let headings = [
             self.quantities.as_speed("speed"),
             self.quantities.as_input("width"),
             self.quantities.as_input("P"),
         ];
-        if widths.dynamic.is_empty() {
-            return Vec::new();
-        }
-        let mut table = vec![headings.map(|name| label(&name)).to_vec()];
-        let at_speed = |at: &WidthAtSpeed| vec![shown(Some(at.speed)), shown(at.width), shown(at.widening)];
-        table.extend(widths.dynamic.iter().map(at_speed));
-        table
+        let at_speed = |at: &WidthAtSpeed| {
+            vec![Cell::number(at.speed, 4), Cell::number(at.width, 4), Cell::number(at.widening, 4)]
+        };
+        let table =
+            Table::new(headings.map(|name| label(&name))).with_rows(widths.dynamic.iter().map(at_speed));
+        (!widths.dynamic.is_empty()).then_some(table)
     }
 
     /// What is certain of the memory, a claim and its words.
@@ -329,11 +323,6 @@ struct Printed<'a> {
     parameters: usize,
     #[serde(flatten)]
     diagnosis: &'a ModelDiagnosis,
-}
-
-/// A table from its headings and rows; nothing without them.
-fn rows(table: &[Vec<String>]) -> String {
-    table.split_first().map_or_else(String::new, |(headings, rows)| page::table(headings, rows))
 }
 
 fn named_time(time: Option<&str>) -> String {

@@ -2,12 +2,11 @@
 
 use hysid::data::record::Dataset;
 use hysid::diagnosis::Diagnosis;
+use hysid_document::chart::thin::{Point, thin, thin_path};
+use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 
 use super::quantities::Quantities;
-use crate::page::{count, figure, note, section};
-use crate::plot::thin::{Point, thin, thin_path};
-use crate::plot::{Axis, Chart, Colour, Curve, escape};
-use crate::report::unit_label;
+use crate::report::time_label;
 
 /// Points of all loops together.
 const LOOP_POINTS: usize = 8000;
@@ -35,8 +34,8 @@ impl<'a> Overview<'a> {
     }
 
     /// Loops and ways.
-    pub fn section(&self) -> String {
-        let mut content = format!("<div class=\"charts\">\n{}</div>\n", figure(&self.loops(), false));
+    pub fn section(&self) -> Part {
+        let mut parts = vec![Part::chart(self.loops())];
         let records = self.data.records();
         let mut longest: Vec<usize> = (0..records.len()).collect();
         longest.sort_by_key(|&record| std::cmp::Reverse(records[record].len()));
@@ -44,9 +43,9 @@ impl<'a> Overview<'a> {
         longest.sort_unstable();
         for record in &longest {
             if records.len() > 1 {
-                content += &format!("<h3>{}</h3>\n", escape(records[*record].name()));
+                parts.push(Part::heading(records[*record].name()));
             }
-            content += &figure(&self.way(*record), true);
+            parts.push(Part::chart(self.way(*record)));
         }
         let mut words =
             "The backbone joins the tips that go beyond all before them; dots are turning points of the input.".to_string();
@@ -57,10 +56,11 @@ impl<'a> Overview<'a> {
                 longest.len()
             );
         }
-        section("The data", &(content + &note(&words)))
+        parts.push(Part::note(words));
+        Part::section("The data", parts)
     }
 
-    fn loops(&self) -> String {
+    fn loops(&self) -> Chart {
         let records = self.data.records();
         let every = records.len().div_ceil(MOST_RECORDS).max(1);
         let shown: Vec<usize> = (0..records.len()).step_by(every).collect();
@@ -71,29 +71,19 @@ impl<'a> Overview<'a> {
             let path = thin_path(&[x, y], most);
             let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
             let points = path.iter().map(point).collect();
-            curves.push(Curve { points, colour: Colour::Measured, width: 1.3 });
+            curves.push(Curve::new(points, Colour::Measured, 1.3));
             let points = backbone(&self.tips(index), self.diagnosis.smallest_reversal);
-            backbones.push(Curve { points, colour: Colour::Simulated, width: 2.0 });
+            backbones.push(Curve::new(points, Colour::Simulated, 2.0));
         }
         curves.extend(backbones.into_iter().filter(|curve| curve.points.len() > 2));
         curves.push(dots(shown.iter().flat_map(|&index| self.tips(index)).collect()));
-        let (x, y) = (unit_label(&self.quantities.input), unit_label(&self.quantities.output));
-        let points = || curves.iter().flat_map(|curve| &curve.points);
-        Chart {
-            description: format!("Loops of {y} over {x}, with backbone and turning points"),
-            title: String::new(),
-            size: (560.0, 400.0),
-            x: Axis::linear(x, points().map(|point| point.0)),
-            y: Axis::linear(y, points().map(|point| point.1)),
-            curves,
-            labels: Vec::new(),
-            legend: legend(&[
-                (Colour::Measured, "measured"),
-                (Colour::Simulated, "backbone"),
-                (Colour::Error, "turning points"),
-            ]),
-        }
-        .svg()
+        let (x, y) = (unit::label(&self.quantities.input), unit::label(&self.quantities.output));
+        let description = format!("Loops of {y} over {x}, with backbone and turning points");
+        Chart::new(description, &x, &y, curves).sized(560.0, 400.0).with_legend([
+            (Colour::Measured, "measured"),
+            (Colour::Simulated, "backbone"),
+            (Colour::Error, "turning points"),
+        ])
     }
 
     /// Input and output where the input turns.
@@ -104,32 +94,19 @@ impl<'a> Overview<'a> {
     }
 
     /// The input over time, or over the row where there is no time.
-    fn way(&self, index: usize) -> String {
+    fn way(&self, index: usize) -> Chart {
         let record = &self.data.records()[index];
         let time = |row: usize| record.time().map_or((row + 1) as f64, |time| time[row]);
         let x = &record.inputs()[0];
         let way: Vec<Point> = (0..x.len()).map(|row| (time(row), x[row])).collect();
         let turning = self.diagnosis.turning_rows[index].iter().map(|&row| way[row]).collect();
-        let label = match (record.time(), &self.data.names().time) {
-            (Some(_), Some(name)) => unit_label(name),
-            (Some(_), None) => "time".into(),
-            (None, _) => "row".into(),
-        };
-        let input = unit_label(&self.quantities.input);
-        Chart {
-            description: format!("{input} over {label}, record {}", record.name()),
-            title: String::new(),
-            size: (860.0, 200.0),
-            x: Axis::linear(label, way.iter().map(|point| point.0)),
-            y: Axis::linear(input, x.iter().copied()),
-            curves: vec![
-                Curve { points: thin(&way, WAY_POINTS), colour: Colour::Input, width: 1.2 },
-                dots(turning),
-            ],
-            labels: Vec::new(),
-            legend: legend(&[(Colour::Input, "input"), (Colour::Error, "turning points")]),
-        }
-        .svg()
+        let label = time_label(self.data);
+        let input = unit::label(&self.quantities.input);
+        let description = format!("{input} over {label}, record {}", record.name());
+        let curves = vec![Curve::new(thin(&way, WAY_POINTS), Colour::Input, 1.2), dots(turning)];
+        Chart::new(description, &label, &input, curves)
+            .with_height(200.0)
+            .with_legend([(Colour::Input, "input"), (Colour::Error, "turning points")])
     }
 }
 
@@ -151,13 +128,7 @@ fn backbone(tips: &[Point], by: f64) -> Vec<Point> {
 /// Points as dots, evenly chosen of very many.
 fn dots(points: Vec<Point>) -> Curve {
     let every = points.len().div_ceil(MOST_DOTS).max(1);
-    // A gap after each point makes dots of them.
-    let points = points.into_iter().step_by(every).flat_map(|point| [point, (f64::NAN, f64::NAN)]).collect();
-    Curve { points, colour: Colour::Error, width: 2.2 }
-}
-
-fn legend(entries: &[(Colour, &str)]) -> Vec<(Colour, String)> {
-    entries.iter().map(|(colour, name)| (*colour, name.to_string())).collect()
+    Curve::dots(points.into_iter().step_by(every), Colour::Error, 2.2)
 }
 
 #[cfg(test)]

@@ -4,27 +4,30 @@ use std::time::Duration;
 
 use hysid::model::selection::{CandidateResult, Selection};
 use hysid::model::{Ensemble, Group, Model, Speaker};
+use hysid_document::{Cell, Part, Table, number};
 
 use super::Report;
-use crate::page::{definitions, folded, note, number, paragraph, section as section_of, table};
 use crate::timing::ns_per_sample;
 
 /// A member is timed over at least this time.
 const TIMED: Duration = Duration::from_millis(3);
 
-/// The section on the choice; empty for a model that was not chosen from others.
-pub fn section(report: &Report) -> String {
-    let Some(selection) = &report.model.provenance().selection else { return String::new() };
+/// The section on the choice; `None` for a model that was not chosen from others.
+pub fn section(report: &Report) -> Option<Part> {
+    let selection = report.model.provenance().selection.as_ref()?;
     let [chosen, why] = selection.summary();
-    let lines = [("Chosen".to_string(), chosen), ("Why".to_string(), why)];
+    let lines = vec![("Chosen".to_string(), chosen), ("Why".to_string(), why)];
     let (counting, others): (Vec<&CandidateResult>, Vec<&CandidateResult>) =
         selection.candidates.iter().partition(|one| counts(one));
-    let content = match report.model.ensemble() {
-        Some(ensemble) => voices(report, selection, ensemble, counting),
-        None => single(selection, counting),
+    let (heading, content) = match report.model.ensemble() {
+        Some(ensemble) => ("The ensemble", voices(report, selection, ensemble, counting)),
+        None => ("How it was chosen", single(selection, counting)),
     };
-    let heading = if report.model.ensemble().is_some() { "The ensemble" } else { "How it was chosen" };
-    section_of(heading, &(definitions(&lines) + &content + &left_out(&others) + &held_out(selection)))
+    let mut parts = vec![Part::Definitions(lines)];
+    parts.extend(content);
+    parts.extend(left_out(&others));
+    parts.push(held_out(selection));
+    Some(Part::section(heading, parts))
 }
 
 fn counts(candidate: &CandidateResult) -> bool {
@@ -37,7 +40,7 @@ fn voices(
     selection: &Selection,
     ensemble: &Ensemble,
     mut candidates: Vec<&CandidateResult>,
-) -> String {
+) -> Vec<Part> {
     let costs: Vec<Option<f64>> = ensemble.members().iter().map(|member| cost(report, member)).collect();
     candidates.sort_by(|a, b| b.share.inside.total_cmp(&a.share.inside));
     let row = |one: &&CandidateResult| {
@@ -45,28 +48,17 @@ fn voices(
         let cost: Option<f64> = members.iter().map(|&member| costs[member]).sum();
         let parameters: usize = members.iter().map(|&member| ensemble.members()[member].parameters()).sum();
         vec![
-            one.name.clone(),
-            one.kind.clone(),
-            members.len().to_string(),
-            shares(one),
-            errors(one.error_percent),
+            one.name.as_str().into(),
+            one.kind.as_str().into(),
+            members.len().into(),
+            shares(one).into(),
+            errors(one.error_percent).into(),
             without(one, selection),
-            ns(cost),
-            parameters.to_string(),
+            Cell::number(cost, 2),
+            parameters.into(),
         ]
     };
-    let mut rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
-    rows.push(vec![
-        "all together".into(),
-        String::new(),
-        ensemble.members().len().to_string(),
-        share(1.0),
-        errors(selection.error_percent),
-        String::new(),
-        ns(cost(report, report.model)),
-        report.model.parameters().to_string(),
-    ]);
-    let headings = [
+    let columns = [
         "candidate",
         "kind",
         "members",
@@ -87,17 +79,33 @@ fn voices(
         number(low, 4),
         number(high, 4)
     );
-    table(&headings.map(String::from), &rows) + &note(&words)
+    let mut table = Table::new(columns).with_rows(candidates.iter().map(row));
+    table.push([
+        "all together".into(),
+        "".into(),
+        ensemble.members().len().into(),
+        share(1.0).into(),
+        errors(selection.error_percent).into(),
+        "".into(),
+        Cell::number(cost(report, report.model), 2),
+        report.model.parameters().into(),
+    ]);
+    vec![Part::Table(table), Part::note(words)]
 }
 
 /// What a single model was chosen among, or distilled from.
-fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> String {
+fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<Part> {
     candidates.sort_by(|a, b| b.share.inside.total_cmp(&a.share.inside));
     let row = |one: &&CandidateResult| {
-        vec![one.name.clone(), one.kind.clone(), shares(one), errors(one.error_percent)]
+        vec![
+            one.name.as_str().into(),
+            one.kind.as_str().into(),
+            shares(one).into(),
+            errors(one.error_percent).into(),
+        ]
     };
-    let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
-    let headings = ["candidate", "kind", "share (%)", "error alone (% of std)"].map(String::from);
+    let table = Table::new(["candidate", "kind", "share (%)", "error alone (% of std)"])
+        .with_rows(candidates.iter().map(row));
     let is_distilled = selection.single.as_ref().is_none_or(|single| single.distilled);
     let (first, words) = match is_distilled {
         true => (
@@ -114,25 +122,25 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Strin
     let errors = "Errors are of free runs on data held out, geometric means over what was held out. Where two numbers \
                   stand, the first is of rows where the first input has not left the range that was fitted to, the \
                   second of those after it has.";
-    paragraph(first) + &table(&headings, &rows) + &note(&format!("{words} {errors}"))
+    vec![Part::paragraph(first), Part::Table(table), Part::note(format!("{words} {errors}"))]
 }
 
 /// What was tried in vain.
-fn left_out(candidates: &[&CandidateResult]) -> String {
-    if candidates.is_empty() {
-        return String::new();
-    }
+fn left_out(candidates: &[&CandidateResult]) -> Option<Part> {
     let mut candidates = candidates.to_vec();
     candidates.sort_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0));
-    let row = |one: &&CandidateResult| vec![one.name.clone(), one.kind.clone(), errors(one.error_percent)];
-    let rows: Vec<Vec<String>> = candidates.iter().map(row).collect();
-    let headings = ["candidate", "kind", "error alone (% of std)"].map(String::from);
-    folded(&format!("Tried and left out: {}", rows.len()), &table(&headings, &rows))
+    let row = |one: &&CandidateResult| {
+        vec![one.name.as_str().into(), one.kind.as_str().into(), errors(one.error_percent).into()]
+    };
+    let table =
+        Table::new(["candidate", "kind", "error alone (% of std)"]).with_rows(candidates.iter().map(row));
+    let summary = format!("Tried and left out: {}", candidates.len());
+    (!candidates.is_empty()).then(|| Part::Folded(summary, vec![Part::Table(table)]))
 }
 
-fn held_out(selection: &Selection) -> String {
-    let items: String = selection.folds.iter().map(|fold| paragraph(fold)).collect();
-    folded(&format!("Held out in turn: {} parts of the data", selection.folds.len()), &items)
+fn held_out(selection: &Selection) -> Part {
+    let folds = selection.folds.iter().map(|fold| Part::paragraph(fold.as_str()));
+    Part::Folded(format!("Held out in turn: {} parts of the data", selection.folds.len()), folds.collect())
 }
 
 /// The places of a candidate's members.
@@ -158,10 +166,6 @@ fn cost(report: &Report, model: &Model) -> Option<f64> {
     ns_per_sample(model, records, TIMED).ok()
 }
 
-fn ns(cost: Option<f64>) -> String {
-    cost.map_or("–".into(), |ns| number(ns, 2))
-}
-
 fn share(share: f64) -> String {
     if share > 0.0 && share < 5e-4 { "<0.1".into() } else { number(100.0 * share, 2) }
 }
@@ -179,13 +183,13 @@ fn pair(inside: String, outside: String) -> String {
     if inside == outside { inside } else { format!("{inside} / {outside}") }
 }
 
-fn without(candidate: &CandidateResult, selection: &Selection) -> String {
-    let Some(without) = candidate.without_percent else { return "–".into() };
+fn without(candidate: &CandidateResult, selection: &Selection) -> Cell {
+    let Some(without) = candidate.without_percent else { return Cell::Missing };
     let added = without.0 - selection.error_percent.0;
     let added = match added {
         nothing if nothing.abs() < 1e-3 * selection.error_percent.0 => "±0".into(),
         less if less < 0.0 => number(less, 2),
         more => format!("+{}", number(more, 2)),
     };
-    format!("{} ({added})", errors(without))
+    format!("{} ({added})", errors(without)).into()
 }

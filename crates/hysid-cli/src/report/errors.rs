@@ -1,9 +1,9 @@
 //! The verdict and the table of errors.
 
 use hysid::data::metrics::Errors;
+use hysid_document::{Cell, Part, Table, number, unit};
 
-use super::{Report, unit};
-use crate::page::{note, number, section as section_of, table};
+use super::Report;
 
 /// Error in percent of the standard deviation below which a model may be called so.
 const GRADES: [(f64, &str); 4] = [
@@ -20,7 +20,7 @@ fn grade(percent: f64) -> &'static str {
 }
 
 /// One sentence: how good is it?
-pub fn verdict(report: &Report) -> String {
+pub fn verdict(report: &Report) -> Part {
     let provenance = report.model.provenance();
     let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
     let behind = provenance.train_after_warm_up.as_ref();
@@ -34,11 +34,10 @@ pub fn verdict(report: &Report) -> String {
     });
     let unseen = report.sets.iter().filter(|set| set.name != "training");
     parts.extend(unseen.map(|set| format!("{} on the {} data", judged(&set.errors), set.name)));
-    let text = format!(
+    Part::Lead(format!(
         "Driven by the input alone, the model’s error in percent of the output’s standard deviation is {}.",
         joined(&parts)
-    );
-    crate::page::verdict(&text)
+    ).into())
 }
 
 /// An error and what to think of it.
@@ -57,9 +56,9 @@ fn joined(parts: &[String]) -> String {
 }
 
 /// The table of errors, with what its words mean.
-pub fn section(report: &Report) -> String {
+pub fn section(report: &Report) -> Part {
     let provenance = report.model.provenance();
-    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
     if report.sets.iter().all(|set| set.name != "training") {
         rows.push(row("training", &provenance.train));
     }
@@ -81,10 +80,10 @@ pub fn section(report: &Report) -> String {
         "fit (%)".into(),
         format!("largest error ({unit})"),
     ];
-    section_of("Errors", &(table(&headings, &rows) + &explanation(report)))
+    Part::section("Errors", [Part::Table(Table::new(headings).with_rows(rows)), explanation(report)])
 }
 
-fn explanation(report: &Report) -> String {
+fn explanation(report: &Report) -> Part {
     let mut text = String::from(
         "All errors are those of a free run: the model sees the input only, from the virgin state at the \
          start of each record. RMSE is the root of the mean square error; NRMSE is the same in percent of \
@@ -102,19 +101,19 @@ fn explanation(report: &Report) -> String {
         }
         (None, _) => "Nothing was held out, so there is no validation.",
     };
-    note(&text)
+    Part::note(text)
 }
 
-fn row(name: &str, errors: &Errors) -> Vec<String> {
-    let or_dash = |value: Option<f64>| value.map_or("–".into(), |value| number(value, 4));
+fn row(name: &str, errors: &Errors) -> Vec<Cell> {
+    let number = |value: Option<f64>| Cell::number(value, 4);
     vec![
-        name.to_string(),
-        errors.records.to_string(),
-        errors.samples.to_string(),
-        number(errors.rmse, 4),
-        or_dash(errors.nrmse_std_percent),
-        or_dash(errors.nrmse_range_percent),
-        or_dash(errors.fit_percent),
-        number(errors.max_abs_error, 4),
+        name.into(),
+        errors.records.into(),
+        errors.samples.into(),
+        number(Some(errors.rmse)),
+        number(errors.nrmse_std_percent),
+        number(errors.nrmse_range_percent),
+        number(errors.fit_percent),
+        number(Some(errors.max_abs_error)),
     ]
 }

@@ -1,11 +1,10 @@
 //! Output, error and input over time.
 
 use hysid::model::Prediction;
+use hysid_document::chart::thin::{Point, outline, thin};
+use hysid_document::{Axis, Chart, Colour, Curve, Part, Piece, Text, number, unit};
 
-use super::{BAND, ReportSet, unit};
-use crate::page::{figure, note, number, section as section_of};
-use crate::plot::thin::{Point, outline, thin};
-use crate::plot::{Axis, Chart, Colour, Curve, escape};
+use super::{BAND, ReportSet, time_label};
 
 /// Most records drawn; of more, those with the largest errors.
 const MOST_RECORDS: usize = 6;
@@ -17,19 +16,16 @@ const POINTS: usize = 4000;
 const MOST_INPUTS: usize = 4;
 
 /// The histories of a set.
-pub fn section(set: &ReportSet) -> String {
-    let shown = shown_records(set);
-    let mut content = String::new();
-    if shown.len() < set.data.records().len() {
-        content += &note(&format!(
-            "Of {} records the {} with the largest errors are drawn.",
-            set.data.records().len(),
-            shown.len()
-        ));
+pub fn section(set: &ReportSet) -> Part {
+    let (shown, all) = (shown_records(set), set.data.records().len());
+    let mut parts = Vec::new();
+    if shown.len() < all {
+        let words = format!("Of {all} records the {} with the largest errors are drawn.", shown.len());
+        parts.push(Part::note(words));
     }
     let points = POINTS / shown.len().max(1);
-    content.extend(shown.iter().map(|&index| record(set, index, points)));
-    section_of(&format!("Histories: {} data", set.name), &content)
+    parts.extend(shown.iter().flat_map(|&index| record(set, index, points)));
+    Part::section(format!("Histories: {} data", set.name), parts)
 }
 
 fn shown_records(set: &ReportSet) -> Vec<usize> {
@@ -56,21 +52,28 @@ fn errors(set: &ReportSet, index: usize) -> Vec<f64> {
 }
 
 /// The charts of a record, one below the other.
-fn record(set: &ReportSet, index: usize, points: usize) -> String {
+fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     let record = &set.data.records()[index];
     let names = set.data.names();
     let time: Vec<f64> = match record.time() {
         Some(time) => time.to_vec(),
         None => (1..=record.len()).map(|row| row as f64).collect(),
     };
-    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set), points };
+    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set.data), points };
     let output = unit::label(&names.output);
     let error = match unit::split(&names.output).1 {
         Some(unit) => format!("error ({unit})"),
         None => "error".into(),
     };
     let predicted = set.predicted.as_ref().map(|predicted| &predicted[index]);
-    let mut charts = panel.figure(
+    let rmse = rmse(set, index);
+    let rmse = match rmse < 0.0 {
+        true => "no measured output".to_string(),
+        false => format!("RMSE {}", unit::with(&number(rmse, 3), &names.output)),
+    };
+    let name = Text::from(record.name()).and(Piece::Aside(rmse));
+    let mut parts = vec![Part::Heading(name)];
+    parts.push(panel.figure(
         &output,
         220.0,
         &[
@@ -78,30 +81,16 @@ fn record(set: &ReportSet, index: usize, points: usize) -> String {
             (Colour::Simulated, "model", 1.1, &set.simulated[index]),
         ],
         predicted.map(|predicted| panel.band(&predicted.low, &predicted.high)),
-    );
-    let error_lines = [(Colour::Error, "model − measured", 1.1, errors(set, index))];
-    let error_lines = error_lines
-        .each_ref()
-        .map(|(colour, name, width, values)| (*colour, *name, *width, values.as_slice()));
-    charts +=
-        &panel.figure(&error, 165.0, &error_lines, predicted.map(|predicted| panel.error_band(predicted)));
+    ));
+    let errors = errors(set, index);
+    let line = (Colour::Error, "model − measured", 1.1, errors.as_slice());
+    let band = predicted.map(|predicted| panel.error_band(predicted));
+    parts.push(panel.figure(&error, 165.0, &[line], band));
     for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
-        charts += &panel.figure(&unit::label(name), 165.0, &[(Colour::Input, "input", 1.2, input)], None);
+        let line = (Colour::Input, "input", 1.2, input.as_slice());
+        parts.push(panel.figure(&unit::label(name), 165.0, &[line], None));
     }
-    let rmse = rmse(set, index);
-    let rmse = match rmse < 0.0 {
-        true => "no measured output".to_string(),
-        false => format!("RMSE {}", unit::with(&number(rmse, 3), &names.output)),
-    };
-    format!("<h3>{} <small>{}</small></h3>\n{charts}", escape(record.name()), escape(&rmse))
-}
-
-fn time_label(set: &ReportSet) -> String {
-    match (&set.data.names().time, set.data.has_time()) {
-        (Some(name), true) => unit::label(name),
-        (None, true) => "time".into(),
-        (_, false) => "row".into(),
-    }
+    parts
 }
 
 /// What the charts of a record have in common.
@@ -115,7 +104,7 @@ struct Panel<'a> {
 impl Panel<'_> {
     /// The area between two curves.
     fn band(&self, low: &[f64], high: &[f64]) -> Curve {
-        Curve { points: outline(self.time, low, high, self.points), colour: Colour::Band, width: 0.0 }
+        Curve::new(outline(self.time, low, high, self.points), Colour::Band, 0.0)
     }
 
     /// Where the error is to be expected.
@@ -133,10 +122,10 @@ impl Panel<'_> {
         height: f64,
         lines: &[(Colour, &str, f64, &[f64])],
         band: Option<Curve>,
-    ) -> String {
+    ) -> Part {
         let curve = |&(colour, _, width, values): &(Colour, &str, f64, &[f64])| {
             let points: Vec<Point> = self.time.iter().copied().zip(values.iter().copied()).collect();
-            Curve { points: thin(&points, self.points), colour, width }
+            Curve::new(thin(&points, self.points), colour, width)
         };
         let mut legend: Vec<(Colour, String)> =
             lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect();
@@ -146,17 +135,9 @@ impl Panel<'_> {
         let lines: Vec<Curve> = lines.iter().map(curve).collect();
         let y = Axis::linear(label, reach(&lines, band.as_ref()).into_iter());
         let curves = band.into_iter().chain(lines).collect();
-        let chart = Chart {
-            labels: Vec::new(),
-            description: format!("{label} over {}, record {}", self.time_label, self.record),
-            title: String::new(),
-            size: (860.0, height),
-            x: Axis::linear(self.time_label.clone(), self.time.iter().copied()),
-            y,
-            legend,
-            curves,
-        };
-        figure(&chart.svg(), true)
+        let description = format!("{label} over {}, record {}", self.time_label, self.record);
+        let x = Axis::linear(self.time_label.as_str(), self.time.iter().copied());
+        Part::chart(Chart::on_axes(description, x, y, curves).with_height(height).with_legend(legend))
     }
 }
 

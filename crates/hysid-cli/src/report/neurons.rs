@@ -4,10 +4,9 @@ use hysid::data::record::{Dataset, Record};
 use hysid::network::scaling::Scaling;
 use hysid::network::{Layout, Network};
 use hysid::operator::{DeterioratingStop, Operator};
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};
 
-use super::{Report, seen_label, unit};
-use crate::page::{count, figure, note, number, section as section_of, table};
-use crate::plot::{Axis, Chart, Colour, Curve};
+use super::{Report, seen_label};
 
 /// From this capacity on a stop counts as one that never deteriorates.
 const LASTING: f64 = 9e6;
@@ -40,26 +39,25 @@ impl Stop {
     }
 }
 
-/// The section on the neurons; empty for a model that has none.
-pub fn section(report: &Report) -> String {
-    if report.model.network().is_none() {
-        return String::new();
-    }
+/// The section on the neurons; `None` for a model that has none.
+pub fn section(report: &Report) -> Option<Part> {
+    report.model.network()?;
     let stops = stops(report);
     let a = network(report).architecture();
     let kinds = [(a.stops, "stop"), (a.relaxation_neurons(), "relaxation neuron"), (a.hidden, "tanh neuron")];
     let kinds: Vec<String> =
         kinds.into_iter().filter(|&(n, _)| n > 0).map(|(n, kind)| count(n, kind)).collect();
     let words = format!("{}; {} in all.", kinds.join(", "), count(a.parameters(), "parameter"));
-    let content = [
-        crate::page::paragraph(&words),
-        "<h3>Stops</h3>\n".into(),
-        figure(&threshold_chart(report, &stops), true),
-        stop_table(report, &stops),
-        relaxation_table(report),
-        output_table(report),
+    let mut parts = vec![
+        Part::paragraph(words),
+        Part::heading("Stops"),
+        Part::chart(threshold_chart(report, &stops)),
+        Part::Table(stop_table(report, &stops)),
+        stop_note(report, &stops),
     ];
-    section_of("The neurons", &content.concat())
+    parts.extend(relaxation_parts(report));
+    parts.extend(output_parts(report));
+    Some(Part::section("The neurons", parts))
 }
 
 fn network<'a>(report: &'a Report) -> &'a Network {
@@ -90,7 +88,7 @@ fn stops(report: &Report) -> Vec<Stop> {
     stops
 }
 
-fn stop_table(report: &Report, stops: &[Stop]) -> String {
+fn stop_table(report: &Report, stops: &[Stop]) -> Table {
     let a = network(report).architecture();
     let channels = a.channels().min(MOST_CHANNELS);
     let mut headings = vec!["stop".to_string(), format!("threshold of {}", seen_label(report))];
@@ -103,24 +101,21 @@ fn stop_table(report: &Report, stops: &[Stop]) -> String {
     headings.extend(springs.then(|| "note".to_string()));
     let left = if a.deterioration { strength_left(report, stops) } else { None };
     let row = |(index, stop): (usize, &Stop)| {
-        let mut row = vec![stop.number.to_string(), number(stop.threshold, 4)];
-        row.extend(stop.weights[..channels].iter().map(|&weight| number(weight, 3)));
+        let mut row = vec![stop.number.into(), Cell::number(stop.threshold, 4)];
+        row.extend(stop.weights[..channels].iter().map(|&weight| Cell::from(weight)));
         if a.deterioration {
-            row.push(if stop.beta >= LASTING { "∞".into() } else { number(stop.beta, 3) });
-            row.push(
-                left.as_ref().map_or("–".into(), |left| format!("{} %", number(100.0 * left[index], 3))),
-            );
+            row.push(if stop.beta >= LASTING { "∞".into() } else { stop.beta.into() });
+            row.push(left.as_ref().map_or(Cell::Missing, |left| Cell::Percent(100.0 * left[index], 3)));
         }
         if springs {
-            row.push(if stop.never_slips() { "never slips: a spring".into() } else { String::new() });
+            row.push(if stop.never_slips() { "never slips: a spring".into() } else { "".into() });
         }
         row
     };
-    let rows: Vec<Vec<String>> = stops.iter().enumerate().take(MOST_ROWS).map(row).collect();
-    table(&headings, &rows) + &stop_note(report, stops)
+    Table::new(headings).with_rows(stops.iter().enumerate().take(MOST_ROWS).map(row))
 }
 
-fn stop_note(report: &Report, stops: &[Stop]) -> String {
+fn stop_note(report: &Report, stops: &[Stop]) -> Part {
     let mut text = String::from(
         "A stop is a spring behind a friction slider: it slides once the input has travelled by its threshold \
          (twice that after a reversal). Weights are of inputs scaled to 1 at their largest. A stop that never \
@@ -136,7 +131,7 @@ fn stop_note(report: &Report, stops: &[Stop]) -> String {
     if stops.len() > MOST_ROWS {
         text += &format!(" {} more are not listed.", stops.len() - MOST_ROWS);
     }
-    note(&text)
+    Part::note(text)
 }
 
 fn channel_name(report: &Report, channel: usize) -> String {
@@ -179,40 +174,31 @@ fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
 }
 
 /// Thresholds on a logarithmic axis, beside the range of the input.
-fn threshold_chart(report: &Report, stops: &[Stop]) -> String {
+fn threshold_chart(report: &Report, stops: &[Stop]) -> Chart {
     let largest = scaling(report).inputs[0];
     let shown = |stop: &Stop| stop.threshold.clamp(1e-4 * largest, 1e4 * largest);
     let top = stops.len() as f64 + 0.5;
-    let mut curves =
-        vec![Curve { points: vec![(largest, 0.5), (largest, top)], colour: Colour::Input, width: 1.5 }];
-    curves.extend(stops.iter().enumerate().map(|(index, stop)| Curve {
-        points: vec![(shown(stop), index as f64 + 1.0)],
-        colour: if stop.never_slips() { Colour::Faint } else { Colour::Simulated },
-        width: 4.0,
+    let mut curves = vec![Curve::new(vec![(largest, 0.5), (largest, top)], Colour::Input, 1.5)];
+    curves.extend(stops.iter().enumerate().map(|(index, stop)| {
+        let colour = if stop.never_slips() { Colour::Faint } else { Colour::Simulated };
+        Curve::new(vec![(shown(stop), index as f64 + 1.0)], colour, 4.0)
     }));
     let thresholds = stops.iter().map(shown).chain([largest]);
-    let chart = Chart {
-        labels: Vec::new(),
-        description: format!("Thresholds of the {} stops", stops.len()),
-        title: String::new(),
-        size: (860.0, 240.0),
-        x: Axis::logarithmic(format!("threshold of {}", seen_label(report)), thresholds),
-        y: Axis::linear("stops by threshold", [0.5, top].into_iter()),
-        curves,
-        legend: vec![
-            (Colour::Simulated, "stop".into()),
-            (Colour::Faint, "never slips".into()),
-            (Colour::Input, "largest input in training".into()),
-        ],
-    };
-    chart.svg()
+    let x = Axis::logarithmic(format!("threshold of {}", seen_label(report)), thresholds);
+    let y = Axis::linear("stops by threshold", [0.5, top].into_iter());
+    let description = format!("Thresholds of the {} stops", stops.len());
+    Chart::on_axes(description, x, y, curves).with_height(240.0).with_legend([
+        (Colour::Simulated, "stop"),
+        (Colour::Faint, "never slips"),
+        (Colour::Input, "largest input in training"),
+    ])
 }
 
-fn relaxation_table(report: &Report) -> String {
+fn relaxation_parts(report: &Report) -> Vec<Part> {
     let network = network(report);
     let a = network.architecture();
     if a.relaxation == 0 {
-        return String::new();
+        return Vec::new();
     }
     let names = report.model.names();
     let time = names.time.as_deref().map_or("unit of time".to_string(), unit::of);
@@ -220,19 +206,16 @@ fn relaxation_table(report: &Report) -> String {
     let mut neurons: Vec<(usize, f64)> = ln_taus.iter().map(|ln_tau| ln_tau.exp()).enumerate().collect();
     neurons.sort_by(|p, q| (p.0 / a.relaxation).cmp(&(q.0 / a.relaxation)).then(p.1.total_cmp(&q.1)));
     let row = |&(m, tau): &(usize, f64)| {
-        vec![(m + 1).to_string(), input_name(report, m / a.relaxation), number(tau, 3)]
+        vec![(m + 1).into(), input_name(report, m / a.relaxation).into(), tau.into()]
     };
-    let rows: Vec<Vec<String>> = neurons.iter().take(MOST_ROWS).map(row).collect();
-    let headings = ["neuron".into(), "of input".into(), format!("relaxation time ({time})")];
-    "<h3>Relaxation neurons</h3>\n".to_string()
-        + &table(&headings, &rows)
-        + &note(
-            "A relaxation neuron is a spring behind a dashpot: what it feels of the input fades within its relaxation time.",
-        )
+    let columns = ["neuron".into(), "of input".into(), format!("relaxation time ({time})")];
+    let table = Table::new(columns).with_rows(neurons.iter().take(MOST_ROWS).map(row));
+    let words = "A relaxation neuron is a spring behind a dashpot: what it feels of the input fades within its relaxation time.";
+    vec![Part::heading("Relaxation neurons"), Part::Table(table), Part::note(words)]
 }
 
 /// The output weights that count most.
-fn output_table(report: &Report) -> String {
+fn output_parts(report: &Report) -> [Part; 3] {
     let network = network(report);
     let deviation = scaling(report).output_deviation;
     let names = output_names(report);
@@ -240,17 +223,18 @@ fn output_table(report: &Report) -> String {
         names.into_iter().zip(network.output().iter().map(|weight| weight * deviation)).collect();
     let all = weights.len();
     weights.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let rows: Vec<Vec<String>> =
-        weights.into_iter().take(MOST_WEIGHTS).map(|(name, weight)| vec![name, number(weight, 4)]).collect();
-    let headings = ["from".into(), format!("weight ({})", unit::of(&report.model.names().output))];
+    weights.truncate(MOST_WEIGHTS);
+    let columns = ["from".into(), format!("weight ({})", unit::of(&report.model.names().output))];
+    let row = |(name, weight): &(String, f64)| vec![name.as_str().into(), Cell::number(*weight, 4)];
+    let table = Table::new(columns).with_rows(weights.iter().map(row));
     let mut words = String::from(
         "The output is a weighted sum. Tanh neurons and stops give between −1 and 1; the linear and the \
          relaxation neurons give as much as the scaled input makes them.",
     );
-    if rows.len() < all {
-        words += &format!(" The {} largest of {all} weights are listed.", rows.len());
+    if weights.len() < all {
+        words += &format!(" The {} largest of {all} weights are listed.", weights.len());
     }
-    "<h3>Output weights</h3>\n".to_string() + &table(&headings, &rows) + &note(&words)
+    [Part::heading("Output weights"), Part::Table(table), Part::note(words)]
 }
 
 /// What each output weight multiplies, in order.

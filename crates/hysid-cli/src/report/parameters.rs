@@ -2,16 +2,16 @@
 
 use hysid::data::unit::of_column;
 use hysid::model::Body;
+use hysid_document::{Cell, Part, Table, count, number};
 
 use super::{Report, seen_label};
-use crate::page::{count, note, number, section as section_of, table};
 
 /// Most rows of the table.
 const MOST_ROWS: usize = 60;
 
-/// The section on the parameters; empty for a network, whose neurons are shown.
-pub fn section(report: &Report) -> String {
-    let Body::Law(law) = report.model.body() else { return String::new() };
+/// The section on the parameters; `None` for a network, whose neurons are shown.
+pub fn section(report: &Report) -> Option<Part> {
+    let Body::Law(law) = report.model.body() else { return None };
     let names = report.model.names();
     let is_companded = report.model.preprocessing().companding.is_some();
     let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
@@ -22,31 +22,27 @@ pub fn section(report: &Report) -> String {
         true => "∞".to_string(),
         false => number(value, 3),
     };
-    let rows: Vec<Vec<String>> = parameters
-        .iter()
-        .take(MOST_ROWS)
-        .map(|parameter| {
-            let (low, high) = parameter.bounds;
-            vec![
-                parameter.symbol.clone(),
-                number(parameter.value, 5),
-                parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref()),
-                parameter.meaning.to_string(),
-                format!("{} to {}", bound(low), bound(high)),
-            ]
-        })
-        .collect();
-    let headings = ["parameter", "value", "unit", "meaning", "bounds"].map(String::from);
-    let mut content = table(&headings, &rows);
-    if parameters.len() > rows.len() {
-        let more = count(parameters.len() - rows.len(), "more parameter");
-        content += &note(&format!("{more} are in the model file."));
+    let mut table = Table::new(["parameter", "value", "unit", "meaning", "bounds"]);
+    for parameter in parameters.iter().take(MOST_ROWS) {
+        let (low, high) = parameter.bounds;
+        table.push([
+            parameter.symbol.as_str().into(),
+            Cell::number(parameter.value, 5),
+            parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref()).into(),
+            parameter.meaning.into(),
+            format!("{} to {}", bound(low), bound(high)).into(),
+        ]);
+    }
+    let mut parts = vec![Part::Table(table)];
+    if parameters.len() > MOST_ROWS {
+        let more = count(parameters.len() - MOST_ROWS, "more parameter");
+        parts.push(Part::note(format!("{more} are in the model file.")));
     }
     if is_companded {
         let seen = seen_label(report);
-        content += &note(&format!(
+        parts.push(Part::note(format!(
             "The law sees its input as {seen}, a number without a unit; so do its parameters."
-        ));
+        )));
     }
-    section_of("Parameters", &content)
+    Some(Part::section("Parameters", parts))
 }

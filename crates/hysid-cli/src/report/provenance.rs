@@ -5,41 +5,33 @@ use hysid::options::Request;
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
 use hysid::options::network::FitOptions;
+use hysid_document::{Part, count, number};
 
 use super::{Report, seen_label};
-use crate::page::{count, definitions, number, section as section_of};
-use crate::plot::escape;
 
 /// What was understood of the data.
-pub fn understood(report: &Report) -> String {
-    if report.understood.is_empty() {
-        return String::new();
-    }
-    section_of("What was understood of the data", &definitions(report.understood))
+pub fn understood(report: &Report) -> Option<Part> {
+    let parts = [Part::Definitions(report.understood.to_vec())];
+    (!report.understood.is_empty()).then(|| Part::section("What was understood of the data", parts))
 }
 
 /// The warnings, or that there is none.
-pub fn warnings(report: &Report) -> String {
-    if report.warnings.is_empty() {
-        return section_of("Warnings", "<p>None.</p>\n");
-    }
-    let items: String =
-        report.warnings.iter().map(|warning| format!("<li>{}</li>\n", escape(warning))).collect();
-    section_of("Warnings", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
+pub fn warnings(report: &Report) -> Part {
+    let warnings = match report.warnings {
+        [] => Part::paragraph("None."),
+        warnings => Part::warnings(warnings),
+    };
+    Part::section("Warnings", [warnings])
 }
 
-/// What to know before relying on the model; empty if there is nothing.
-pub fn notes(report: &Report) -> String {
+/// What to know before relying on the model, if there is anything.
+pub fn notes(report: &Report) -> Option<Part> {
     let notes = report.model.notes();
-    if notes.is_empty() {
-        return String::new();
-    }
-    let items: String = notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
-    section_of("Notes", &format!("<ul class=\"warnings\">\n{items}</ul>\n"))
+    (!notes.is_empty()).then(|| Part::section("Notes", [Part::warnings(&notes)]))
 }
 
 /// Options and provenance.
-pub fn section(report: &Report) -> String {
+pub fn section(report: &Report) -> Part {
     let provenance = report.model.provenance();
     let rate = match report.model.rate() {
         None => "none",
@@ -76,7 +68,7 @@ pub fn section(report: &Report) -> String {
     say("Time taken", format!("{} s", number(report.seconds, 3)));
     say("Model file", report.model_file.clone());
     say("Version", format!("hysid {}", env!("CARGO_PKG_VERSION")));
-    section_of("Options and provenance", &definitions(&pairs))
+    Part::section("Options and provenance", [Part::Definitions(pairs)])
 }
 
 fn pair(name: &str, value: impl Into<String>) -> (String, String) {

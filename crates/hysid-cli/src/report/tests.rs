@@ -7,6 +7,10 @@ use hysid::network::Sizes;
 use hysid::options::network::FitOptions;
 
 use super::*;
+use crate::files::page_text;
+
+#[path = "../../../hysid-document/src/balance.rs"]
+mod balance;
 
 /// Measured loops of two records with odd names, with blanks.
 fn data(time: bool) -> Dataset {
@@ -66,7 +70,7 @@ fn the_page_is_whole_and_needs_nothing_else() {
         let data = data(time);
         let model = model(&data);
         let warnings = ["beware of <this>".to_string()];
-        let page = page(&report(&model, &data, &warnings));
+        let page = page_text(&page(&report(&model, &data, &warnings)));
         assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
         assert!(
             page.contains("beware of &lt;this&gt;")
@@ -76,9 +80,7 @@ fn the_page_is_whole_and_needs_nothing_else() {
             assert!(!page.contains(reference), "{reference}");
         }
         let body = page.split("</style>").last().unwrap();
-        crate::plot::tests::assert_balanced(
-            body.strip_suffix("</html>\n").unwrap().strip_prefix("\n</head>").unwrap(),
-        );
+        balance::assert_balanced(body.strip_suffix("</html>\n").unwrap().strip_prefix("\n</head>").unwrap());
         assert!(page.len() < 1_000_000);
     }
 }
@@ -87,11 +89,11 @@ fn the_page_is_whole_and_needs_nothing_else() {
 fn the_figures_of_the_errors_are_there() {
     let data = data(true);
     let model = model(&data);
-    let page = page(&report(&model, &data, &[]));
+    let page = page_text(&page(&report(&model, &data, &[])));
     for errors in [&model.provenance().train, model.provenance().validation.as_ref().unwrap()] {
         let figures = [errors.rmse, errors.nrmse_std_percent.unwrap(), errors.max_abs_error];
         for figure in figures {
-            assert!(page.contains(&format!("<td>{}</td>", crate::page::number(figure, 4))), "{figure}");
+            assert!(page.contains(&format!("<td>{}</td>", hysid_document::number(figure, 4))), "{figure}");
         }
     }
     assert!(
@@ -105,9 +107,9 @@ fn the_figures_of_the_errors_are_there() {
 fn a_picture_stands_alone() {
     let data = data(false);
     let model = model(&data);
-    let svg = crate::plot::standalone(&loops_svg(&set("training", &model, &data)));
+    let svg = loops(&set("training", &model, &data)).file("Hysid");
     assert!(svg.starts_with("<svg") && svg.contains("force (kN)"));
-    crate::plot::tests::assert_balanced(&svg);
+    balance::assert_balanced(&svg);
 }
 
 /// A long record, a single row, a constant output: nothing panics, nothing grows without bound.
@@ -120,8 +122,8 @@ fn odd_data_can_be_shown() {
     };
     let names = ColumnNames { time: None, ..ColumnNames::plain(1) };
     let data = Dataset::new(names, vec![odd(1), odd(200_000)]).unwrap();
-    let page = page(&report(&model, &data, &[]));
+    let page = page_text(&page(&report(&model, &data, &[])));
     assert!(page.len() < 2_000_000, "{}", page.len());
     let many = Dataset::new(data.names().clone(), (0..900).map(|_| odd(40)).collect()).unwrap();
-    assert!(super::page(&report(&model, &many, &[])).len() < 2_000_000);
+    assert!(page_text(&super::page(&report(&model, &many, &[]))).len() < 2_000_000);
 }

@@ -1,73 +1,68 @@
 //! How to go on with the model, and what it cannot do.
 
 use hysid::model::Model;
+use hysid_document::{Cell, Item, Part, Table, span, unit};
 
-use super::{Report, unit};
-use crate::page::{note, paragraph, section as section_of, span, table};
-use crate::plot::escape;
+use super::Report;
 
 /// Commands and limits.
-pub fn section(report: &Report) -> String {
-    commands(report) + &limits(report)
+pub fn sections(report: &Report) -> [Part; 2] {
+    [commands(report), limits(report)]
 }
 
-fn commands(report: &Report) -> String {
+fn commands(report: &Report) -> Part {
     let file = quoted(&report.model_file);
-    let command = |text: String| format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(&text));
     let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
-    let content = [
-        paragraph("Judge it on a measurement that it has not seen:"),
-        command(format!("hysid evaluate {file} NEW.csv")),
-        paragraph(match band {
+    let parts = [
+        Part::paragraph("Judge it on a measurement that it has not seen:"),
+        Part::Command(format!("hysid evaluate {file} NEW.csv")),
+        Part::paragraph(match band {
             "" => "Simulate an input; the output is added as a column:",
             _ => "Simulate an input; the output and its band are added as columns:",
         }),
-        command(format!("hysid simulate {file} NEW.csv -o OUT.csv{band}")),
-        note(
+        Part::Command(format!("hysid simulate {file} NEW.csv -o OUT.csv{band}")),
+        Part::note(
             "NEW.csv needs the columns of the training data under the same names; evaluate needs the output too.",
         ),
     ];
-    section_of("How to use the model", &content.concat())
+    Part::section("How to use the model", parts)
 }
 
-fn limits(report: &Report) -> String {
+fn limits(report: &Report) -> Part {
     let (names, trained) = (report.model.names(), report.model.trained_ranges());
-    let mut rows: Vec<Vec<String>> = names
+    let mut rows: Vec<Vec<Cell>> = names
         .inputs
         .iter()
         .zip(&trained.inputs)
-        .map(|(name, &range)| vec![unit::label(name), span(range)])
+        .map(|(name, &range)| vec![unit::label(name).into(), span(range).into()])
         .collect();
     if let Some(range) = trained.rate {
         let per = names.time.as_deref().map_or("unit of time".into(), unit::of);
         let (name, _) = unit::split(&names.inputs[0]);
-        rows.push(vec![format!("rate of {name} ({}/{per})", unit::of(&names.inputs[0])), span(range)]);
+        let label = format!("rate of {name} ({}/{per})", unit::of(&names.inputs[0]));
+        rows.push(vec![label.into(), span(range).into()]);
     }
-    rows.push(vec![unit::label(&names.output), span(trained.output)]);
-    let headings = ["quantity".into(), "range in training".into()];
-    let mut items = vec![
-        "Outside these ranges it extrapolates, and nothing vouches for the result.".to_string(),
+    rows.push(vec![unit::label(&names.output).into(), span(trained.output).into()]);
+    let table = Table::new(["quantity", "range in training"]).with_rows(rows);
+    let mut limits = vec![
+        "Outside these ranges it extrapolates, and nothing vouches for the result.",
         "Its memory is virgin at the start of every record: a specimen with a past that the record does not \
-         contain is started wrongly."
-            .to_string(),
+         contain is started wrongly.",
     ];
     if !report.model.needs_time() && report.model.rate().is_none() {
-        items.push(
-            "It knows no time: the same input path gives the same output, however fast it is run.".into(),
-        );
+        limits.push("It knows no time: the same input path gives the same output, however fast it is run.");
     }
     if wears_out(report.model) {
-        items.push(
+        limits.push(
             "It wears out by sliding: a history longer or harsher than the training records wears it further \
-             than anything measured vouches for."
-                .into(),
+             than anything measured vouches for.",
         );
     }
     if report.model.needs_time() {
-        items.push("It needs time stamps, in the unit it was trained with.".into());
+        limits.push("It needs time stamps, in the unit it was trained with.");
     }
-    let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escape(item))).collect();
-    section_of("What the model cannot do", &format!("{}<ul>\n{items}</ul>\n", table(&headings, &rows)))
+    let items = limits.into_iter().map(|limit| Item { text: limit.into(), is_warning: false });
+    Part::section("What the model cannot do", [Part::Table(table), Part::List(items.collect())])
 }
 
 /// True if a network in it deteriorates.

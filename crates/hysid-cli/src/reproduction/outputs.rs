@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use hysid_files::{Destination, Kind};
+use hysid_paper::{Experiment, FurtherFile};
 
-use super::Experiment;
-use super::chapter::CSV_HEADER;
+use super::rendering::CSV_HEADER;
 
 /// The folder that files go to.
 #[derive(Debug, Clone, Copy)]
@@ -45,16 +45,23 @@ impl Outputs<'_> {
 
     /// A file that only this experiment has; `None` if it has none of this name.
     pub fn further(&self, experiment: Experiment, name: &str) -> Option<Destination> {
-        let (name, kind) = experiment.further_files().into_iter().find(|(known, _)| *known == name)?;
-        Some(self.destination(name, kind))
+        let file = experiment.further_files().iter().find(|file| file.name == name)?;
+        Some(self.further_file(file))
     }
 
     /// All files of an experiment.
     pub fn of(&self, experiment: Experiment) -> Vec<Destination> {
         let name = experiment.name();
-        let further = experiment.further_files().into_iter();
-        let further = further.map(|(name, kind)| self.destination(name, kind));
+        let further = experiment.further_files();
+        let further = further.iter().map(|file| self.further_file(file));
         std::iter::once(self.stored(name)).chain(self.rendered(name)).chain(further).collect()
+    }
+
+    fn further_file(&self, file: &FurtherFile) -> Destination {
+        self.destination(
+            file.name,
+            file.header.map_or(Kind::Drawing, |header| Kind::Beginning(header.into())),
+        )
     }
 
     fn destination(&self, name: &str, kind: Kind) -> Destination {

@@ -2,14 +2,15 @@
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use hysid_files::Destination;
+use hysid_document::{Page, Part, Text, markdown, plain};
+use hysid_files::{Destination, GENERATOR};
+use hysid_paper::{Chapter, Content, Experiment, Observer, Settings, targets};
 
-use super::chapter::{self, Chapter};
 use super::storage::{self, Finished};
-use super::{Experiment, Outputs, Settings, date};
+use super::{Outputs, date, rendering};
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
 
@@ -37,12 +38,32 @@ pub fn run(experiments: &[Experiment], settings: Settings, outputs: Outputs) -> 
             .iter()
             .map(|one| {
                 let page = outputs.page(&one.chapter.name);
-                format!("{}\npage    {}\n", chapter::text(&one.chapter), files::shown(page.path()))
+                let text = plain::rendered(&rendering::summary(&one.chapter));
+                format!("{text}\npage    {}\n", files::shown(page.path()))
             })
             .collect();
         results(&texts.join("\n"))?;
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// The program, to whoever runs an experiment.
+struct Terminal {
+    began: Instant,
+}
+
+impl Observer for Terminal {
+    fn clock(&self) -> Duration {
+        self.began.elapsed()
+    }
+
+    fn is_stopped(&self) -> bool {
+        interrupt::requested()
+    }
+
+    fn say(&self, line: &str) {
+        note(format_args!("{line}"));
+    }
 }
 
 /// All that is finished in the end, in their order.
@@ -70,6 +91,7 @@ fn finished(
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let workers = threads.min(to_do);
     let left = Mutex::new(left);
+    let terminal = Terminal { began: Instant::now() };
     let work = || -> Result<()> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / workers.max(1)).max(1)).build();
         let pool = pool.context("cannot start a thread")?;
@@ -77,7 +99,10 @@ fn finished(
             let next = left.lock().expect("no thread panics with the lock").pop_front();
             let Some((place, experiment)) = next else { break };
             let began = Instant::now();
-            let Some(chapter) = pool.install(|| experiment.chapter(settings))? else { break };
+            let chapter = match pool.install(|| experiment.chapter(settings, &terminal)) {
+                Err(hysid::Error::Stopped) => break,
+                chapter => chapter?,
+            };
             let seconds = began.elapsed().as_secs_f64();
             let one = Finished::new(settings, date::today(), seconds, chapter);
             one.keep(outputs)?;
@@ -97,28 +122,30 @@ fn finished(
 }
 
 /// When, by what and how these were made.
-fn made(finished: &[Finished], settings: Settings) -> String {
+fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
     let dates = || finished.iter().map(|one| one.date.as_str());
     let (first, last) = (dates().min().unwrap_or_default(), dates().max().unwrap_or_default());
     let dates = if first == last { first.to_string() } else { format!("{first} to {last}") };
     let seconds: f64 = finished.iter().map(|one| one.seconds).sum();
     let quick = if settings.quick { " A quick run, with a fraction of the effort." } else { "" };
-    format!(
-        "Made by hysid {}, `hysid reproduce`, on {dates}, seed {}; {seconds:.0} s in all, experiments side by side counted one by one. The measured data of the paper are not public: synthetic specimens stand in for them.{quick}",
-        env!("CARGO_PKG_VERSION"),
+    rendering::made(&format!(
+        ", on {dates}, seed {}; {seconds:.0} s in all, experiments side by side counted one by one. The measured data of the paper are not public: synthetic specimens stand in for them.{quick}{further}",
         settings.seed
-    )
+    ))
 }
 
 /// Page, Markdown, CSV and further files of an experiment.
 fn write_one(experiment: Experiment, one: &Finished, settings: Settings, outputs: Outputs) -> Result<()> {
     let chapter = &one.chapter;
-    let made = made(std::slice::from_ref(one), settings);
-    let title = chapter::capitalised(&chapter.title);
-    write_all(outputs.rendered(experiment.name()), &title, &made, std::slice::from_ref(chapter))?;
+    let made = made(std::slice::from_ref(one), settings, "");
+    let page = rendering::page(made, chapter);
+    write_all(outputs.rendered(experiment.name()), &page, std::slice::from_ref(chapter))?;
     for (name, content) in &chapter.files {
         if let Some(destination) = outputs.further(experiment, name) {
-            files::write(&destination, content.as_bytes())?;
+            match content {
+                Content::Text(text) => files::write(&destination, text.as_bytes())?,
+                Content::Drawing(chart) => files::write(&destination, chart.file(GENERATOR).as_bytes())?,
+            }
         }
     }
     Ok(())
@@ -127,24 +154,20 @@ fn write_one(experiment: Experiment, one: &Finished, settings: Settings, outputs
 /// The same of all experiments.
 fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -> Result<()> {
     let chapters: Vec<Chapter> = finished.iter().map(|one| one.chapter.clone()).collect();
-    let mut made = made(finished, settings);
-    let all = Experiment::all().count();
-    if chapters.len() < all {
-        made += &format!(" Interrupted: {} of {all} experiments.", chapters.len());
-    }
-    write_all(outputs.rendered(TOGETHER), "The paper reproduced", &made, &chapters)?;
-    let targets = chapter::targets(&chapters).map(|table| chapter::table_text(&table) + "\n\n");
+    let (finished_ones, all) = (chapters.len(), Experiment::all().count());
+    let further = match finished_ones < all {
+        true => format!(" Interrupted: {finished_ones} of {all} experiments."),
+        false => String::new(),
+    };
+    let made = made(finished, settings, &further);
+    write_all(outputs.rendered(TOGETHER), &rendering::together(made, &chapters), &chapters)?;
+    let targets = targets(&chapters).map(|table| plain::rendered(&[Part::Table(table)]) + "\n");
     let page = files::shown(outputs.page(TOGETHER).path());
     results(&(targets.unwrap_or_default() + &format!("page    {page}\n")))
 }
 
-fn write_all(
-    [page, markdown, tables]: [Destination; 3],
-    title: &str,
-    made: &str,
-    chapters: &[Chapter],
-) -> Result<()> {
-    files::write(&page, chapter::html(title, made, chapters).as_bytes())?;
-    files::write(&markdown, chapter::markdown(title, made, chapters).as_bytes())?;
-    files::write(&tables, chapter::csv(chapters).as_bytes())
+fn write_all([html, text, tables]: [Destination; 3], page: &Page, chapters: &[Chapter]) -> Result<()> {
+    files::write_page(&html, page)?;
+    files::write(&text, markdown::page(page).as_bytes())?;
+    files::write(&tables, rendering::csv(chapters)?.as_bytes())
 }

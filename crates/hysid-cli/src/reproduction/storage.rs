@@ -3,10 +3,10 @@
 use std::fs;
 
 use anyhow::Result;
+use hysid_paper::{Chapter, Experiment, Settings};
 use serde::{Deserialize, Serialize};
 
-use super::chapter::Chapter;
-use super::{Experiment, Outputs, Settings};
+use super::Outputs;
 use crate::files;
 
 /// A finished experiment and how it was made.
@@ -44,5 +44,5 @@ pub fn find(outputs: Outputs, experiment: Experiment, settings: Settings) -> Opt
     let found: Finished = serde_json::from_str(&text).ok()?;
     let Settings { seed, quick } = settings;
     let is_same = found.version == env!("CARGO_PKG_VERSION") && (found.seed, found.quick) == (seed, quick);
-    (is_same && found.chapter.is_sound(experiment)).then_some(found)
+    (is_same && experiment.is_sound(&found.chapter)).then_some(found)
 }

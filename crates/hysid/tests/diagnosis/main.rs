@@ -5,7 +5,7 @@ mod subjects;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::diagnosis::{Diagnosis, DiagnosisOptions, Property, Verdict};
 use hysid::operator::Operator;
-use hysid::plant::with_noise;
+use hysid::specimens::with_noise;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::f64::consts::TAU;

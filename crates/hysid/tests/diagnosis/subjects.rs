@@ -9,7 +9,7 @@ use hysid::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid::law::{Law, Sample};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::plant::{Ferromagnet, Specimen, shape_memory_actuator};
+use hysid::specimens::{Ferromagnet, Specimen, shape_memory_actuator};
 
 /// Turning points of the protocol.
 const TURNING: [f64; 30] = [

@@ -1,0 +1,183 @@
+//! Charts as data, drawn as SVG.
+
+mod axis;
+mod svg;
+pub mod thin;
+
+use serde::{Deserialize, Serialize};
+
+pub use axis::Axis;
+pub use svg::STYLE;
+use thin::Point;
+
+/// What a curve stands for, which gives its colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Colour {
+    /// What was measured.
+    Measured,
+    /// What the model says.
+    Simulated,
+    /// The input.
+    Input,
+    /// Their difference.
+    Error,
+    /// What is there for comparison only.
+    Faint,
+    /// Where the measurement is to be expected: an area, which the points of its curve go round.
+    Band,
+    /// One of several things of the same kind, counted from 0; colours repeat after [`SERIES`].
+    Series(usize),
+}
+
+/// Colours of [`Colour::Series`].
+pub const SERIES: usize = 6;
+
+/// A line, or dots where a point has no neighbours; of [`Colour::Band`], an area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Its points; one that is not finite leaves a gap.
+    #[serde(with = "points")]
+    pub points: Vec<Point>,
+    /// Its colour.
+    pub colour: Colour,
+    /// Width of the line in pixels.
+    pub width: f64,
+}
+
+/// Text to the right of a point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Label {
+    /// The point.
+    pub point: Point,
+    /// How far above the point it stands, in pixels.
+    pub rise: f64,
+    /// What is written.
+    pub text: String,
+}
+
+/// A chart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Chart {
+    /// What it shows, in words, for those who do not see it.
+    pub description: String,
+    /// Written above it; may be empty.
+    pub title: String,
+    /// Width and height in pixels.
+    pub size: (f64, f64),
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// What is drawn, from the back to the front.
+    pub curves: Vec<Curve>,
+    /// Text beside points.
+    pub labels: Vec<Label>,
+    /// What the colours mean.
+    pub legend: Vec<(Colour, String)>,
+}
+
+/// Width and height of a chart over the width of the page, in pixels.
+const WIDE: (f64, f64) = (860.0, 300.0);
+
+/// The same of one of several small charts.
+const SMALL: (f64, f64) = (400.0, 290.0);
+
+/// Largest side of a chart, width of a line and distance of a text that make sense, in pixels.
+const LARGEST: f64 = 4000.0;
+
+impl Curve {
+    /// A line through these points.
+    pub fn new(points: Vec<Point>, colour: Colour, width: f64) -> Self {
+        Self { points, colour, width }
+    }
+
+    /// The points as dots.
+    pub fn dots(points: impl IntoIterator<Item = Point>, colour: Colour, radius: f64) -> Self {
+        // A gap after each point makes dots of them.
+        let points = points.into_iter().flat_map(|point| [point, (f64::NAN, f64::NAN)]).collect();
+        Self::new(points, colour, radius)
+    }
+}
+
+impl Chart {
+    /// A wide chart with linear axes over all points of the curves, and nothing else.
+    pub fn new(description: impl Into<String>, x: &str, y: &str, curves: Vec<Curve>) -> Self {
+        let points = || curves.iter().flat_map(|curve| &curve.points);
+        let x = Axis::linear(x, points().map(|point| point.0));
+        let y = Axis::linear(y, points().map(|point| point.1));
+        Self::on_axes(description, x, y, curves)
+    }
+
+    /// The same with these axes.
+    pub fn on_axes(description: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
+        let (description, title) = (description.into(), String::new());
+        Self { description, title, size: WIDE, x, y, curves, labels: Vec::new(), legend: Vec::new() }
+    }
+
+    /// The chart in this size.
+    pub fn sized(self, width: f64, height: f64) -> Self {
+        Self { size: (width, height), ..self }
+    }
+
+    /// The chart in this height.
+    pub fn with_height(self, height: f64) -> Self {
+        Self { size: (self.size.0, height), ..self }
+    }
+
+    /// One of several small charts, with a title.
+    pub fn small(self, title: impl Into<String>) -> Self {
+        Self { size: SMALL, title: title.into(), ..self }
+    }
+
+    /// True for one over the width of the page.
+    pub fn is_wide(&self) -> bool {
+        self.size.0 >= WIDE.0
+    }
+
+    /// The chart with what its colours mean.
+    pub fn with_legend<N: Into<String>>(self, entries: impl IntoIterator<Item = (Colour, N)>) -> Self {
+        let legend = entries.into_iter().map(|(colour, name)| (colour, name.into())).collect();
+        Self { legend, ..self }
+    }
+
+    /// True if it can be drawn: one that was read from a file may have been changed there.
+    pub fn is_sound(&self) -> bool {
+        let (width, height) = self.size;
+        let is_side = |side: f64| (100.0..LARGEST).contains(&side);
+        let are_sound = self.curves.iter().all(|curve| (0.0..LARGEST).contains(&curve.width))
+            && self.labels.iter().all(|label| label.rise.abs() < LARGEST);
+        is_side(width) && is_side(height) && are_sound && self.x.is_sound() && self.y.is_sound()
+    }
+
+    /// The drawing, an `svg` element of class `plot` without a size of its own.
+    pub fn svg(&self) -> String {
+        svg::drawn(self)
+    }
+
+    /// The drawing as a file of its own, with its size and its style in it. `generator` tells what made it.
+    pub fn file(&self, generator: &str) -> String {
+        svg::file(self, generator)
+    }
+}
+
+/// Points in a file: one that is not finite is nothing.
+mod points {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::thin::{Point, is_drawable};
+
+    pub fn serialize<S: Serializer>(points: &[Point], serializer: S) -> Result<S::Ok, S::Error> {
+        let points: Vec<Option<Point>> =
+            points.iter().map(|&point| is_drawable(point).then_some(point)).collect();
+        points.serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Point>, D::Error> {
+        let points: Vec<Option<Point>> = Vec::deserialize(deserializer)?;
+        Ok(points.into_iter().map(|point| point.unwrap_or((f64::NAN, f64::NAN))).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,119 @@
+use plotters::style::RGBColor;
+
+use super::svg::{GRID, INK, legend_lines};
+use super::*;
+use crate::balance::assert_balanced;
+
+fn chart(points: Vec<Point>) -> Chart {
+    Chart {
+        labels: Vec::new(),
+        description: "a \"test\" & more".into(),
+        title: "<script>alert(1)</script>".into(),
+        size: (520.0, 360.0),
+        x: Axis::linear("x <mm>", points.iter().map(|p| p.0)),
+        y: Axis::linear("y", points.iter().map(|p| p.1)),
+        curves: vec![Curve { points, colour: Colour::Simulated, width: 1.5 }],
+        legend: vec![(Colour::Simulated, "model".into())],
+    }
+}
+
+#[test]
+fn user_text_is_escaped_and_elements_balanced() {
+    let chart = chart((0..50).map(|k| (k as f64, (k as f64).sin())).collect());
+    let svg = chart.svg();
+    assert!(!svg.contains("<script") && svg.contains("&lt;script"), "{svg}");
+    assert!(svg.contains("aria-label=\"a &quot;test&quot; &amp; more\""));
+    assert_balanced(&svg);
+    let file = chart.file("Hysid 1");
+    assert!(
+        file.contains("<style>") && file.contains("width=\"520\" height=\"360\"") && file.starts_with("<svg")
+    );
+    assert_balanced(&file);
+}
+
+#[test]
+fn blanks_leave_gaps_and_lone_points_are_dots() {
+    let gap = (1.5, f64::NAN);
+    let svg = chart(vec![(0.0, 0.0), (1.0, 1.0), gap, (2.0, 0.0), (3.0, 1.0), gap, (4.0, 0.0)]).svg();
+    let curve = "stroke=\"#0060D0\"";
+    // Two pieces and the legend's line.
+    assert_eq!(svg.split("<polyline").filter(|piece| piece.contains(curve)).count(), 3);
+    assert_eq!(svg.matches("<circle").count(), 1);
+}
+
+#[test]
+fn a_band_is_an_area_with_gaps() {
+    let around = |x: f64| vec![(x, 0.0), (x + 1.0, 0.0), (x + 1.0, 1.0), (x, 1.0)];
+    let points = [around(0.0), vec![(f64::NAN, 0.0)], around(3.0)].concat();
+    let mut chart = chart(points);
+    (chart.curves[0].colour, chart.legend) = (Colour::Band, vec![(Colour::Band, "90 % band".into())]);
+    let svg = chart.svg();
+    assert_eq!(svg.split("<polygon").filter(|piece| piece.contains("fill=\"#A0C8F0\"")).count(), 2, "{svg}");
+    assert!(svg.contains("90 % band"));
+    assert_balanced(&svg);
+}
+
+#[test]
+fn odd_series_can_be_drawn() {
+    let cases = [vec![], vec![(1.0, 2.0)], vec![(0.0, 5.0); 9], vec![(f64::NAN, 1.0)], vec![(1e150, -1e150)]];
+    for points in cases {
+        assert_balanced(&chart(points).svg());
+    }
+}
+
+#[test]
+fn every_marker_is_recoloured() {
+    let colours =
+        [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint, Colour::Band];
+    let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
+    for RGBColor(r, g, b) in markers {
+        assert!(STYLE.contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
+    }
+}
+
+#[test]
+fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
+    let curve =
+        |place| Curve { points: vec![(0.0, 0.0), (1.0, 1.0)], colour: Colour::Series(place), width: 1.0 };
+    let chart = Chart {
+        curves: (0..4).map(curve).collect(),
+        legend: (0..6).map(|place| (Colour::Series(place), format!("a long name, number {place}"))).collect(),
+        title: String::new(),
+        ..chart(vec![])
+    };
+    // An entry takes about 190 of 520 pixels.
+    let lines: Vec<usize> = legend_lines(&chart).iter().map(Vec::len).collect();
+    assert_eq!(lines, [2, 2]);
+    assert_balanced(&chart.svg());
+}
+
+#[test]
+fn a_chart_is_read_back_as_it_was() {
+    let gap = (1.5, f64::NAN);
+    let full = Chart {
+        labels: vec![Label { point: (2.0, 0.5), rise: 3.0, text: "<b>".into() }],
+        x: Axis::logarithmic("x > 0", [0.1, 7.0].into_iter()),
+        ..chart(vec![(0.1, 1.0 / 3.0), (1.0, 1.0), gap, (7.0, -1e-300)])
+    };
+    let read: Chart = serde_json::from_str(&serde_json::to_string(&full).unwrap()).unwrap();
+    assert_eq!(read.svg(), full.svg());
+    assert!(read.is_sound());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_not_sound() {
+    let sound = chart(vec![(0.0, 1.0), (1.0, 2.0)]);
+    let stored = serde_json::to_value(&sound).unwrap();
+    for (place, value) in [
+        ("/size/0", serde_json::json!(1e9)),
+        ("/size/1", serde_json::json!(0.0)),
+        ("/x/low", serde_json::json!(5.0)),
+        ("/y/high", serde_json::json!(-1.5e308)),
+        ("/curves/0/width", serde_json::json!(1e300)),
+    ] {
+        let mut changed = stored.clone();
+        *changed.pointer_mut(place).unwrap() = value;
+        assert!(!serde_json::from_value::<Chart>(changed).unwrap().is_sound(), "{place}");
+    }
+    assert!(sound.is_sound());
+}

@@ -1,0 +1,23 @@
+//! The one place that escapes text for HTML and SVG.
+
+/// Text as it may stand in HTML and SVG, in attributes too.
+pub fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            control if is_not_xml(control) => escaped.push('\u{FFFD}'),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+/// Control characters have no place in XML.
+pub fn is_not_xml(letter: char) -> bool {
+    letter.is_control() && !"\n\t".contains(letter)
+}

@@ -1,0 +1,147 @@
+//! Documents as pages of HTML that need nothing but themselves.
+
+use crate::chart::{self, Chart};
+use crate::escape::escape;
+use crate::part::{Card, Item, Page, Part};
+use crate::table::{Cell, Table};
+use crate::text::{Badge, Piece, Text};
+
+const STYLE: &str = include_str!("html/style.css");
+
+/// How a page begins that no program needs to know as its own.
+pub const BEGINNING: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">";
+
+/// The whole page. `beginning` is its HTML up to the inside of the head, by which a program may know its own files.
+pub fn page(page: &Page, beginning: &str) -> String {
+    let title = escape(&page.title);
+    format!(
+        "{beginning}\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
+         <h1>{title}</h1>\n{}</main>\n</body>\n</html>\n",
+        chart::STYLE,
+        parts(&page.parts),
+    )
+}
+
+fn parts(parts: &[Part]) -> String {
+    parts.iter().map(part).collect()
+}
+
+fn part(part: &Part) -> String {
+    match part {
+        Part::Lead(words) => format!("<p class=\"verdict\">{}</p>\n", text(words)),
+        Part::Section(_, content) if content.is_empty() => String::new(),
+        Part::Section(heading, content) => {
+            format!("<section>\n<h2>{}</h2>\n{}</section>\n", escape(heading), parts(content))
+        }
+        Part::Heading(heading) => format!("<h3>{}</h3>\n", text(heading)),
+        Part::Paragraph(words) => format!("<p>{}</p>\n", text(words)),
+        Part::Note(words) => note(&text(words)),
+        Part::Command(command) => format!("<pre tabindex=\"0\"><code>{}</code></pre>\n", escape(command)),
+        Part::List(items) => format!("<ul>\n{}</ul>\n", items.iter().map(item).collect::<String>()),
+        Part::Verdicts(verdicts) => {
+            let items: String =
+                verdicts.iter().map(|verdict| format!("<li>{}</li>\n", text(verdict))).collect();
+            format!("<ul class=\"verdicts\">\n{items}</ul>\n")
+        }
+        Part::Definitions(pairs) => {
+            format!("<dl>\n{}</dl>\n", pairs.iter().map(definition).collect::<String>())
+        }
+        Part::Table(content) => table(content),
+        Part::Chart(chart) if chart.is_wide() => figure(chart, "class=\"wide scroll\" tabindex=\"0\""),
+        Part::Chart(chart) => charts("charts", std::slice::from_ref(chart)),
+        Part::Charts(content) => charts("charts small", content),
+        Part::Cards(cards) => {
+            format!("<div class=\"cards\">\n{}</div>\n", cards.iter().map(card).collect::<String>())
+        }
+        Part::Folded(summary, content) => {
+            format!("<details>\n<summary>{}</summary>\n{}</details>\n", escape(summary), parts(content))
+        }
+    }
+}
+
+fn text(text: &Text) -> String {
+    text.0.iter().map(piece).collect()
+}
+
+fn piece(piece: &Piece) -> String {
+    let text = escape(piece.text());
+    match piece {
+        Piece::Plain(_) => text,
+        Piece::Code(_) => format!("<code>{text}</code>"),
+        Piece::Strong(_) => format!("<strong>{text}</strong>"),
+        Piece::Aside(_) => format!("<small>{text}</small>"),
+        Piece::Link { anchor, .. } => format!("<a href=\"#{}\">{text}</a>", escape(anchor)),
+        Piece::Badge(badge, _) => {
+            let class = match badge {
+                Badge::Yes => "yes",
+                Badge::No => "no",
+                Badge::Unknown => "untold",
+            };
+            format!("<span class=\"badge {class}\">{text}</span>")
+        }
+    }
+}
+
+/// A remark; `content` is HTML.
+fn note(content: &str) -> String {
+    format!("<p class=\"note\">{content}</p>\n")
+}
+
+fn item(item: &Item) -> String {
+    let class = if item.is_warning { " class=\"warnings\"" } else { "" };
+    format!("<li{class}>{}</li>\n", text(&item.text))
+}
+
+fn definition((name, value): &(String, String)) -> String {
+    format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value))
+}
+
+fn card(card: &Card) -> String {
+    format!(
+        "<article class=\"card\" id=\"{}\">\n<h3>{}</h3>\n{}</article>\n",
+        escape(&card.anchor),
+        text(&card.heading),
+        parts(&card.parts)
+    )
+}
+
+fn figure(chart: &Chart, attributes: &str) -> String {
+    format!("<figure {attributes}>{}</figure>\n", chart.svg())
+}
+
+fn charts(class: &str, charts: &[Chart]) -> String {
+    let charts: String = charts.iter().map(|chart| figure(chart, "class=\"chart\"")).collect();
+    format!("<div class=\"{class}\">\n{charts}</div>\n")
+}
+
+fn table(table: &Table) -> String {
+    let heading =
+        if table.heading.is_empty() { String::new() } else { note(&format!("{}.", escape(&table.heading))) };
+    let cell = |cell: &String| format!("<th scope=\"col\">{}</th>", escape(cell));
+    let head: String = table.columns.iter().map(cell).collect();
+    let body: String = table.rows.iter().map(|row| table_row(row, table.columns.len())).collect();
+    format!(
+        "{heading}<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+    )
+}
+
+/// A row; if it has fewer cells than the table has columns, its last one goes over all that are left.
+fn table_row(cells: &[Cell], columns: usize) -> String {
+    let mut row = String::from("<tr>");
+    for (index, cell) in cells.iter().enumerate() {
+        let cell = escape(&cell.shown());
+        row += &match index {
+            0 => format!("<th scope=\"row\">{cell}</th>"),
+            last if last + 1 == cells.len() && cells.len() < columns => {
+                format!("<td class=\"words\" colspan=\"{}\">{cell}</td>", columns - last)
+            }
+            _ => format!("<td>{cell}</td>"),
+        };
+    }
+    row + "</tr>\n"
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! Pages and what they are made of.
+
+use serde::{Deserialize, Serialize};
+
+use crate::chart::Chart;
+use crate::table::Table;
+use crate::text::Text;
+
+/// A document.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Page {
+    /// Its headline.
+    pub title: String,
+    /// What follows.
+    pub parts: Vec<Part>,
+}
+
+/// A part of a document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// The sentence that a reader should take away.
+    Lead(Text),
+    /// A section with its heading; nothing is shown of one without parts.
+    Section(String, Vec<Part>),
+    /// A heading within a section.
+    Heading(Text),
+    /// A paragraph.
+    Paragraph(Text),
+    /// A remark in smaller type.
+    Note(Text),
+    /// A command to be typed.
+    Command(String),
+    /// A list.
+    List(Vec<Item>),
+    /// Results at a glance, each a badge, a link and a sentence.
+    Verdicts(Vec<Text>),
+    /// Names and what they are.
+    Definitions(Vec<(String, String)>),
+    /// A table.
+    Table(Table),
+    /// A chart by itself.
+    Chart(Box<Chart>),
+    /// Small charts side by side.
+    Charts(Vec<Chart>),
+    /// Cards side by side.
+    Cards(Vec<Card>),
+    /// What is shown when it is asked for, below a summary that always is.
+    Folded(String, Vec<Part>),
+}
+
+/// An item of a list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Item {
+    /// What it says.
+    pub text: Text,
+    /// It is shown as a warning.
+    pub is_warning: bool,
+}
+
+/// Parts in a frame that links can lead to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Card {
+    /// The name that links call it by.
+    pub anchor: String,
+    /// Its heading.
+    pub heading: Text,
+    /// What it shows.
+    pub parts: Vec<Part>,
+}
+
+impl Part {
+    /// A section of these parts.
+    pub fn section(heading: impl Into<String>, parts: impl Into<Vec<Part>>) -> Self {
+        Part::Section(heading.into(), parts.into())
+    }
+
+    /// A heading within a section.
+    pub fn heading(text: impl Into<Text>) -> Self {
+        Part::Heading(text.into())
+    }
+
+    /// A paragraph.
+    pub fn paragraph(text: impl Into<Text>) -> Self {
+        Part::Paragraph(text.into())
+    }
+
+    /// A remark.
+    pub fn note(text: impl Into<Text>) -> Self {
+        Part::Note(text.into())
+    }
+
+    /// A chart by itself.
+    pub fn chart(chart: Chart) -> Self {
+        Part::Chart(Box::new(chart))
+    }
+
+    /// A list of warnings.
+    pub fn warnings(warnings: &[String]) -> Self {
+        let item = |warning: &String| Item { text: warning.as_str().into(), is_warning: true };
+        Part::List(warnings.iter().map(item).collect())
+    }
+
+    /// The items of a list, of verdicts or of definitions.
+    pub(crate) fn items(&self) -> Vec<Text> {
+        match self {
+            Part::List(items) => items.iter().map(|item| item.text.clone()).collect(),
+            Part::Verdicts(verdicts) => verdicts.clone(),
+            Part::Definitions(pairs) => {
+                pairs.iter().map(|(name, value)| format!("{name}: {value}").into()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The parts in it: of a section, of what is folded, of cards.
+    fn inner(&self) -> Vec<&Part> {
+        match self {
+            Part::Section(_, parts) | Part::Folded(_, parts) => parts.iter().collect(),
+            Part::Cards(cards) => cards.iter().flat_map(|card| &card.parts).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The charts in it.
+    pub fn charts(&self) -> Vec<&Chart> {
+        match self {
+            Part::Chart(chart) => vec![chart.as_ref()],
+            Part::Charts(charts) => charts.iter().collect(),
+            other => other.inner().into_iter().flat_map(Part::charts).collect(),
+        }
+    }
+
+    /// The tables in it.
+    pub fn tables(&self) -> Vec<&Table> {
+        match self {
+            Part::Table(table) => vec![table],
+            other => other.inner().into_iter().flat_map(Part::tables).collect(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Tables of typed cells.
+
+use serde::{Deserialize, Serialize};
+
+use crate::number::number;
+
+/// Significant digits of a number for which none are named.
+const DIGITS: u8 = 3;
+
+/// A table. The first cell of each row is the row's heading; in a row with fewer cells than columns, the last one goes over
+/// all columns that are left.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Table {
+    /// What the table shows, without a full stop; may be empty.
+    pub heading: String,
+    /// Headings of the columns.
+    pub columns: Vec<String>,
+    /// Rows of cells.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A cell of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cell {
+    /// A finite number, and how many significant digits of it are shown.
+    Number(f64, u8),
+    /// The same with a percent sign behind it.
+    Percent(f64, u8),
+    /// Words.
+    Text(String),
+    /// A number that there is not.
+    Missing,
+}
+
+impl Table {
+    /// A table with these columns and without rows.
+    pub fn new<C: Into<String>>(columns: impl IntoIterator<Item = C>) -> Self {
+        Self { columns: columns.into_iter().map(Into::into).collect(), ..Self::default() }
+    }
+
+    /// The table with a heading, written without a full stop.
+    pub fn headed(self, heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), ..self }
+    }
+
+    /// The table with these rows.
+    pub fn with_rows(self, rows: impl IntoIterator<Item = Vec<Cell>>) -> Self {
+        Self { rows: rows.into_iter().collect(), ..self }
+    }
+
+    /// Adds a row.
+    pub fn push(&mut self, row: impl IntoIterator<Item = Cell>) {
+        self.rows.push(row.into_iter().collect());
+    }
+
+    /// True if every row has a cell for every column, and there is a column.
+    pub fn is_complete(&self) -> bool {
+        !self.columns.is_empty() && self.rows.iter().all(|row| row.len() == self.columns.len())
+    }
+}
+
+impl Cell {
+    /// A number with so many significant digits; missing if there is none, or none that is finite.
+    pub fn number(value: impl Into<Option<f64>>, digits: u8) -> Self {
+        match value.into() {
+            Some(value) if value.is_finite() => Cell::Number(value, digits),
+            _ => Cell::Missing,
+        }
+    }
+
+    /// As a page shows it.
+    pub fn shown(&self) -> String {
+        match self {
+            Cell::Number(value, digits) => number(*value, (*digits).into()),
+            Cell::Percent(value, digits) => format!("{} %", number(*value, (*digits).into())),
+            Cell::Text(text) => text.clone(),
+            Cell::Missing => "–".into(),
+        }
+    }
+
+    /// As a terminal shows it beside other numbers, which are in ASCII there.
+    pub fn ascii(&self) -> String {
+        match self {
+            Cell::Text(text) => text.clone(),
+            Cell::Missing => "-".into(),
+            number => number.shown().replace('−', "-"),
+        }
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Cell::number(value, DIGITS)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        Cell::number(value, DIGITS)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Cell::Text(count.to_string())
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.into())
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Cell::Text(text)
+    }
+}

@@ -1,0 +1,89 @@
+//! Text with emphasis, code and links.
+
+use serde::{Deserialize, Serialize};
+
+/// A line or a paragraph.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Text(pub Vec<Piece>);
+
+/// A stretch of text in one style.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Piece {
+    /// Without any style.
+    Plain(String),
+    /// What is typed or stands in a file.
+    Code(String),
+    /// Emphasised.
+    Strong(String),
+    /// Less important than what it stands beside.
+    Aside(String),
+    /// A link to a [`Card`](crate::Card) of the same page.
+    Link {
+        /// Anchor of the card.
+        anchor: String,
+        /// What is shown.
+        text: String,
+    },
+    /// A word that is to be seen at a glance.
+    Badge(Badge, String),
+}
+
+/// How a badge looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Badge {
+    /// For a yes.
+    Yes,
+    /// For a no.
+    No,
+    /// For what is not known.
+    Unknown,
+}
+
+impl Text {
+    /// The text with a piece directly behind it.
+    pub fn with(mut self, piece: Piece) -> Self {
+        self.0.push(piece);
+        self
+    }
+
+    /// The text with a piece behind it as the next word.
+    pub fn and(self, piece: Piece) -> Self {
+        self.with(Piece::Plain(" ".into())).with(piece)
+    }
+
+    /// The text without any style.
+    pub fn plain(&self) -> String {
+        self.0.iter().map(Piece::text).collect()
+    }
+}
+
+impl Piece {
+    /// What is shown.
+    pub fn text(&self) -> &str {
+        match self {
+            Piece::Plain(text) | Piece::Code(text) | Piece::Strong(text) | Piece::Aside(text) => text,
+            Piece::Link { text, .. } | Piece::Badge(_, text) => text,
+        }
+    }
+}
+
+impl From<Piece> for Text {
+    fn from(piece: Piece) -> Self {
+        Text(vec![piece])
+    }
+}
+
+impl From<String> for Text {
+    fn from(text: String) -> Self {
+        Piece::Plain(text).into()
+    }
+}
+
+impl From<&str> for Text {
+    fn from(text: &str) -> Self {
+        text.to_string().into()
+    }
+}

@@ -1,0 +1,80 @@
+//! The experiments by their names.
+
+use crate::chapter::{Chapter, Content, FurtherFile};
+use crate::conditions::{Observer, Settings};
+use crate::example::catalogue::{EXAMPLES, Example};
+use crate::{example, nds, table2, training};
+
+/// One of the experiments.
+#[derive(Debug, Clone, Copy)]
+pub enum Experiment {
+    /// One neuron.
+    Nds,
+    /// An example of the paper.
+    Example(&'static Example),
+    /// Which network can learn which property.
+    Table2,
+    /// The trainers compared.
+    Training,
+}
+
+impl Experiment {
+    /// All of them, in the order of the page.
+    pub fn all() -> impl Iterator<Item = Experiment> {
+        let examples = EXAMPLES.iter().map(Experiment::Example);
+        [Experiment::Nds].into_iter().chain(examples).chain([Experiment::Table2, Experiment::Training])
+    }
+
+    /// The experiment of this name.
+    pub fn named(name: &str) -> Option<Experiment> {
+        Self::all().find(|experiment| experiment.name() == name)
+    }
+
+    /// Name on the command line and of its files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Experiment::Nds => "nds",
+            Experiment::Example(example) => example.name,
+            Experiment::Table2 => "table2",
+            Experiment::Training => "training",
+        }
+    }
+
+    /// The files that only this experiment has.
+    pub fn further_files(self) -> &'static [FurtherFile] {
+        match self {
+            Experiment::Training => &training::FILES,
+            Experiment::Nds | Experiment::Example(_) | Experiment::Table2 => &[],
+        }
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    /// [`hysid::Error::Stopped`] if the observer stops it, and whatever a fit may end with.
+    pub fn chapter(self, settings: Settings, observer: &dyn Observer) -> hysid::Result<Chapter> {
+        match self {
+            Experiment::Nds => Ok(nds::chapter()),
+            Experiment::Example(example) => example::chapter(example, settings, observer),
+            Experiment::Table2 => table2::chapter(settings, observer),
+            Experiment::Training => training::chapter(settings, observer),
+        }
+    }
+
+    /// True for a chapter as this experiment makes them. One that was stored may have been changed in its file, and
+    /// names of files are used as they are.
+    pub fn is_sound(self, chapter: &Chapter) -> bool {
+        let is_known = |(name, content): &(String, Content)| {
+            let file = self.further_files().iter().find(|file| file.name == name);
+            file.is_some_and(|file| match (content, file.header) {
+                (Content::Text(text), Some(header)) => text.starts_with(header),
+                (Content::Drawing(chart), None) => chart.is_sound(),
+                _ => false,
+            })
+        };
+        chapter.name == self.name()
+            && chapter.parts.iter().flat_map(|part| part.tables()).all(|table| table.is_complete())
+            && chapter.parts.iter().flat_map(|part| part.charts()).all(|chart| chart.is_sound())
+            && chapter.files.iter().all(is_known)
+    }
+}

@@ -1,0 +1,273 @@
+//! What the comparison of trainers comes to: tables, figures, and the sentence on the paper's claim.
+
+use hysid::options::network::Trainer;
+use hysid::significant::Significant;
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
+
+use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
+use crate::chapter::{Chapter, Content, FurtherFile, stands_in};
+
+/// Heading of every table: what the figures are of.
+fn heading(protocol: &Protocol) -> String {
+    format!(
+        "{}: XPNN with 10 stops and 10 tanh neurons; {} epochs",
+        stands_in(protocol.specimen.name, "example 2"),
+        protocol.epochs
+    )
+}
+
+/// Names of the files beside page and tables, and header lines of those that are tables.
+const SEEDS_TABLE: &str = "training-seeds.csv";
+const HISTORY_TABLE: &str = "training-history.csv";
+const EPOCHS_CHART: &str = "training-epochs.svg";
+const SECONDS_CHART: &str = "training-seconds.svg";
+const SEEDS_HEADER: &str =
+    "seed,trainer,train_mse,train_nrmse_std_percent,test_mse,test_nrmse_std_percent,seconds,evaluations\n";
+const HISTORY_HEADER: &str = "seed,trainer,epoch,evaluations,seconds,train_nrmse_std_percent\n";
+
+/// The files beside page and tables.
+pub const FILES: [FurtherFile; 4] = [
+    FurtherFile { name: SEEDS_TABLE, header: Some(SEEDS_HEADER) },
+    FurtherFile { name: HISTORY_TABLE, header: Some(HISTORY_HEADER) },
+    FurtherFile { name: EPOCHS_CHART, header: None },
+    FurtherFile { name: SECONDS_CHART, header: None },
+];
+
+/// The chapter on all repetitions.
+pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
+    let (epochs, seconds) = (chart(repetitions, Abscissa::Epochs), chart(repetitions, Abscissa::Seconds));
+    let files = [
+        (SEEDS_TABLE, Content::Text(csv(repetitions))),
+        (HISTORY_TABLE, Content::Text(history(repetitions))),
+        (EPOCHS_CHART, Content::Drawing(epochs.clone().into())),
+        (SECONDS_CHART, Content::Drawing(seconds.clone().into())),
+    ];
+    let specimen = protocol.specimen;
+    let mut parts = vec![
+        Part::Table(table(protocol, repetitions, "medians of the seeds", |(_, median, _)| median.into())),
+        Part::Table(table(protocol, repetitions, "lowest to highest of the seeds", |(low, _, high)| {
+            format!("{} to {}", number(low, 3), number(high, 3)).into()
+        })),
+        Part::paragraph(matched(repetitions)),
+        Part::note(WORDS),
+    ];
+    if protocol.epochs < EPOCHS {
+        parts.push(Part::note("A quick run: a tenth of the paper's epochs."));
+    }
+    parts.extend([
+        Part::heading("Convergence"),
+        Part::chart(epochs),
+        Part::chart(seconds),
+        Part::note(format!(
+            "The specimen: {}. Published: {}. Designed: {}.",
+            specimen.summary, specimen.published, specimen.designed
+        )),
+    ]);
+    Chapter {
+        name: "training".into(),
+        title: "trainers compared".into(),
+        verdict: claim(repetitions),
+        parts,
+        targets: Vec::new(),
+        files: files.map(|(name, content)| (name.to_string(), content)).into(),
+    }
+}
+
+/// What the words of the tables mean.
+const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least squares. From the same seed the genetic algorithm and the hybrid begin with the same population, the sub-gradient method and Levenberg-Marquardt with the same random network, whose thresholds are spread out beforehand. An epoch is a generation of 50 individuals, an outer iteration of the sub-gradient method, or an iteration of Levenberg-Marquardt; a hybrid spends half of its epochs on each phase. An evaluation is one of the objective or of its gradient. Seconds are of this machine and of this run, beside whatever else ran. Unseen is the rest of the history, which nothing was fitted to.";
+
+fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&Training> {
+    let all = repetitions.iter().flat_map(|repetition| &repetition.trainings);
+    all.filter(|training| training.trainer == trainer).collect()
+}
+
+/// A row for each trainer; `cell` is made of the lowest, median and highest of its seeds.
+fn table(
+    protocol: &Protocol,
+    repetitions: &[Repetition],
+    of_seeds: &str,
+    cell: impl Fn((f64, f64, f64)) -> Cell,
+) -> Table {
+    let unit = repetitions[0].trainings[0].train.output.rsplit_once('_').map_or("", |(_, unit)| unit);
+    let columns = ["trainer".to_string(), format!("MSE, {unit}²")].into_iter();
+    let columns = columns.chain(["% of std", "unseen, %", "seconds", "evaluations"].map(String::from));
+    let row = |trainer: Trainer| {
+        let trainings = of(repetitions, trainer);
+        let spread = |value: &dyn Fn(&Training) -> f64| {
+            cell(range(&trainings.iter().map(|training| value(training)).collect::<Vec<f64>>()))
+        };
+        vec![
+            trainer.name().into(),
+            spread(&|training| training.train.mse),
+            spread(&|training| training.train.nrmse_std_percent.unwrap_or(f64::NAN)),
+            spread(&|training| training.test.nrmse_std_percent.unwrap_or(f64::NAN)),
+            spread(&|training| training.seconds),
+            spread(&|training| training.evaluations as f64),
+        ]
+    };
+    let seeds = count(repetitions.len(), "seed");
+    Table::new(columns)
+        .headed(format!("{}; {of_seeds} ({seeds} from {})", heading(protocol), protocol.first_seed))
+        .with_rows(TRAINERS.map(row))
+}
+
+/// Lowest, median and highest.
+fn range(values: &[f64]) -> (f64, f64, f64) {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    let median =
+        if sorted.len() % 2 == 1 { sorted[middle] } else { 0.5 * (sorted[middle - 1] + sorted[middle]) };
+    (sorted[0], median, sorted[sorted.len() - 1])
+}
+
+fn median_mse(repetitions: &[Repetition], trainer: Trainer) -> f64 {
+    let values: Vec<f64> = of(repetitions, trainer).iter().map(|training| training.train.mse).collect();
+    range(&values).1
+}
+
+/// Does the paper's claim hold: is the hybrid better than either phase alone?
+pub(super) fn claim(repetitions: &[Repetition]) -> String {
+    let median = |trainer| median_mse(repetitions, trainer);
+    let (hybrid, genetic, subgradient) =
+        (median(Trainer::Hybrid), median(Trainer::Genetic), median(Trainer::Subgradient));
+    let best_of = |repetition: &&Repetition| {
+        let mse = |trainer| {
+            let found = repetition.trainings.iter().find(|training| training.trainer == trainer);
+            found.map_or(f64::NAN, |training| training.train.mse)
+        };
+        mse(Trainer::Hybrid) < mse(Trainer::Genetic) && mse(Trainer::Hybrid) < mse(Trainer::Subgradient)
+    };
+    let wins = repetitions.iter().filter(best_of).count();
+    let seeds = count(repetitions.len(), "seed");
+    let verdict = if hybrid < genetic && hybrid < subgradient && 2 * wins > repetitions.len() {
+        "holds here"
+    } else if hybrid < genetic {
+        "holds here against the genetic algorithm alone, but not against the sub-gradient method alone"
+    } else {
+        "does not hold here"
+    };
+    let times = |other: f64| match other / hybrid {
+        ratio if ratio >= 1.0 => format!("{:.2} times below", Significant(ratio)),
+        ratio => format!("{:.2} times above", Significant(1.0 / ratio)),
+    };
+    format!(
+        "The paper's claim that the hybrid beats each phase alone {verdict}: its median MSE is {} that of the genetic algorithm and {} that of the sub-gradient method, and it is the lowest of the three in {wins} of {seeds}.",
+        times(genetic),
+        times(subgradient)
+    )
+}
+
+/// How soon Levenberg-Marquardt is as good as the hybrid.
+pub(super) fn matched(repetitions: &[Repetition]) -> String {
+    let hybrids = of(repetitions, Trainer::Hybrid);
+    let shares: Vec<f64> = repetitions
+        .iter()
+        .zip(&hybrids)
+        .filter_map(|(repetition, hybrid)| Some(repetition.seconds_to_match? / hybrid.seconds))
+        .collect();
+    let tried = count(repetitions.len(), "seed");
+    let reached = match shares.as_slice() {
+        [] => {
+            return format!(
+                "Levenberg-Marquardt, begun anew whenever it ends, does not reach the hybrid's final error within the hybrid's time from any of {tried}."
+            );
+        }
+        shares => shares,
+    };
+    let (low, median, high) = range(reached);
+    let part = |share: f64| format!("1/{:.2}", Significant(1.0 / share));
+    format!(
+        "Levenberg-Marquardt, begun anew whenever it ends, reaches the hybrid's final error within the hybrid's time in {} of {tried}, after {} of that time ({} to {}).",
+        reached.len(),
+        part(median),
+        part(low),
+        part(high)
+    )
+}
+
+fn colour(trainer: Trainer) -> Colour {
+    let place = TRAINERS.iter().position(|&other| other == trainer);
+    Colour::Series(match place.unwrap_or_default() {
+        // The hybrid is blue, as the model is elsewhere.
+        2 => 0,
+        0 => 2,
+        other => other,
+    })
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Abscissa {
+    Epochs,
+    Seconds,
+}
+
+/// Error against epochs or seconds, every training.
+fn chart(repetitions: &[Repetition], abscissa: Abscissa) -> Chart {
+    let x = |moment: &Moment| match abscissa {
+        Abscissa::Epochs => moment.epoch as f64,
+        Abscissa::Seconds => moment.seconds,
+    };
+    let curve = |training: &Training| {
+        let points = kept(&training.moments).map(|moment| (x(moment), moment.nrmse_percent));
+        Curve::new(points.collect(), colour(training.trainer), 1.4)
+    };
+    let trainings = repetitions.iter().flat_map(|repetition| &repetition.trainings);
+    let curves: Vec<Curve> = trainings.map(curve).collect();
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let label = if abscissa == Abscissa::Epochs { "epoch" } else { "time (s)" };
+    let x = Axis::logarithmic(label, points().map(|point| point.0));
+    let y = Axis::logarithmic("training error (% of std)", points().map(|point| point.1));
+    let description = format!("Training error against {label}, one line for each trainer and seed");
+    let legend = TRAINERS.map(|trainer| (colour(trainer), trainer.name()));
+    Chart::on_axes(description, x, y, curves).with_height(360.0).with_legend(legend)
+}
+
+/// Moments that can be told apart in a drawing: about a hundred in a decade of epochs.
+fn kept(moments: &[Moment]) -> impl Iterator<Item = &Moment> {
+    let mut next = 1.0;
+    moments.iter().enumerate().filter_map(move |(index, moment)| {
+        let due = moment.epoch as f64 >= next || index + 1 == moments.len();
+        if due {
+            next = moment.epoch as f64 * 1.023;
+        }
+        due.then_some(moment)
+    })
+}
+
+fn csv(repetitions: &[Repetition]) -> String {
+    let mut text = String::from(SEEDS_HEADER);
+    for training in repetitions.iter().flat_map(|repetition| &repetition.trainings) {
+        let percent = |errors: &hysid::data::metrics::Errors| errors.nrmse_std_percent.unwrap_or(f64::NAN);
+        text += &format!(
+            "{},{},{},{},{},{},{:.4},{}\n",
+            training.seed,
+            training.trainer.name(),
+            training.train.mse,
+            percent(&training.train),
+            training.test.mse,
+            percent(&training.test),
+            training.seconds,
+            training.evaluations
+        );
+    }
+    text
+}
+
+fn history(repetitions: &[Repetition]) -> String {
+    let mut text = String::from(HISTORY_HEADER);
+    for training in repetitions.iter().flat_map(|repetition| &repetition.trainings) {
+        for moment in kept(&training.moments) {
+            text += &format!(
+                "{},{},{},{},{:.5},{}\n",
+                training.seed,
+                training.trainer.name(),
+                moment.epoch,
+                moment.evaluations,
+                moment.seconds,
+                moment.nrmse_percent
+            );
+        }
+    }
+    text
+}
