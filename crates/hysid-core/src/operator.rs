@@ -118,6 +118,12 @@ pub enum InvalidOperator {
     },
 }
 
+impl From<InvalidOperator> for crate::Error {
+    fn from(error: InvalidOperator) -> Self {
+        Self::Parts(error.to_string())
+    }
+}
+
 /// `r` itself if it is finite and greater than 0.
 fn checked_threshold(r: f64) -> Result<f64, InvalidOperator> {
     if r.is_finite() && r > 0.0 { Ok(r) } else { Err(InvalidOperator::Threshold(r)) }
