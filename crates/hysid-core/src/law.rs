@@ -9,6 +9,7 @@ pub mod facts;
 pub mod generalized_prandtl_ishlinskii;
 pub mod interval;
 pub mod jiles_atherton;
+pub mod lugre;
 pub mod masing;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
@@ -320,6 +321,7 @@ macro_rules! any_of {
 use bouc_wen::BoucWen;
 use generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
 use jiles_atherton::JilesAtherton;
+use lugre::Lugre;
 use masing::Masing;
 use modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
 use neuro_madelung::NeuroMadelung;
@@ -342,6 +344,7 @@ macro_rules! for_each_law {
             NeuroMadelung,
             BoucWen,
             JilesAtherton,
+            Lugre,
         }
     };
 }

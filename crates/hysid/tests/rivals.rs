@@ -9,8 +9,12 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::Error;
 use hysid::fit::identify;
+use hysid::fit::law::Identify;
+use hysid::fit::law::lugre::LugreOptions;
 use hysid::fit::network::Fit;
-use hysid::law::Dimension;
+use hysid::law::lugre::Lugre;
+use hysid::law::series::samples;
+use hysid::law::{Classical, Dimension, Sample};
 use hysid::model::{Body, Model};
 use hysid::network::Family;
 use hysid::options::classical::{ClassicalOptions, Rival};
@@ -198,5 +202,58 @@ fn what_a_model_cannot_be_fitted_to_is_said() {
         let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
         let error = refused(&Request::Classical(options));
         assert!(matches!(&error, Error::Option(error) if error.option == "operators"), "{error}");
+    }
+}
+
+#[test]
+fn the_slope_of_every_law_is_that_of_its_output() {
+    for &rival in Rival::ALL {
+        let model = quietly(&small(ModelName::Rival(rival), Some(RateMethod::Central))).model;
+        let Body::Law(law) = model.body() else { continue };
+        assert_eq!(law.facts().name, rival.name());
+        let (low, high) = data().input_range(0);
+        let range = high - low;
+        let mut state = law.virgin();
+        let at = |x| Sample { x, rate: 0.0, step: 0.0 };
+        for x in [low + 0.31 * range, low + 0.83 * range, low + 0.57 * range] {
+            law.step(&mut state, at(x));
+            for direction in [1.0, -1.0] {
+                let tangent = law.tangent(&state, x, direction);
+                let run = |by: f64| law.step(&mut state.clone(), at(x + by * direction));
+                let secant = (run(2e-6 * range) - run(1e-6 * range)) / (1e-6 * range * direction);
+                assert!(
+                    (tangent - secant).abs() <= 1e-3 * (1.0 + secant.abs()),
+                    "{rival:?} at {x} in {direction}: {tangent} and {secant}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_friction_of_a_joint_is_found_again() {
+    let law = Lugre {
+        offset: 0.0,
+        sliding: 2.0,
+        presliding: 0.05,
+        stribeck: 0.6,
+        stribeck_velocity: 0.2,
+        bristle_damping: 0.0,
+        viscous: 0.4,
+    };
+    let time: Vec<f64> = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
+    let x: Vec<f64> = time.iter().map(|t| 0.4 * t.sin() + 0.1 * (3.1 * t).sin()).collect();
+    let blank = Record::new("joint", vec![x], vec![0.0; 2000]).unwrap().with_time(time).unwrap();
+    let output = Classical::from(law).run(&samples(&blank.excitation(), Some(RateMethod::Central)).unwrap());
+    let data = Dataset::new(ColumnNames::plain(1), vec![blank.with_output(output).unwrap()]).unwrap();
+    let options = LugreOptions { starts: 4, ..LugreOptions::default() };
+    let found = Lugre::fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap();
+    let close = |found: f64, true_value: f64| (found - true_value).abs() < 1e-3 * true_value;
+    assert!(found.train_nrmse_percent < 1e-3, "{found:?}");
+    let Lugre { sliding, presliding, stribeck, stribeck_velocity, viscous, .. } = found.law;
+    for (found, true_value) in
+        [(sliding, 2.0), (presliding, 0.05), (stribeck, 0.6), (stribeck_velocity, 0.2), (viscous, 0.4)]
+    {
+        assert!(close(found, true_value), "{found} for {true_value}");
     }
 }

@@ -37,6 +37,11 @@ impl Interval {
         Self(self.0.min(0.0), self.1.max(0.0))
     }
 
+    /// The same and what has the other sign.
+    pub fn with_its_negative(self) -> Self {
+        Self::about(0.0, self.0.abs().max(self.1.abs()))
+    }
+
     /// What lies in both.
     pub fn common(self, other: Self) -> Self {
         Self(self.0.max(other.0), self.1.min(other.1))

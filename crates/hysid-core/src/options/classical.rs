@@ -9,6 +9,7 @@ use crate::law::bouc_wen::BoucWen;
 use crate::law::facts::{Facts, Identification, Origin, Rate};
 use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
 use crate::law::jiles_atherton::JilesAtherton;
+use crate::law::lugre::Lugre;
 use crate::law::masing::Masing;
 use crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
 use crate::law::neuro_madelung::NeuroMadelung;

@@ -1,0 +1,255 @@
+//! LuGre: friction of a contact whose bristles bend before they slip, as in bearings, gears, guides and tyres.
+//!
+//! ```text
+//! dz/dt = v - σ0 |v| z / g(v),    g(v) = F_C + (F_S - F_C) exp(-(v/v_s)²)          theory.md (8.26)
+//! y     = c0 + σ0 z + σ1 dz/dt + σ2 v                                              theory.md (8.27)
+//! ```
+//!
+//! `x` is the displacement, `v` its rate and `y` the force. At a small rate the contact is a spring of stiffness `σ0`
+//! that yields at `F_S`; the faster it slides, the more its friction falls to `F_C` (the Stribeck effect). For a rate
+//! that is constant between two samples the first equation has an exact solution, which is used here: no step is too
+//! long. Written with `s = σ0 z/F_C`, the deflection as a share of that at `F_C`, and the presliding displacement
+//! `x_s = F_C/σ0`. Source: Canudas de Wit, Olsson, Åström and Lischinsky, IEEE Transactions on Automatic Control 40
+//! (1995) 419-425.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::interval::Interval;
+use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
+
+/// Bounds of the static over the sliding friction, less 1.
+pub const STRIBECK_BOUNDS: (f64, f64) = (0.0, 10.0);
+
+/// A LuGre law in the user's units.
+///
+/// ```
+/// use hysid_core::law::lugre::Lugre;
+/// use hysid_core::law::{Law, Sample};
+/// let law = Lugre { sliding: 2.0, presliding: 0.01, ..Lugre::default() };
+/// let mut state = law.virgin();
+/// let force = law.step(&mut state, Sample { x: 1.0, rate: 0.5, step: 0.1 });
+/// assert!((force - 2.0).abs() < 1e-12); // far beyond the presliding displacement: 2 N of sliding friction
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lugre {
+    /// `c0`, in the unit of the output.
+    pub offset: f64,
+    /// `F_C`: sliding friction at a high rate, in the unit of the output.
+    pub sliding: f64,
+    /// `x_s = F_C/σ0 > 0`: presliding displacement, in the unit of the input.
+    pub presliding: f64,
+    /// `F_S/F_C - 1`, 0 to 10: what static friction has more than sliding friction.
+    pub stribeck: f64,
+    /// `v_s > 0`: Stribeck velocity, in the unit of the rate.
+    pub stribeck_velocity: f64,
+    /// `σ1 F_C/σ0`: damping of the bristles, in the unit of the output, multiplied by that of time.
+    pub bristle_damping: f64,
+    /// `σ2`: viscous friction, in the unit of the output for that of the rate.
+    pub viscous: f64,
+}
+
+impl Default for Lugre {
+    /// A friction of 1 without Stribeck effect and damping.
+    fn default() -> Self {
+        Self {
+            offset: 0.0,
+            sliding: 1.0,
+            presliding: 1.0,
+            stribeck: 0.0,
+            stribeck_velocity: 1.0,
+            bristle_damping: 0.0,
+            viscous: 0.0,
+        }
+    }
+}
+
+/// What the contact knows of the past.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct LugreState {
+    x: f64,
+    /// `σ0 z/F_C`.
+    deflection: f64,
+}
+
+/// The deflection of the bristles and its rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bristles {
+    /// `σ0 z/F_C`, a share of the deflection at the sliding friction.
+    pub deflection: f64,
+    /// Its derivative by time.
+    pub rate: f64,
+}
+
+impl Lugre {
+    /// `g(v)/F_C`: friction of a steady motion over the sliding friction, without the viscous part.
+    pub fn steady(&self, rate: f64) -> f64 {
+        let share = rate / self.stribeck_velocity;
+        1.0 + self.stribeck * (-share * share).exp()
+    }
+
+    /// Takes the next input and gives the bristles: the exact solution for a rate that is constant since the sample
+    /// before.
+    pub fn advance(&self, state: &mut LugreState, sample: Sample) -> Bristles {
+        let by = sample.x - state.x;
+        state.x = sample.x;
+        let steady = self.steady(sample.rate);
+        if by != 0.0 {
+            let end = by.signum() * steady;
+            let decay = (-by.abs() / (self.presliding * steady)).exp();
+            state.deflection = end + (state.deflection - end) * decay;
+        }
+        let deflection = state.deflection;
+        let rate = (sample.rate - sample.rate.abs() * deflection / steady) / self.presliding;
+        Bristles { deflection, rate }
+    }
+}
+
+impl Law for Lugre {
+    type State = LugreState;
+
+    const FACTS: Facts = Facts {
+        name: "lugre",
+        rate: Rate::Needed,
+        origin: Origin::OfData,
+        identification: Identification::Search,
+        options: &["starts", "epochs", "rate_companding"],
+        limits: &[],
+        variant: None,
+        log_error_inside: 0.15,
+    };
+
+    fn virgin(&self) -> LugreState {
+        LugreState::default()
+    }
+
+    fn step(&self, state: &mut LugreState, sample: Sample) -> f64 {
+        let sample = sample.limited();
+        let bristles = self.advance(state, sample);
+        let damping = self.bristle_damping * bristles.rate;
+        let force = self.sliding * bristles.deflection + damping + self.viscous * sample.rate;
+        (self.offset + force).clamp(-f64::MAX, f64::MAX)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let any = (-LARGEST_VALUE, LARGEST_VALUE);
+        let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
+        let rate = Dimension { input: 1, output: 0, time: -1 };
+        let viscosity = Dimension { input: -1, output: 1, time: 1 };
+        let impulse = Dimension { input: 0, output: 1, time: 1 };
+        vec![
+            Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            Parameter::new("F_C", "sliding friction", self.sliding, any, Dimension::OUTPUT),
+            Parameter::new("x_s", "presliding displacement", self.presliding, positive, Dimension::INPUT),
+            Parameter::new(
+                "F_S/F_C-1",
+                "surplus of static friction",
+                self.stribeck,
+                STRIBECK_BOUNDS,
+                Dimension::NONE,
+            ),
+            Parameter::new("v_s", "Stribeck velocity", self.stribeck_velocity, positive, rate),
+            Parameter::new("σ1x_s", "damping of the bristles", self.bristle_damping, any, impulse),
+            Parameter::new("σ2", "viscous friction", self.viscous, any, viscosity),
+        ]
+    }
+
+    fn validated(self) -> Result<Self> {
+        self.parameters().iter().try_for_each(|parameter| parameter.check("LuGre"))?;
+        if self.sliding * (1.0 + self.stribeck) > LARGEST_VALUE {
+            return Err(Error::Parts("LuGre: the static friction is too large".into()));
+        }
+        Ok(self)
+    }
+
+    fn sees_rate(&self) -> bool {
+        true
+    }
+
+    fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
+        let odd = about_origin.then_some(crate::law::properties::ODD);
+        [Some((Property::Deterioration, false)), odd].into_iter().flatten().collect()
+    }
+
+    fn output_bound(&self, _: Interval, rate: Interval) -> Interval {
+        let largest = 1.0 + self.stribeck;
+        // The bristles lag: their rate is at most twice that of the input, for a deflection of up to the largest share.
+        let bristles = rate.times((1.0 + largest) / self.presliding).with_its_negative();
+        Interval::about(self.offset, (self.sliding * largest).abs())
+            .plus(bristles.times(self.bristle_damping))
+            .plus(rate.times(self.viscous))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint with all terms.
+    fn joint() -> Lugre {
+        Lugre {
+            offset: 0.3,
+            sliding: 2.0,
+            presliding: 0.05,
+            stribeck: 0.6,
+            stribeck_velocity: 0.2,
+            bristle_damping: 0.01,
+            viscous: 0.4,
+        }
+    }
+
+    #[test]
+    fn steady_sliding_has_the_friction_of_its_rate() {
+        for v in [-1.0, -0.2, 0.01, 0.3, 5.0] {
+            let (law, mut state) = (joint(), LugreState::default());
+            let force = law.step(&mut state, Sample { x: 10.0 * f64::signum(v), rate: v, step: 1.0 });
+            let share: f64 = v / 0.2;
+            let expected = 0.3 + v.signum() * (2.0 + 1.2 * (-share * share).exp()) + 0.4 * v;
+            assert!((force - expected).abs() < 1e-12, "{v}: {force} and {expected}");
+        }
+    }
+
+    #[test]
+    fn one_step_is_as_many_at_the_same_rate() {
+        let (law, mut once, mut often) = (joint(), LugreState::default(), LugreState::default());
+        let rate = 0.15;
+        let far = law.step(&mut once, Sample { x: 0.04, rate, step: 1.0 });
+        let near =
+            (1..=1000).map(|k| law.step(&mut often, Sample { x: 4e-5 * f64::from(k), rate, step: 1e-3 }));
+        assert!((near.last().unwrap() - far).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_differential_equation_is_solved() {
+        // Runge and Kutta in time with a thousand parts, the rate falling and changing its sign.
+        let law = joint();
+        let (duration, parts) = (2.0, 200_000);
+        let step = duration / f64::from(parts);
+        let rate = |t: f64| 0.3 * (2.0 * t).cos();
+        let slope = |s: f64, t: f64| (rate(t) - rate(t).abs() * s / law.steady(rate(t))) / law.presliding;
+        let (mut exact, mut state, mut largest) = (0.0, law.virgin(), 0.0_f64);
+        for k in 1..=parts {
+            let t = step * f64::from(k - 1);
+            let k1 = slope(exact, t);
+            let k2 = slope(exact + 0.5 * step * k1, t + 0.5 * step);
+            let k3 = slope(exact + 0.5 * step * k2, t + 0.5 * step);
+            let k4 = slope(exact + step * k3, t + step);
+            exact += step * (k1 + 2.0 * (k2 + k3) + k4) / 6.0;
+            let t = t + step;
+            let x = 0.15 * (2.0 * t).sin();
+            let bristles = law.advance(&mut state, Sample { x, rate: rate(t), step });
+            largest = largest.max((bristles.deflection - exact).abs());
+        }
+        assert!(largest < 2e-4, "{largest}");
+    }
+
+    #[test]
+    fn small_displacements_meet_a_spring() {
+        let law = Lugre { bristle_damping: 0.0, viscous: 0.0, offset: 0.0, ..joint() };
+        let tangent = law.tangent(&law.virgin(), 0.0, 1.0);
+        assert!((tangent - 2.0 / 0.05).abs() < 1e-3, "{tangent}");
+    }
+}

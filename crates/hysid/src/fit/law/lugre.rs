@@ -1,0 +1,125 @@
+//! Identification of a LuGre law: presliding displacement, Stribeck effect and velocity are searched; the friction, the
+//! damping and the offset follow.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::rate::RateMethod;
+use crate::data::record::Dataset;
+use crate::error::{Error, Result};
+use crate::fit::law::Identify;
+use crate::fit::law::search::{
+    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::Law;
+use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
+use crate::law::series::Series;
+use crate::options::classical::ClassicalOptions;
+use crate::options::network::SEED;
+use crate::stop_check::StopCheck;
+
+/// How a LuGre law is identified.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LugreOptions {
+    /// How the rate is found.
+    pub rate: RateMethod,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Iterations of each at most.
+    pub epochs: usize,
+    /// Seed of the random starts.
+    pub seed: u64,
+}
+
+impl Default for LugreOptions {
+    fn default() -> Self {
+        Self { rate: RateMethod::Central, starts: 8, epochs: 40, seed: SEED }
+    }
+}
+
+impl TryFrom<&ClassicalOptions> for LugreOptions {
+    type Error = Error;
+
+    fn try_from(options: &ClassicalOptions) -> Result<Self> {
+        let defaults = Self::default();
+        Ok(Self {
+            rate: options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?,
+            starts: options.starts.unwrap_or(defaults.starts),
+            epochs: options.epochs.unwrap_or(defaults.epochs),
+            seed: options.seed,
+        })
+    }
+}
+
+/// Elementary operations of a row, roughly.
+const OPERATIONS_A_ROW: usize = 60;
+
+impl Identify for Lugre {
+    type Options = LugreOptions;
+
+    fn identify(
+        data: &Dataset,
+        options: &LugreOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let series = thinned(Series::all(data, Some(options.rate))?, Memory::EveryRow);
+        let (low, high) = data.input_range(0);
+        let family = Contacts::new((high - low).max(f64::MIN_POSITIVE), &series);
+        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let found = search(&family, &series, effort, observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        (law.offset, law.sliding, law.bristle_damping, law.viscous) =
+            (found.weights[0], found.weights[1], found.weights[2], found.weights[3]);
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// LuGre laws as the search sees them.
+struct Contacts {
+    variables: [Variable; 3],
+}
+
+impl Contacts {
+    fn new(range: f64, series: &[Series]) -> Self {
+        let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
+        let fastest = rates.fold(f64::MIN_POSITIVE, f64::max);
+        let variables = [
+            Variable::logarithmic(1e-4 * range, range),
+            Variable::linear(STRIBECK_BOUNDS.0, 3.0),
+            Variable::logarithmic(1e-3 * fastest, 2.0 * fastest),
+        ];
+        Self { variables }
+    }
+
+    /// The law of unit friction.
+    fn law(&self, parameters: &[f64]) -> Lugre {
+        let &[presliding, stribeck, stribeck_velocity] = parameters else {
+            unreachable!("three variables are searched")
+        };
+        Lugre { presliding, stribeck, stribeck_velocity, ..Lugre::default() }
+    }
+}
+
+impl Family for Contacts {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &[false; 4]
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let mut state = law.virgin();
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(OPERATIONS_A_ROW) {
+                return;
+            }
+            let bristles = law.advance(&mut state, *sample);
+            if !y.is_nan() {
+                columns.push(&[1.0, bristles.deflection, bristles.rate, sample.rate]);
+            }
+        }
+    }
+}
