@@ -36,6 +36,26 @@ pub struct Rules {
     pub stall: f64,
 }
 
+impl Rules {
+    /// For smooth functions of many parameters: steps are held by curvature seen before, and small falls count.
+    pub const SMOOTH: Self = Self {
+        damping: (1e-12, 1e12),
+        curvature_memory: 0.9,
+        least_curvature: 1e-4,
+        least_gradient: 1e-14,
+        stall: 1e-6,
+    };
+
+    /// For laws with kinks and regions without slope, in any unit: what was seen elsewhere says little.
+    pub const KINKED: Self = Self {
+        damping: (1e-10, 1e10),
+        curvature_memory: 0.0,
+        least_curvature: 1e-6,
+        least_gradient: 0.0,
+        stall: 1e-5,
+    };
+}
+
 /// Slope and curvature at a point.
 pub struct Slope<C> {
     /// Gradient of the function.
@@ -310,13 +330,7 @@ mod tests {
     impl Problem for Valley {
         type Value = [f64; 2];
         type Curvature = Symmetric;
-        const RULES: Rules = Rules {
-            damping: (1e-12, 1e12),
-            curvature_memory: 0.9,
-            least_curvature: 1e-4,
-            least_gradient: 1e-14,
-            stall: 1e-6,
-        };
+        const RULES: Rules = Rules::SMOOTH;
 
         fn value(&self, p: &[f64]) -> [f64; 2] {
             [10.0 * (p[1] - p[0] * p[0]), 1.0 - p[0]]

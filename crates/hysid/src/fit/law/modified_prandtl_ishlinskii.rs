@@ -375,13 +375,7 @@ impl<'a> Refinement<'a> {
 impl levenberg_marquardt::Problem for Refinement<'_> {
     type Value = f64;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules {
-        damping: (1e-9, 1e6),
-        curvature_memory: 0.0,
-        least_curvature: 1e-6,
-        least_gradient: 0.0,
-        stall: 1e-6,
-    };
+    const RULES: Rules = Rules { damping: (1e-9, 1e6), stall: 1e-6, ..Rules::KINKED };
 
     fn value(&self, values: &[f64]) -> f64 {
         self.problem.objective(&self.point.at(values))

@@ -415,13 +415,7 @@ struct Value {
 impl Problem for Objective<'_, '_> {
     type Value = Value;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules {
-        damping: (1e-12, 1e8),
-        curvature_memory: 0.0,
-        least_curvature: 1e-6,
-        least_gradient: 0.0,
-        stall: 1e-5,
-    };
+    const RULES: Rules = Rules { damping: (1e-12, 1e8), ..Rules::KINKED };
 
     fn value(&self, parameters: &[f64]) -> Value {
         let broken_off = Value { objective: f64::INFINITY, mean_square: f64::INFINITY };

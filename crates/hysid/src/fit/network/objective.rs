@@ -232,13 +232,7 @@ fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
 impl Problem for Objective<'_> {
     type Value = Value;
     type Curvature = Curvature;
-    const RULES: Rules = Rules {
-        damping: (1e-12, 1e12),
-        curvature_memory: 0.9,
-        least_curvature: 1e-4,
-        least_gradient: 1e-14,
-        stall: 1e-6,
-    };
+    const RULES: Rules = Rules::SMOOTH;
 
     fn value(&self, parameters: &[f64]) -> Value {
         self.value(parameters)

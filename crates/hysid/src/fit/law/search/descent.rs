@@ -64,13 +64,7 @@ impl Start for Descent {
 impl<F: Family> Problem for Objective<'_, F> {
     type Value = Projection;
     type Curvature = Symmetric;
-    const RULES: Rules = Rules {
-        damping: (1e-10, 1e10),
-        curvature_memory: 0.0,
-        least_curvature: 1e-6,
-        least_gradient: 0.0,
-        stall: 1e-5,
-    };
+    const RULES: Rules = Rules::KINKED;
 
     fn value(&self, u: &[f64]) -> Projection {
         self.value(u)
