@@ -78,3 +78,36 @@ impl Experiment {
             && chapter.files.iter().all(is_known)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Somebody who stops everything at once.
+    struct Impatient;
+
+    impl Observer for Impatient {
+        fn clock(&self) -> Duration {
+            Duration::ZERO
+        }
+
+        fn is_stopped(&self) -> bool {
+            true
+        }
+
+        fn say(&self, line: &str) {
+            panic!("nothing is done: {line}");
+        }
+    }
+
+    #[test]
+    fn an_experiment_that_is_stopped_says_so() {
+        for name in ["example1", "table2", "training"] {
+            let settings = Settings { seed: 1, quick: true };
+            let ended = Experiment::named(name).unwrap().chapter(settings, &Impatient);
+            assert!(matches!(ended, Err(hysid::Error::Stopped)), "{name}: {ended:?}");
+        }
+    }
+}
