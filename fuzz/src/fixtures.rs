@@ -8,7 +8,7 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::options::ModelName;
-use hysid::options::chosen::ChosenOptions;
+use hysid::options::chosen::NamedOptions;
 use serde_json::json;
 
 /// A lagging output under two hundred rows of a growing oscillation.
@@ -46,7 +46,7 @@ fn fitted(name: &str, more: serde_json::Value) -> Model {
         panic!("maps")
     };
     all.extend(more);
-    let chosen = ChosenOptions::of(all.clone()).expect("options");
+    let chosen = NamedOptions::of(all.clone()).expect("options");
     let request = chosen.request(Some(RateMethod::Backward).filter(|_| chosen.model().uses_rate()), false);
     let fitted = identify(data(), &request, &mut |_| ControlFlow::Continue(()));
     fitted.unwrap_or_else(|error| panic!("{name}: {error}")).model

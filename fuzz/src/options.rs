@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use hysid::fit::{identify, memory_need};
-use hysid::options::chosen::{ChosenOptions, RateChoice};
+use hysid::options::chosen::{NamedOptions, RateChoice};
 use hysid::options::table::OPTIONS;
 use serde_json::{Map, Value, json};
 
@@ -25,7 +25,7 @@ pub fn run(data: &[u8]) {
         Ok(Value::Object(options)) => options,
         _ => chosen(&mut Bytes(data)),
     };
-    let chosen = match ChosenOptions::of(options) {
+    let chosen = match NamedOptions::of(options) {
         Ok(chosen) => chosen,
         Err(error) => return assert_is_one_line(&error.to_string()),
     };

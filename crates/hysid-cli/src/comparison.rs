@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use hysid::data::metrics::Errors;
 use hysid::fit::identify;
 use hysid::model::Model;
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid::termination::Termination;
 
@@ -38,7 +38,7 @@ pub struct Data<'a> {
 /// A model and what became of it.
 pub struct Row {
     /// What was asked for.
-    pub request: Request,
+    pub request: FitSpec,
     /// The model, or why there is none.
     pub outcome: Result<Fitted, String>,
 }
@@ -81,14 +81,14 @@ const TIME_LIMIT: f64 = 20.0;
 
 /// Fits every model, several at a time, each on one thread (on more, if there are fewer models) and under its time
 /// limit; the lowest error on unseen data comes first.
-pub fn run(data: &Data, requests: &[Request], arguments: &Compare) -> Result<Vec<Row>> {
+pub fn run(data: &Data, requests: &[FitSpec], arguments: &Compare) -> Result<Vec<Row>> {
     let workers = match arguments.threads {
         Some(threads) => threads.into(),
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
     // A single model, or the last ones of a few, need not leave processors idle.
     let threads = (workers / requests.len().max(1)).max(1);
-    let queue: Mutex<VecDeque<&Request>> = Mutex::new(requests.iter().collect());
+    let queue: Mutex<VecDeque<&FitSpec>> = Mutex::new(requests.iter().collect());
     let finished: Mutex<Vec<Row>> = Mutex::new(Vec::new());
     std::thread::scope(|scope| -> Result<()> {
         let work = || -> Result<()> {
@@ -122,7 +122,7 @@ fn error(row: &Row) -> f64 {
     fitted.and_then(|fitted| fitted.judged().nrmse_std_percent).unwrap_or(f64::INFINITY)
 }
 
-fn row(data: &Data, request: &Request, time_limit: Option<f64>, workers: usize) -> Row {
+fn row(data: &Data, request: &FitSpec, time_limit: Option<f64>, workers: usize) -> Row {
     let of = |outcome| Row { request: request.clone(), outcome };
     if interrupt::requested() {
         return of(Err("interrupted".into()));
@@ -131,13 +131,13 @@ fn row(data: &Data, request: &Request, time_limit: Option<f64>, workers: usize) 
         return of(Err(error.to_string()));
     }
     let limit = match request {
-        Request::Auto(_) => time_limit.unwrap_or(f64::INFINITY),
-        Request::Network(_) | Request::Classical(_) => time_limit.unwrap_or(TIME_LIMIT),
+        FitSpec::Auto(_) => time_limit.unwrap_or(f64::INFINITY),
+        FitSpec::Network(_) | FitSpec::Classical(_) => time_limit.unwrap_or(TIME_LIMIT),
     };
     of(fitted(data, request, limit, workers).map_err(|error| format!("{error:#}")))
 }
 
-fn fitted(data: &Data, request: &Request, time_limit: f64, threads: usize) -> Result<Fitted> {
+fn fitted(data: &Data, request: &FitSpec, time_limit: f64, threads: usize) -> Result<Fitted> {
     check_memory(&data.train.set, request, threads).map_err(|error| data.train.explain(error))?;
     let began = Instant::now();
     let fit = identify(&data.train.set, request, &mut |_| {

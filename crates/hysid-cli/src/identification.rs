@@ -11,7 +11,7 @@ use hysid::diagnosis::before_a_fit;
 use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::{Model, Prediction, Provenance};
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid_document::Page;
 use hysid_document::plain::{WIDTH, wrapped};
 use hysid_files::{Destination, GENERATOR};
@@ -39,7 +39,7 @@ pub struct Identified {
 /// What is to be done with the data, and how.
 pub struct Work<'a> {
     /// What is to be identified.
-    pub request: &'a Request,
+    pub request: &'a FitSpec,
     /// A fit begun before, with these options.
     pub begun: Option<Checkpoint>,
     /// Where to store the state of the fit.
@@ -52,7 +52,7 @@ pub struct Work<'a> {
 
 impl<'a> Work<'a> {
     /// A fit from its beginning, without limits.
-    pub fn new(request: &'a Request) -> Self {
+    pub fn new(request: &'a FitSpec) -> Self {
         Self { request, begun: None, checkpoint: None, threads: None, time_limit: None }
     }
 }
@@ -65,14 +65,14 @@ pub struct Said {
 
 /// Says what was understood of data and request, and what to be aware of. From now on Ctrl-C asks to stop, and gets
 /// this answer.
-pub fn say_beforehand(data: &Data, request: &Request, to_ctrl_c: &'static str) -> Result<Said> {
+pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Said> {
     let model = match request {
-        Request::Network(options) => {
+        FitSpec::Network(options) => {
             let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
             format!(": {} parameters; {}", architecture.parameters(), understanding::parts(&architecture))
         }
-        Request::Auto(options) => understanding::choice(options),
-        Request::Classical(_) => String::new(),
+        FitSpec::Auto(options) => understanding::choice(options),
+        FitSpec::Classical(_) => String::new(),
     };
     request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
     let summary = Summary::of(&data.set);
@@ -95,7 +95,7 @@ pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
 }
 
 /// Refuses work that needs more memory than there is.
-pub fn check_memory(data: &Dataset, request: &Request, threads: usize) -> hysid::Result<()> {
+pub fn check_memory(data: &Dataset, request: &FitSpec, threads: usize) -> hysid::Result<()> {
     memory_need(data, request, threads)?.check(hysid_files::available_memory())
 }
 
@@ -217,10 +217,10 @@ fn labelled(label: &str, text: &str) -> String {
 /// Where the model comes from, in words.
 fn chosen(provenance: &Provenance) -> String {
     let options = match &provenance.options {
-        Request::Network(options) => options,
-        Request::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
-        Request::Classical(_) => return "linear least squares".into(),
-        Request::Auto(_) => return "chosen by validation".into(),
+        FitSpec::Network(options) => options,
+        FitSpec::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
+        FitSpec::Classical(_) => return "linear least squares".into(),
+        FitSpec::Auto(_) => return "chosen by validation".into(),
     };
     match options.starts {
         1 => format!("{} training", options.training.name()),

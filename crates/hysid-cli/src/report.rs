@@ -81,7 +81,7 @@ pub fn time_label(data: &Dataset) -> String {
 /// The first input as the model sees it, with its unit: spread about zero, maybe.
 fn seen_label(report: &Report) -> String {
     let input = &report.model.names().inputs[0];
-    match report.model.preprocessing().companding {
+    match report.model.input_transform().companding {
         None => unit::label(input),
         Some(scale) => {
             let scale = unit::with(&number(scale, 3), input);

@@ -3,7 +3,7 @@
 use hysid::data::rate::RateMethod;
 use hysid::data::summary::Summary;
 use hysid::network::Architecture;
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::significant::Significant;
 
@@ -23,7 +23,7 @@ const MOST_INPUTS: usize = 20;
 pub fn understanding(
     data: &Data,
     summary: &Summary,
-    request: &Request,
+    request: &FitSpec,
     model: &str,
 ) -> Vec<(String, String)> {
     let used = request.rate().filter(|_| request.model().uses_rate());

@@ -10,7 +10,7 @@ use std::time::Duration;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::memory_need;
-use hysid::options::chosen::ChosenOptions;
+use hysid::options::chosen::NamedOptions;
 use serde_json::json;
 use workbench::Workbench;
 
@@ -86,7 +86,7 @@ fn estimates_are_near_to_what_is_taken() {
     for (rows, inputs, options) in cases {
         let set = data(&bench, rows, inputs);
         let serde_json::Value::Object(map) = options.clone() else { panic!("a map") };
-        let request = ChosenOptions::of(map.clone()).unwrap().request(Some(RateMethod::Central), false);
+        let request = NamedOptions::of(map.clone()).unwrap().request(Some(RateMethod::Central), false);
         let estimate = memory_need(&set, &request, 2).unwrap().bytes;
         let flags: Vec<String> = map
             .iter()

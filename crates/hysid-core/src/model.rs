@@ -5,8 +5,8 @@ mod band;
 mod ensemble;
 mod file;
 pub mod history;
+pub mod input_transform;
 mod notes;
-pub mod preprocessing;
 mod ranges;
 mod runner;
 pub mod selection;
@@ -24,19 +24,19 @@ use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
 use crate::law::Classical;
 use crate::model::history::Run;
-use crate::model::preprocessing::Preprocessing;
+use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
 use crate::network::Network;
 use crate::network::scaling::Scaling;
-use crate::options::classical::Rival;
+use crate::options::classical::ClassicalModel;
 use crate::options::network::Regularisation;
-use crate::options::{ModelName, Request};
+use crate::options::{FitSpec, ModelName};
 use crate::termination::Termination;
 
 pub use band::{BAND_PROBABILITIES, Band, Prediction};
 pub use band::{HeldOutRow, disagreement};
-pub use ensemble::{Council, Excursion, Votes};
-pub use ensemble::{Ensemble, Group, Speaker, Voice, Weights};
+pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
+pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::FORMAT_VERSION;
 use ranges::Ranges;
 use runner::{Runner, Spread};
@@ -46,8 +46,8 @@ pub use stepper::Stepper;
 /// A fitted model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    body: Body,
-    preprocessing: Preprocessing,
+    body: Predictor,
+    preprocessing: InputTransform,
     rate: Option<RateMethod>,
     names: ColumnNames,
     trained: TrainedRanges,
@@ -57,7 +57,7 @@ pub struct Model {
 
 /// What simulates.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Body {
+pub enum Predictor {
     /// A network in scaled units, and the factors to the user's.
     Network {
         /// The network.
@@ -71,7 +71,7 @@ pub enum Body {
     Ensemble(Ensemble),
 }
 
-impl Body {
+impl Predictor {
     /// Parameters that were found from the data.
     fn parameters(&self) -> usize {
         match self {
@@ -110,14 +110,14 @@ fn remembered(data: &Dataset) -> Vec<String> {
 }
 
 /// Rows at the beginning of each record that a body was not trained on.
-fn warm_up(body: &Body, options: &Request) -> usize {
+fn warm_up(body: &Predictor, options: &FitSpec) -> usize {
     match (options, body) {
-        (Request::Network(options), _) => options.shaping.warm_up,
-        (Request::Classical(options), _) => options.shaping.warm_up,
-        (Request::Auto(_), Body::Ensemble(ensemble)) => {
+        (FitSpec::Network(options), _) => options.shaping.warm_up,
+        (FitSpec::Classical(options), _) => options.shaping.warm_up,
+        (FitSpec::Auto(_), Predictor::Ensemble(ensemble)) => {
             ensemble.members().iter().map(Model::warm_up).max().unwrap_or_default()
         }
-        (Request::Auto(_), Body::Network { .. } | Body::Law(_)) => 0,
+        (FitSpec::Auto(_), Predictor::Network { .. } | Predictor::Law(_)) => 0,
     }
 }
 
@@ -162,7 +162,7 @@ impl TrainedRanges {
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
     /// What was asked for.
-    pub options: Request,
+    pub options: FitSpec,
     /// Rows with an output.
     pub samples: usize,
     /// Records.
@@ -201,7 +201,7 @@ impl Provenance {
 #[derive(Debug, Clone)]
 pub struct Found {
     /// What was asked for.
-    pub options: Request,
+    pub options: FitSpec,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
     /// Why the last training run ended.
@@ -247,16 +247,16 @@ impl From<Provenance> for Found {
 impl Model {
     /// A model of these data, whose body was trained on them after the preprocessing.
     pub fn new(
-        body: Body,
-        preprocessing: Preprocessing,
+        body: Predictor,
+        preprocessing: InputTransform,
         rate: Option<RateMethod>,
         data: &Dataset,
         found: Found,
     ) -> Result<Self> {
         let uses_rate = match &body {
-            Body::Network { network, .. } => network.architecture().rate,
-            Body::Law(_) => found.options.model().uses_rate(),
-            Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
+            Predictor::Network { network, .. } => network.architecture().rate,
+            Predictor::Law(_) => found.options.model().uses_rate(),
+            Predictor::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.rate.is_some()),
         };
         let rate = rate.filter(|_| uses_rate);
         let train = errors(Runner::of_body(&body, Some(&preprocessing), rate), data)?;
@@ -287,7 +287,7 @@ impl Model {
                 }
             }
             model.trained.rate = Some(range);
-        } else if let Body::Network { scaling, .. } = &mut model.body {
+        } else if let Predictor::Network { scaling, .. } = &mut model.body {
             scaling.rate = None;
         }
         Ok(model)
@@ -312,53 +312,53 @@ impl Model {
     }
 
     /// What simulates.
-    pub fn body(&self) -> &Body {
+    pub fn predictor(&self) -> &Predictor {
         &self.body
     }
 
     /// The network, in scaled units; `None` for a classical law or an ensemble.
     pub fn network(&self) -> Option<&Network> {
         match &self.body {
-            Body::Network { network, .. } => Some(network),
-            Body::Law(_) | Body::Ensemble(_) => None,
+            Predictor::Network { network, .. } => Some(network),
+            Predictor::Law(_) | Predictor::Ensemble(_) => None,
         }
     }
 
     /// The law of a classical model; `None` for another model.
     pub fn law(&self) -> Option<&Classical> {
         match &self.body {
-            Body::Law(law) => Some(law),
-            Body::Network { .. } | Body::Ensemble(_) => None,
+            Predictor::Law(law) => Some(law),
+            Predictor::Network { .. } | Predictor::Ensemble(_) => None,
         }
     }
 
     /// The ensemble; `None` for a single model.
     pub fn ensemble(&self) -> Option<&Ensemble> {
         match &self.body {
-            Body::Ensemble(ensemble) => Some(ensemble),
-            Body::Network { .. } | Body::Law(_) => None,
+            Predictor::Ensemble(ensemble) => Some(ensemble),
+            Predictor::Network { .. } | Predictor::Law(_) => None,
         }
     }
 
     /// How the model sees its input.
-    pub fn preprocessing(&self) -> &Preprocessing {
+    pub fn input_transform(&self) -> &InputTransform {
         &self.preprocessing
     }
 
     /// Number of inputs of a record.
     pub(crate) fn inputs(&self) -> usize {
         match &self.body {
-            Body::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
-            Body::Law(_) => 1,
-            Body::Ensemble(ensemble) => ensemble.members()[0].inputs(),
+            Predictor::Network { scaling, .. } => scaling.inputs.len() - self.preprocessing.added_inputs(),
+            Predictor::Law(_) => 1,
+            Predictor::Ensemble(ensemble) => ensemble.members()[0].inputs(),
         }
     }
 
     /// Factors between the user's units and the network's; `None` for all that is no network.
     pub fn scaling(&self) -> Option<&Scaling> {
         match &self.body {
-            Body::Network { scaling, .. } => Some(scaling),
-            Body::Law(_) | Body::Ensemble(_) => None,
+            Predictor::Network { scaling, .. } => Some(scaling),
+            Predictor::Law(_) | Predictor::Ensemble(_) => None,
         }
     }
 
@@ -366,7 +366,9 @@ impl Model {
     pub fn parameters(&self) -> usize {
         match (&self.body, self.name()) {
             // All others are random.
-            (Body::Network { network, .. }, ModelName::Rival(Rival::RandomStops)) => network.output().len(),
+            (Predictor::Network { network, .. }, ModelName::Classical(ClassicalModel::RandomStops)) => {
+                network.output().len()
+            }
             (body, _) => body.parameters(),
         }
     }

@@ -5,12 +5,12 @@ pub mod auto;
 mod cautions;
 pub mod chosen;
 pub mod classical;
+pub mod fit_spec;
+pub mod input_options;
 pub mod model_name;
 pub mod network;
-pub mod request;
-pub mod shaping;
 pub mod table;
 pub mod variants;
 
+pub use fit_spec::FitSpec;
 pub use model_name::ModelName;
-pub use request::Request;

@@ -6,7 +6,7 @@ use serde::{Serialize, Serializer};
 use super::{Delay, Finding, Property, Verdict};
 use hysid_core::network::Family;
 use hysid_core::options::ModelName;
-use hysid_core::options::classical::Rival;
+use hysid_core::options::classical::ClassicalModel;
 use hysid_core::significant::Significant;
 
 /// The simplest model that can hold what was found, and why.
@@ -105,7 +105,7 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
 fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     use Verdict::{No, Yes};
     let network = |family| Some(ModelName::Network(family));
-    let rival = |rival| Some(ModelName::Rival(rival));
+    let rival = |rival| Some(ModelName::Classical(rival));
     if found.is_a_function() {
         return (
             None,
@@ -126,7 +126,7 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     if found.wiping_out == No {
         return match found.odd_symmetry {
             Yes => (
-                rival(Rival::BoucWen),
+                rival(ClassicalModel::BoucWen),
                 "closed excursions leave a trace, without wear; xpnn holds it as well",
             ),
             _ => (
@@ -144,10 +144,10 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
     if found.masing == No || found.odd_symmetry == No {
         let reason = "branches are not all one curve, and nothing says that minor loops between the same inputs differ; \
                       generalized-prandtl-ishlinskii is smaller where its envelopes fit";
-        return (rival(Rival::Preisach), reason);
+        return (rival(ClassicalModel::Preisach), reason);
     }
     (
-        rival(Rival::PrandtlIshlinskii),
+        rival(ClassicalModel::PrandtlIshlinskii),
         "all branches are one curve, magnified, so a weighted sum of plays is enough (as a network: pnn)",
     )
 }

@@ -167,7 +167,7 @@ impl Curve {
 
 /// A data set as the tests of properties look at it.
 #[derive(Debug)]
-pub(crate) struct Survey<'a> {
+pub(crate) struct BranchSet<'a> {
     pub data: &'a Dataset,
     /// Smallest and largest input.
     pub input: (f64, f64),
@@ -187,7 +187,7 @@ pub(crate) struct Survey<'a> {
     pub openings: Vec<Opening>,
 }
 
-impl<'a> Survey<'a> {
+impl<'a> BranchSet<'a> {
     /// Looks through the data.
     pub fn new(data: &'a Dataset, options: &DiagnosisOptions) -> Self {
         let input = data.input_range(0);
@@ -355,7 +355,7 @@ pub(crate) fn is_one_speed(a: f64, b: f64) -> bool {
     a.max(b) <= SAME_SPEED * a.min(b)
 }
 
-impl Survey<'_> {
+impl BranchSet<'_> {
     /// True unless two branches are known to go through an input at different speeds, as where one of them is
     /// about to turn.
     pub fn similar_speed_at(&self, a: &Branch, b: &Branch, x: f64) -> bool {

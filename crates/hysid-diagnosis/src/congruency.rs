@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, judge};
 use super::{Finding, PictureCurve, Property, Verdict};
 
@@ -28,7 +28,7 @@ const EXPERIMENT: &str =
     "run the same minor loop twice: once on the way up and once on the way down of a larger loop";
 
 /// Tests for congruent minor loops.
-pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut comparisons = Vec::new();
     for group in same_beginning(survey).values() {
         let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));
@@ -62,7 +62,7 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
 
 /// Branches that begin at about the same input and go the same way. The first branch of a record is
 /// left out: where it comes from is not known.
-fn same_beginning(survey: &Survey) -> BTreeMap<(i64, bool), Vec<usize>> {
+fn same_beginning(survey: &BranchSet) -> BTreeMap<(i64, bool), Vec<usize>> {
     let mut groups: BTreeMap<(i64, bool), Vec<usize>> = BTreeMap::new();
     let cell = survey.same_input();
     for (index, branch) in survey.branches.iter().enumerate() {
@@ -76,7 +76,7 @@ fn same_beginning(survey: &Survey) -> BTreeMap<(i64, bool), Vec<usize>> {
 }
 
 /// True if the turning points that enclose two branches differ, so that they are on different loops.
-fn other_past(survey: &Survey, a: &Branch, b: &Branch) -> bool {
+fn other_past(survey: &BranchSet, a: &Branch, b: &Branch) -> bool {
     let outer = |branch: &Branch, depth: usize| branch.beneath.iter().rev().nth(depth).copied();
     (1..=2).any(|depth| match (outer(a, depth), outer(b, depth)) {
         (Some(a), Some(b)) => (a - b).abs() > OTHER_PAST * survey.width(),
@@ -91,7 +91,7 @@ fn from_beginning(mut curve: PictureCurve, start: f64) -> PictureCurve {
     curve
 }
 
-fn compare(survey: &Survey, a: &Branch, b: &Branch, equal_speed: bool) -> Option<Comparison> {
+fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Option<Comparison> {
     let nearest = |a: f64, b: f64, rises: bool| if rises { a.min(b) } else { a.max(b) };
     let rises = a.rises();
     let beginning = if rises { a.from.max(b.from) } else { a.from.min(b.from) };

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::Piece;
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, BranchSet};
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 const CLOSED: f64 = 0.02;
@@ -62,7 +62,7 @@ impl Cycle {
 }
 
 /// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
-pub(crate) fn cycles(survey: &Survey) -> Vec<Cycle> {
+pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
     let mut found = Vec::new();
     let mut index = 0;
     while index + 1 < survey.branches.len() {
@@ -77,7 +77,7 @@ pub(crate) fn cycles(survey: &Survey) -> Vec<Cycle> {
     found
 }
 
-fn cycle(survey: &Survey, index: usize) -> Option<Cycle> {
+fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
     let (out, back) = (&survey.branches[index], &survey.branches[index + 1]);
     let swing = out.travel().max(back.travel());
     let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise;
@@ -135,7 +135,7 @@ fn crossing(branch: &Branch, level: f64) -> Option<f64> {
 
 /// Cycles of the same record between the same inputs and within the same outer turning points, in the order of
 /// time, two of a kind at least. Loops with another past are other loops.
-pub(crate) fn repeated<'c>(survey: &Survey, cycles: &'c [Cycle]) -> Vec<Vec<&'c Cycle>> {
+pub(crate) fn repeated<'c>(survey: &BranchSet, cycles: &'c [Cycle]) -> Vec<Vec<&'c Cycle>> {
     let tolerance = survey.same_input();
     let out = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let cell = |cycle: &Cycle| (out(cycle).to / tolerance).floor() as i64;

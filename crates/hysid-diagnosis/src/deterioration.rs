@@ -2,7 +2,7 @@
 //! same inputs, with the sum of all rises against all falls of the energy (Mann and Kendall) and the median
 //! slope (Theil and Sen), theory.md (10.11).
 
-use super::branch::Survey;
+use super::branch::BranchSet;
 use super::cycles::repeated;
 use super::noise;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
@@ -34,7 +34,7 @@ struct Trend<'c> {
 }
 
 /// Tests for deterioration.
-pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
+pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let largest = cycles.iter().map(|cycle| cycle.area).fold(0.0, f64::max);
     let groups = repeated(survey, cycles);
     let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();
@@ -91,7 +91,7 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
     }
 }
 
-fn trend<'c>(survey: &Survey, group: &[&'c Cycle], largest: f64) -> Option<Trend<'c>> {
+fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Trend<'c>> {
     // Loops of different speed differ for other reasons.
     let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let alike: Vec<&Cycle> =

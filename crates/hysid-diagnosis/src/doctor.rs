@@ -14,7 +14,7 @@ mod start;
 
 use serde::Serialize;
 
-use super::branch::Survey;
+use super::branch::BranchSet;
 use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
@@ -27,7 +27,7 @@ const TOLD: usize = 2;
 /// What may be wrong with data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ComplaintKind {
+pub enum DataIssueKind {
     /// Repeated loops move slowly up or down.
     Drift,
     /// The output moves while the input stands still.
@@ -80,9 +80,9 @@ pub enum Severity {
 
 /// Something in the data that would mislead.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Complaint {
+pub struct DataIssue {
     /// What it is.
-    pub kind: ComplaintKind,
+    pub kind: DataIssueKind,
     /// Name of the record; `None` for all of them together.
     pub record: Option<String>,
     /// How much it matters.
@@ -97,14 +97,14 @@ pub struct Complaint {
     pub evidence: Vec<Piece>,
 }
 
-impl Complaint {
+impl DataIssue {
     /// A complaint about all records together.
-    fn of_all(kind: ComplaintKind, severity: Severity, statement: String) -> Self {
+    fn of_all(kind: DataIssueKind, severity: Severity, statement: String) -> Self {
         Self { kind, record: None, severity, statement, value: None, unit: None, evidence: Vec::new() }
     }
 
     /// A complaint about rows of a record.
-    fn of_rows(kind: ComplaintKind, severity: Severity, statement: String, rows: Vec<Piece>) -> Self {
+    fn of_rows(kind: DataIssueKind, severity: Severity, statement: String, rows: Vec<Piece>) -> Self {
         let record = rows.first().map(|piece| piece.record.clone());
         Self { record, evidence: rows, ..Self::of_all(kind, severity, statement) }
     }
@@ -112,11 +112,11 @@ impl Complaint {
 
 /// Looks for all that may be wrong; warnings first.
 pub(crate) fn examine(
-    survey: &Survey,
+    survey: &BranchSet,
     cycles: &[Cycle],
     findings: &[Finding],
     delay: Option<&Delay>,
-) -> Vec<Complaint> {
+) -> Vec<DataIssue> {
     let found = [
         marks::complaints(survey.data),
         lag::complaints(survey, delay),
@@ -129,7 +129,7 @@ pub(crate) fn examine(
         columns::complaints(survey),
         start::complaints(survey),
     ];
-    let mut told: Vec<Complaint> = Vec::new();
+    let mut told: Vec<DataIssue> = Vec::new();
     for complaint in found.into_iter().flatten() {
         let alike = told.iter().filter(|other| other.kind == complaint.kind).count();
         if alike < TOLD {
@@ -146,19 +146,19 @@ pub(crate) fn examine(
 ///
 /// # Errors
 /// Data that nothing can be said about: a constant input or output, hardly any rows.
-pub fn before_a_fit(data: &Dataset) -> Result<Vec<Complaint>> {
+pub fn before_a_fit(data: &Dataset) -> Result<Vec<DataIssue>> {
     data.check_identifiable(FEWEST_ROWS)?;
     let found = marks::complaints(data);
     // Where the range is that of a mark, the ends of what was measured are not known.
     if !found.is_empty() || !clipping::may_be(data) {
         return Ok(found);
     }
-    Ok(clipping::complaints(&Survey::new(data, &DiagnosisOptions::default())))
+    Ok(clipping::complaints(&BranchSet::new(data, &DiagnosisOptions::default())))
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
 /// turns, theory.md (10.21); `None` where the turning points do not tell.
-pub(crate) fn longest_lag(survey: &Survey) -> Option<f64> {
+pub(crate) fn longest_lag(survey: &BranchSet) -> Option<f64> {
     lag::longest(survey)
 }
 
@@ -170,7 +170,7 @@ struct Units {
 }
 
 impl Units {
-    fn of(survey: &Survey) -> Self {
+    fn of(survey: &BranchSet) -> Self {
         let names = survey.data.names();
         Self {
             input: unit::of_column(&names.inputs[0]),

@@ -39,9 +39,9 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-use branch::Survey;
+use branch::BranchSet;
 pub use cycles::Cycle;
-pub use doctor::{Complaint, ComplaintKind, Severity, before_a_fit};
+pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 pub use hysid_core::property::Property;
@@ -201,7 +201,7 @@ pub struct Diagnosis {
     /// Cycles of the first input with an output, in the order of the data.
     pub cycles: Vec<Cycle>,
     /// What in the data would mislead a fit, warnings first.
-    pub doctor: Vec<Complaint>,
+    pub doctor: Vec<DataIssue>,
     /// The simplest model that can hold what was found.
     pub advice: Advice,
 }
@@ -213,7 +213,7 @@ impl Diagnosis {
     /// Data that nothing can be said about: a constant input or output, hardly any rows.
     pub fn of(data: &Dataset, options: &DiagnosisOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let survey = Survey::new(data, options);
+        let survey = BranchSet::new(data, options);
         let cycles = cycles::cycles(&survey);
         let (rate, delay) = rate_dependence::test(&survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.

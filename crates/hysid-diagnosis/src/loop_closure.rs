@@ -3,7 +3,7 @@
 //!
 //! `|y(t + T) - y(t)| / R`                                                          theory.md (10.10)
 
-use super::branch::Survey;
+use super::branch::BranchSet;
 use super::comparison::{Comparison, judge};
 use super::cycles::repeated;
 use super::{Cycle, Finding, Property, Verdict};
@@ -17,7 +17,7 @@ const MOST: usize = 400;
 const EXPERIMENT: &str = "repeat a loop three times or more";
 
 /// Tests for closed loops.
-pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
+pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let groups = repeated(survey, cycles);
     // The first period still remembers what was before.
     let later: Vec<&Cycle> = groups.iter().flat_map(|group| group[1..].iter().copied()).collect();
@@ -37,7 +37,7 @@ pub(crate) fn test(survey: &Survey, cycles: &[Cycle]) -> Finding {
 }
 
 /// The gap between a branch and the next that begins at the same turning point: both are then at the same speed.
-fn gap(survey: &Survey, cycle: &Cycle) -> Option<Comparison> {
+fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
     let (out, back) = (&survey.branches[cycle.branches.0], &survey.branches[cycle.branches.1]);
     let again = survey.branches.get(cycle.branches.1 + 1).filter(|again| again.record == out.record);
     // At the end of a record only the way back is left.

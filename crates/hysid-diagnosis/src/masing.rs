@@ -3,7 +3,7 @@
 //!
 //! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
 
-use super::branch::{Branch, Survey, is_one_speed};
+use super::branch::{Branch, BranchSet, is_one_speed};
 use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 
@@ -46,7 +46,7 @@ impl OwnPart<'_> {
 }
 
 /// Tests for Masing's rule.
-pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut parts: Vec<OwnPart> =
         survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();
     parts.sort_by(|a, b| b.length.total_cmp(&a.length));
@@ -87,14 +87,14 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
     finding
 }
 
-fn own_part<'b>(survey: &Survey, branch: &'b Branch) -> Option<OwnPart<'b>> {
+fn own_part<'b>(survey: &BranchSet, branch: &'b Branch) -> Option<OwnPart<'b>> {
     let length = (branch.own_end()? - branch.from).abs();
     let long_enough = length >= SHORTEST * survey.width() && !branch.curve.is_empty();
     long_enough.then_some(OwnPart { branch, length })
 }
 
 /// True if two parts are gone at the same speed at equal distances from their beginnings.
-fn one_course_of_speed(survey: &Survey, a: &OwnPart, b: &OwnPart) -> bool {
+fn one_course_of_speed(survey: &BranchSet, a: &OwnPart, b: &OwnPart) -> bool {
     let speed = |part: &OwnPart, way: f64| {
         let sign = if part.branch.rises() { 1.0 } else { -1.0 };
         survey.speed_at(part.branch, part.branch.from + sign * way)
@@ -103,7 +103,7 @@ fn one_course_of_speed(survey: &Survey, a: &OwnPart, b: &OwnPart) -> bool {
     [0.05, 0.3, 0.6, 0.95].iter().all(|share| at(share * b.length).is_none_or(|(a, b)| is_one_speed(a, b)))
 }
 
-fn compare(survey: &Survey, longest: &OwnPart, part: &OwnPart) -> Option<Comparison> {
+fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comparison> {
     let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     let mut height: f64 = 0.0;
     let mut curves = [Vec::new(), Vec::new()];

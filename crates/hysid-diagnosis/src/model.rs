@@ -7,13 +7,13 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use hysid_core::options::classical::Rival;
+//! use hysid_core::options::classical::ClassicalModel;
 //! use hysid_diagnosis::{ModelDiagnosis, Property, Verdict};
-//! use hysid_core::options::{ModelName, Request};
+//! use hysid_core::options::{ModelName, FitSpec};
 //! use hysid::fit::identify;
 //! use hysid_specimens::Specimen;
 //! let data = Specimen::named("terfenol-actuator").unwrap().train();
-//! let request = Request::of(ModelName::Rival(Rival::PrandtlIshlinskii), None, 1);
+//! let request = FitSpec::of(ModelName::Classical(ClassicalModel::PrandtlIshlinskii), None, 1);
 //! let fitted = identify(&data, &request, &mut |_| ControlFlow::Continue(()))?;
 //! let diagnosis = ModelDiagnosis::of(&fitted.model)?;
 //! assert_eq!(diagnosis.verdict(Property::Masing), Verdict::Yes);
@@ -44,7 +44,7 @@ pub use loop_widths::{LoopWidths, WidthAtSpeed};
 pub use neurons::{Neuron, NeuronKind};
 use probe::Probe;
 pub use probe::{Probing, TimeScale};
-pub use structure::Promise;
+pub use structure::StructuralProperty;
 pub use weights::{Criterion, WeightDiagnosis};
 
 /// Everything that can be said about the hysteresis of a fitted model.
@@ -57,7 +57,7 @@ pub struct ModelDiagnosis {
     /// The properties, in the order of [`Property::ALL`], found by driving it.
     pub properties: Vec<Finding>,
     /// What its equations promise.
-    pub promises: Vec<Promise>,
+    pub promises: Vec<StructuralProperty>,
     /// What its weights say; `None` for a classical law.
     pub weights: Option<WeightDiagnosis>,
     /// Widths of its loops, the paper's `K` and `P`.

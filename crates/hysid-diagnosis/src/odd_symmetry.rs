@@ -3,7 +3,7 @@
 //!
 //! `rms(y_up(x) + y_down(2 x_c - x) - mean) / R`,  half the mean is the offset       theory.md (10.7)
 
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 
@@ -26,7 +26,7 @@ const EXPERIMENT: &str =
     "run a few equal loops over the whole range of the input, as far to one side as to the other";
 
 /// Tests for odd symmetry.
-pub(crate) fn test(survey: &Survey) -> Finding {
+pub(crate) fn test(survey: &BranchSet) -> Finding {
     let middle = 0.5 * (survey.input.0 + survey.input.1);
     let centre = if middle.abs() <= ABOUT_ZERO * survey.width() { 0.0 } else { middle };
     let half = (survey.input.1 - centre).min(centre - survey.input.0);
@@ -54,7 +54,7 @@ pub(crate) fn test(survey: &Survey) -> Finding {
 
 /// Branches over the whole range that follow each other, with the one before the first where that is over
 /// the whole range too: half way between before and after, what a loop loses by wear is in both directions alike.
-fn pairs<'s>(survey: &'s Survey, centre: f64, half: f64) -> Vec<[&'s Branch; 3]> {
+fn pairs<'s>(survey: &'s BranchSet, centre: f64, half: f64) -> Vec<[&'s Branch; 3]> {
     if half < 0.5 * COVERED * survey.width() {
         return Vec::new();
     }
@@ -72,7 +72,7 @@ fn pairs<'s>(survey: &'s Survey, centre: f64, half: f64) -> Vec<[&'s Branch; 3]>
 }
 
 fn compare(
-    survey: &Survey,
+    survey: &BranchSet,
     centre: f64,
     half: f64,
     [before, branch, after]: [&Branch; 3],

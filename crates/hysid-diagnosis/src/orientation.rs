@@ -2,7 +2,7 @@
 //! other, theory.md (10.9): 1 is clockwise, as for a force that dissipates, -1 counter-clockwise, as for an
 //! output that lags behind.
 
-use super::branch::Survey;
+use super::branch::BranchSet;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict};
 use crate::branch::Opening;
@@ -19,7 +19,7 @@ const WIDE: f64 = 0.3;
 const EXPERIMENT: &str = "run a few closed loops over the whole range of the input";
 
 /// Tests which way loops are passed.
-pub(crate) fn test(survey: &Survey) -> Finding {
+pub(crate) fn test(survey: &BranchSet) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let counts = |opening: &&Opening| {
         let open = opening.fullness() > FULL && opening.area > 5.0 * opening.deviation;

@@ -10,7 +10,7 @@ pub mod delay;
 
 use std::collections::HashMap;
 
-use super::branch::{Branch, Reading, Survey};
+use super::branch::{Branch, BranchSet, Reading};
 use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
@@ -67,7 +67,7 @@ impl Speeds<'_> {
 }
 
 /// Tests for rate dependence; with the delay that explains what looks like it, if one does.
-pub(crate) fn test(survey: &Survey) -> (Finding, Option<Delay>) {
+pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     if !survey.data.has_time() {
         let statement = "the data have no time stamps";
         return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
@@ -116,7 +116,7 @@ pub(crate) fn test(survey: &Survey) -> (Finding, Option<Delay>) {
 
 /// Branches of the same course that are gone at different speeds: same ends, same direction, same turning
 /// point before.
-pub(crate) fn courses<'s>(survey: &'s Survey) -> Vec<Speeds<'s>> {
+pub(crate) fn courses<'s>(survey: &'s BranchSet) -> Vec<Speeds<'s>> {
     let tolerance = survey.same_input();
     let cell = |x: f64| (x / (2.0 * tolerance)).round() as i64;
     let mut groups: HashMap<(i64, i64, Option<i64>), Vec<&Branch>> = HashMap::new();
@@ -171,7 +171,7 @@ fn mean(set: &[&Branch], x: f64) -> Option<Reading> {
     })
 }
 
-fn compare(survey: &Survey, speeds: &Speeds) -> Option<Comparison> {
+fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     let (mut square, mut variance, mut bend, mut places) = (0.0, 0.0, 0.0, 0.0);
     // How far branches of one speed lie apart, because of their past or their wear.
     let mut own = [0.0, 0.0];

@@ -1,7 +1,7 @@
 //! Saturation: the output hardly grows at the ends of the input. Index: slope over the last tenth of a branch
 //! over the largest slope of the same branch, theory.md (10.8).
 
-use super::branch::{Branch, Survey};
+use super::branch::{Branch, BranchSet};
 use super::comparison::Comparison;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict};
@@ -31,7 +31,7 @@ const EXPERIMENT: &str = "drive the input over its whole range, up and down";
 
 /// Tests for saturation at either end: the upper end from rising, the lower end from falling branches
 /// (what follows a turning point is the stiffness of unloading).
-pub(crate) fn test(survey: &Survey) -> Finding {
+pub(crate) fn test(survey: &BranchSet) -> Finding {
     let mut ends = [end(survey, true), end(survey, false)].into_iter().flatten();
     let Some(first) = ends.next() else {
         return Finding::not_testable(Property::Saturation, "no branch over most of the range", EXPERIMENT);
@@ -43,7 +43,7 @@ pub(crate) fn test(survey: &Survey) -> Finding {
     }
 }
 
-fn end(survey: &Survey, rising: bool) -> Option<Finding> {
+fn end(survey: &BranchSet, rising: bool) -> Option<Finding> {
     let edge = if rising { survey.input.1 } else { survey.input.0 };
     let reaches = |branch: &&Branch| {
         branch.rises() == rising
@@ -93,7 +93,7 @@ fn end(survey: &Survey, rising: bool) -> Option<Finding> {
     })
 }
 
-fn slope_ratio(survey: &Survey, branch: &Branch) -> Option<Comparison> {
+fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
     let place = |part: usize| branch.from + (branch.to - branch.from) * part as f64 / PARTS as f64;
     let readings: Vec<_> = (0..=PARTS).map(|part| branch.curve.at(place(part))).collect::<Option<_>>()?;
     let rises: Vec<f64> = readings.windows(2).map(|pair| (pair[1].y - pair[0].y).abs()).collect();

@@ -1,7 +1,7 @@
 //! Static hysteresis: is there a loop however slowly the input goes? Index: area of the loops over their box,
 //! carried on to speed 0 where there are several speeds, theory.md (10.12).
 
-use super::branch::Survey;
+use super::branch::BranchSet;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, noise};
 use crate::branch::Opening;
@@ -31,7 +31,7 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 
 /// Tests whether loops remain at speed 0. At a single speed, `longest_lag` is the time by which the output may be
 /// late at the turning points: a lag `τ` makes a loop of the width `2 τ |x'|`.
-pub(crate) fn test(survey: &Survey, longest_lag: impl FnOnce() -> Option<f64>) -> Finding {
+pub(crate) fn test(survey: &BranchSet, longest_lag: impl FnOnce() -> Option<f64>) -> Finding {
     let widest = survey.openings.iter().map(|opening| opening.swing).fold(0.0, f64::max);
     let mut large: Vec<&Opening> =
         survey.openings.iter().filter(|opening| opening.swing > WIDE * widest).collect();

@@ -3,7 +3,7 @@
 //!
 //! `|y(return to x_a) - y(x_a)| / R`                                                 theory.md (10.4)
 
-use super::branch::{Branch, Closing, Survey};
+use super::branch::{Branch, BranchSet, Closing};
 use super::comparison::{Comparison, judge};
 use super::{Evidence, Finding, Picture, Property, Verdict};
 
@@ -17,7 +17,7 @@ const EXPERIMENT: &str = "swing the input back by a third and return past the tu
      down, then go on to the end; two such excursions at least";
 
 /// Tests for return-point memory.
-pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut comparisons = Vec::new();
     for (index, branch) in survey.branches.iter().enumerate() {
         for closing in &branch.closes {
@@ -45,7 +45,7 @@ pub(crate) fn test(survey: &Survey, equal_speed: bool) -> Finding {
 }
 
 /// The gap at the end of an excursion.
-fn gap(survey: &Survey, returning: usize, closing: &Closing) -> Option<Comparison> {
+fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Comparison> {
     let back = &survey.branches[returning];
     let arriving = &survey.branches[closing.arrived];
     let leaving = &survey.branches[closing.arrived + 1];
@@ -83,7 +83,7 @@ pub(super) fn loops(curves: Vec<super::PictureCurve>) -> Picture {
     Picture { x_label: String::new(), y_label: String::new(), curves }
 }
 
-impl Survey<'_> {
+impl BranchSet<'_> {
     /// A finding from comparisons of branches.
     pub(super) fn finding(
         &self,

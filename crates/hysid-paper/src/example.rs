@@ -9,7 +9,7 @@ use hysid::data::record::{Dataset, Record};
 use hysid::model::Model;
 use hysid::network::Family;
 use hysid::options::network::FitOptions;
-use hysid::options::{ModelName, Request};
+use hysid::options::{FitSpec, ModelName};
 use hysid::specimens::Specimen;
 use hysid_document::{Cell, Part, Table, capitalised, convergence, count, number, unit};
 
@@ -79,11 +79,11 @@ fn play<'a>(
     let (train, unseen) = (specimen.train(), specimen.test());
     let what = format!("{}, {}", example.name, case.specimen);
     let fit =
-        |request: Request| -> Result<Model> { Ok(fitting::fit(&what, &train, &request, observer)?.model) };
+        |request: FitSpec| -> Result<Model> { Ok(fitting::fit(&what, &train, &request, observer)?.model) };
     let xpnn = fitting::network(Family::Xpnn, &train, settings);
-    let mut candidates = vec![fit(Request::Network(FitOptions { rate: None, ..xpnn.clone() }))?];
+    let mut candidates = vec![fit(FitSpec::Network(FitOptions { rate: None, ..xpnn.clone() }))?];
     if xpnn.rate.is_some() {
-        candidates.push(fit(Request::Network(xpnn))?);
+        candidates.push(fit(FitSpec::Network(xpnn))?);
     }
     let validation: Vec<f64> = candidates.iter().map(validation).collect();
     // Records at several rates need the rate; within one slow record it tells no more than the direction.
@@ -94,11 +94,11 @@ fn play<'a>(
         Opponent::Nobody => None,
         Opponent::WithoutRate => Some(("XPNN without x'".to_string(), candidates.swap_remove(0))),
         Opponent::Network(family) => {
-            let model = fit(Request::Network(fitting::network(family, &train, settings)))?;
+            let model = fit(FitSpec::Network(fitting::network(family, &train, settings)))?;
             Some((family.name().to_uppercase(), model))
         }
         Opponent::Law(law) => {
-            let request = Request::of(ModelName::Rival(law), None, settings.seed);
+            let request = FitSpec::of(ModelName::Classical(law), None, settings.seed);
             Some(("GPIM".to_string(), fit(fitting::rival(request, settings))?))
         }
     };

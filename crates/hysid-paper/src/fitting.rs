@@ -7,7 +7,7 @@ use hysid::data::record::Dataset;
 use hysid::fit::identify;
 use hysid::fit::network::Fit;
 use hysid::network::{Family, Sizes};
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::network::{FitOptions, Trainer};
 use hysid::significant::Significant;
 use hysid::{Error, Result};
@@ -65,18 +65,18 @@ pub fn words(settings: Settings) -> Text {
 }
 
 /// A rival's request with the starts and iterations of these settings.
-pub fn rival(request: Request, settings: Settings) -> Request {
+pub fn rival(request: FitSpec, settings: Settings) -> FitSpec {
     match request {
-        Request::Classical(mut options) if settings.quick && options.model.is_searched() => {
+        FitSpec::Classical(mut options) if settings.quick && options.model.is_searched() => {
             (options.starts, options.epochs) = (Some(QUICK_RIVAL.0), Some(QUICK_RIVAL.1));
-            Request::Classical(options)
+            FitSpec::Classical(options)
         }
         request => request,
     }
 }
 
 /// Fits a model and says so.
-pub fn fit(what: &str, data: &Dataset, request: &Request, observer: &dyn Observer) -> Result<Fit> {
+pub fn fit(what: &str, data: &Dataset, request: &FitSpec, observer: &dyn Observer) -> Result<Fit> {
     let began = observer.clock();
     let fit = identify(data, request, &mut |_| match observer.is_stopped() {
         true => ControlFlow::Break(()),

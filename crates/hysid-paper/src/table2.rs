@@ -7,7 +7,7 @@ use hysid::Result;
 use hysid::data::record::Record;
 use hysid::model::Model;
 use hysid::network::Family;
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::network::FitOptions;
 use hysid_document::{Cell, Part, Table, number};
 
@@ -77,7 +77,7 @@ fn row(property: &'static Property, settings: Settings, observer: &dyn Observer)
     for family in Family::ALL {
         let options = fitting::network(family, &train, settings);
         let (starts, epochs) = (options.starts.min(STARTS), options.epochs.min(EPOCHS));
-        let request = Request::Network(FitOptions { starts, epochs, ..options });
+        let request = FitSpec::Network(FitOptions { starts, epochs, ..options });
         let fit = fitting::fit(&format!("table2, {}", property.name), &train, &request, observer)?;
         let errors = fit.model.evaluate(&unseen)?;
         row.unseen.push(errors.nrmse_std_percent.expect("the specimen's output varies"));

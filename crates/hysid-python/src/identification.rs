@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use hysid::fit;
 use hysid::fit::cross_validate;
 use hysid::fit::network::{Observer, Progress};
-use hysid::options::chosen::{ChosenOptions, Ignored, RateChoice};
+use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::table::OPTIONS;
 use hysid::options::{self, ModelName};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
@@ -25,17 +25,17 @@ const PAUSE: Duration = Duration::from_millis(50);
 
 /// What is to be identified, and how.
 #[pyclass(frozen, module = "hysid._hysid")]
-pub struct Request {
-    chosen: ChosenOptions,
-    request: options::Request,
+pub struct FitSpec {
+    chosen: NamedOptions,
+    request: options::FitSpec,
 }
 
 #[pymethods]
-impl Request {
+impl FitSpec {
     /// From options as a JSON object, and the rate by its name, for these data.
     #[new]
     fn new(options: &str, rate: &str, data: &Dataset) -> PyResult<Self> {
-        let chosen = ChosenOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
+        let chosen = NamedOptions::of(serde_json::from_str(options).map_err(refused)?).map_err(refused)?;
         let rate: RateChoice = rate.parse().map_err(refused)?;
         let is_decided = matches!(rate, RateChoice::Method(_));
         let rate = rate.method(chosen.model(), data.set.has_time());
@@ -140,7 +140,7 @@ impl Exchange {
 pub fn identify(
     py: Python<'_>,
     data: &Dataset,
-    request: &Request,
+    request: &FitSpec,
     threads: Option<usize>,
     time_limit: Option<f64>,
     progress: Option<Bound<'_, PyAny>>,
@@ -160,7 +160,7 @@ pub fn identify(
 pub fn validate(
     py: Python<'_>,
     data: &Dataset,
-    request: &Request,
+    request: &FitSpec,
     folds: usize,
     threads: Option<usize>,
     time_limit: Option<f64>,
@@ -176,7 +176,7 @@ pub fn validate(
 }
 
 /// Refuses work that needs more memory than there is, with the threads of this pool.
-fn check_memory(data: &hysid::data::record::Dataset, request: &options::Request) -> hysid::Result<()> {
+fn check_memory(data: &hysid::data::record::Dataset, request: &options::FitSpec) -> hysid::Result<()> {
     let need = fit::memory_need(data, request, rayon::current_num_threads())?;
     need.check(hysid_files::available_memory())
 }

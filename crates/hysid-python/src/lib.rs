@@ -19,7 +19,7 @@ mod _hysid {
     #[pymodule_export]
     use crate::elements::{deteriorating_stop, law, play, relaxation, relay, stop};
     #[pymodule_export]
-    use crate::identification::{Request, identify, model_names, option_names, option_table, validate};
+    use crate::identification::{FitSpec, identify, model_names, option_names, option_table, validate};
     #[pymodule_export]
     use crate::minimiser::minimise;
     #[pymodule_export]

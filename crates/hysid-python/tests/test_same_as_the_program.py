@@ -189,7 +189,7 @@ def test_an_unknown_option_is_refused(spring_and_slider):
     with pytest.raises(TypeError, match="stop"):
         hysid.fit(*spring_and_slider, stop=3)
     with pytest.raises(ValueError, match="there is no option `stop`: the options are companding"):
-        _hysid.Request('{"stop": 3}', "auto", hysid._data.columns(*spring_and_slider, *[None] * 3).dataset())
+        _hysid.FitSpec('{"stop": 3}', "auto", hysid._data.columns(*spring_and_slider, *[None] * 3).dataset())
 
 
 def test_names_of_pandas_objects_become_columns_and_units():

@@ -13,8 +13,8 @@ use crate::error::Result;
 use crate::fit::network::Progress;
 use crate::fit::{cross_validate, identify};
 use crate::model::Model;
-use crate::options::chosen::{ChosenOptions, RateChoice};
-use crate::options::{ModelName, Request};
+use crate::options::chosen::{NamedOptions, RateChoice};
+use crate::options::{FitSpec, ModelName};
 use crate::validation::CrossValidation;
 
 /// Records are divided into at most so many folds.
@@ -115,11 +115,11 @@ impl<'a> Fit<'a> {
         cross_validate(data, &request, FOLDS, &mut self.watched())
     }
 
-    fn chosen(&self) -> Result<ChosenOptions> {
-        ChosenOptions::of(self.options.clone())
+    fn chosen(&self) -> Result<NamedOptions> {
+        NamedOptions::of(self.options.clone())
     }
 
-    fn request(&self, data: &Dataset) -> Result<Request> {
+    fn request(&self, data: &Dataset) -> Result<FitSpec> {
         let chosen = self.chosen()?;
         let model = chosen.model();
         let rate = self.rate.method(model, data.has_time());
@@ -159,7 +159,7 @@ pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> R
         names => names.iter().map(|name| name.parse()).collect::<Result<_>>()?,
     };
     let rate = |model| RateChoice::Auto.method(model, train.has_time());
-    let requests = models.into_iter().flat_map(|model| Request::of(model, rate(model), seed).variants());
+    let requests = models.into_iter().flat_map(|model| FitSpec::of(model, rate(model), seed).variants());
     let mut all: Vec<Compared> = requests.filter_map(|request| compared(train, test, &request)).collect();
     let error =
         |compared: &Compared| compared.outcome.as_ref().map_or(f64::INFINITY, |(_, errors)| errors.rmse);
@@ -168,7 +168,7 @@ pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> R
 }
 
 /// A model on these data; `None` if it cannot be fitted to data like these.
-fn compared(train: &Dataset, test: &Dataset, request: &Request) -> Option<Compared> {
+fn compared(train: &Dataset, test: &Dataset, request: &FitSpec) -> Option<Compared> {
     if request.model().check_data(train, request.rate()).is_err() {
         return None;
     }

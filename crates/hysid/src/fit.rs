@@ -13,10 +13,10 @@ use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_unt
 use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
-use crate::model::preprocessing::Seen;
-use crate::model::{Body, Found, Model};
-use crate::options::Request;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::model::input_transform::Transformed;
+use crate::model::{Found, Model, Predictor};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::network::Method;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
@@ -29,14 +29,14 @@ pub use validate::cross_validate;
 ///
 /// # Errors
 /// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
-pub fn identify(data: &Dataset, request: &Request, observer: &mut Observer<'_>) -> Result<Fit> {
+pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fit> {
     match request {
-        Request::Network(options) => network::fit(data, options, observer),
-        Request::Auto(options) => auto::fit(data, options, observer),
-        Request::Classical(options) if options.model == Rival::RandomStops => {
+        FitSpec::Network(options) => network::fit(data, options, observer),
+        FitSpec::Auto(options) => auto::fit(data, options, observer),
+        FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => {
             random_stops(data, options, observer)
         }
-        Request::Classical(options) => of_law(data, options, observer),
+        FitSpec::Classical(options) => of_law(data, options, observer),
     }
 }
 
@@ -49,19 +49,19 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
         deterioration: options.deterioration,
         seed: options.seed,
     };
-    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
     let stop = StopCheck::new(&is_to_stop);
     let wanted = RandomStopsOptions { rate: seen.rate, ..wanted };
     let found = fit_random_stops_until(&seen.data, &wanted, stop)?;
-    let body = Body::Network { network: found.network, scaling: found.scaling };
+    let body = Predictor::Network { network: found.network, scaling: found.scaling };
     finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
 }
 
 fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let mut history = Vec::new();
-    let seen = Seen::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
+    let seen = Transformed::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
@@ -88,19 +88,19 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
         validation_nrmse_percent: None,
     };
     let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
-    finished(data, options, &seen, Body::Law(found.law), found.evaluations, termination, runs)
+    finished(data, options, &seen, Predictor::Law(found.law), found.evaluations, termination, runs)
 }
 
 fn finished(
     data: &Dataset,
     options: &ClassicalOptions,
-    seen: &Seen,
-    body: Body,
+    seen: &Transformed,
+    body: Predictor,
     evaluations: usize,
     termination: Termination,
     runs: Vec<Run>,
 ) -> Result<Fit> {
-    let request = Request::Classical(options.clone());
+    let request = FitSpec::Classical(options.clone());
     let found = Found {
         options: request,
         chosen_start: 0,

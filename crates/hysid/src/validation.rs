@@ -250,8 +250,8 @@ mod tests {
     use super::*;
     use crate::data::record::ColumnNames;
     use crate::fit::{cross_validate, identify};
-    use crate::options::Request;
-    use crate::options::classical::{ClassicalOptions, Rival};
+    use crate::options::FitSpec;
+    use crate::options::classical::{ClassicalModel, ClassicalOptions};
 
     /// A play of threshold 0.3 under growing oscillations.
     fn record(name: &str, rows: usize, size: f64) -> Record {
@@ -270,10 +270,12 @@ mod tests {
         Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(1) }, records).unwrap()
     }
 
-    fn request() -> Request {
-        let options =
-            ClassicalOptions { operators: Some(6), ..ClassicalOptions::of(Rival::PrandtlIshlinskii) };
-        Request::Classical(options)
+    fn request() -> FitSpec {
+        let options = ClassicalOptions {
+            operators: Some(6),
+            ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+        };
+        FitSpec::Classical(options)
     }
 
     #[test]

@@ -11,11 +11,11 @@ use hysid::fit::cross_validate;
 use hysid::fit::identify;
 use hysid::fit::network::{Observer, Progress};
 use hysid::law::Classical;
-use hysid::model::{Body, Ensemble, Group, Model, Speaker, Voice, Weights};
+use hysid::model::{Ensemble, Group, Model, Node, NodeKind, Predictor, Weights};
 use hysid::network::Family;
 use hysid::options::auto::AutoOptions;
-use hysid::options::classical::{ClassicalOptions, Rival};
-use hysid::options::{ModelName, Request};
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 use hysid::validation::folds;
 
@@ -41,13 +41,13 @@ fn on(_: &Progress) -> ControlFlow<()> {
 
 fn options(rate: Option<RateMethod>) -> AutoOptions {
     match small(ModelName::AUTO, rate) {
-        Request::Auto(options) => options,
+        FitSpec::Auto(options) => options,
         _ => unreachable!("auto was asked for"),
     }
 }
 
 fn fitted(data: &Dataset, options: AutoOptions) -> Model {
-    identify(data, &Request::Auto(options), &mut on).unwrap().model
+    identify(data, &FitSpec::Auto(options), &mut on).unwrap().model
 }
 
 #[test]
@@ -103,11 +103,11 @@ fn the_answer_is_the_nested_median_of_the_members() {
 /// function is inverted by bisection.
 fn answer(group: &Group, of_member: &dyn Fn(usize) -> f64) -> f64 {
     let mut votes: Vec<(f64, f64)> = group
-        .voices
+        .nodes
         .iter()
-        .map(|voice| match &voice.who {
-            Speaker::Member(member) => (of_member(*member), voice.weights.inside),
-            Speaker::Group(group) => (answer(group, of_member), voice.weights.inside),
+        .map(|node| match &node.kind {
+            NodeKind::Member(member) => (of_member(*member), node.weights.inside),
+            NodeKind::Group(group) => (answer(group, of_member), node.weights.inside),
         })
         .filter(|(_, weight)| *weight > 0.0)
         .collect();
@@ -154,7 +154,7 @@ fn one_member_is_a_single_model_with_band_and_selection() {
     let data = data();
     let model = fitted(&data, AutoOptions { members: 1, ..options(None) });
     assert!(model.ensemble().is_none());
-    assert_ne!(model.name(), ModelName::Rival(Rival::RandomStops));
+    assert_ne!(model.name(), ModelName::Classical(ClassicalModel::RandomStops));
     let provenance = model.provenance();
     let selection = provenance.selection.as_ref().expect("there was a choice");
     assert_eq!(selection.folds.len(), 3);
@@ -182,12 +182,12 @@ fn decisions_are_obeyed() {
     });
     assert!(networks(&without).iter().all(|a| !a.deterioration));
     assert!(without.iter().all(|member| member.rate() == rate));
-    assert!(without.iter().all(|member| member.preprocessing().companding.is_none()));
+    assert!(without.iter().all(|member| member.input_transform().companding.is_none()));
     let with = members(AutoOptions { deterioration: Some(true), ..options(rate) });
     assert!(!with.is_empty() && networks(&with).iter().all(|a| a.deterioration));
-    let wears = |member: &Model| match member.body() {
-        Body::Network { network, .. } => network.architecture().deterioration,
-        Body::Law(Classical::BoucWen(law)) => law.degradation.is_some(),
+    let wears = |member: &Model| match member.predictor() {
+        Predictor::Network { network, .. } => network.architecture().deterioration,
+        Predictor::Law(Classical::BoucWen(law)) => law.degradation.is_some(),
         _ => false,
     };
     assert!(with.iter().all(wears));
@@ -205,7 +205,7 @@ fn decisions_are_obeyed() {
 #[test]
 fn decisions_that_leave_nothing_are_refused() {
     let refused =
-        |options: AutoOptions| identify(&data(), &Request::Auto(options), &mut on).unwrap_err().to_string();
+        |options: AutoOptions| identify(&data(), &FitSpec::Auto(options), &mut on).unwrap_err().to_string();
     let nothing = AutoOptions { companding: Some(true), history: Some(true), ..options(None) };
     assert!(refused(nothing).contains("no candidate is left"));
     assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose 1 to"));
@@ -217,9 +217,9 @@ fn a_named_model_becomes_an_ensemble_of_its_starts() {
     let of = |model: ModelName| small(model, None);
     for (model, expected) in [
         (ModelName::Network(Family::Xpnn), 3),
-        (ModelName::Rival(Rival::RandomStops), 3),
+        (ModelName::Classical(ClassicalModel::RandomStops), 3),
         // Nothing about it is random.
-        (ModelName::Rival(Rival::Preisach), 1),
+        (ModelName::Classical(ClassicalModel::Preisach), 1),
     ] {
         let options = AutoOptions { only: Some(Box::new(of(model))), members: 3, starts: 3, ..options(None) };
         let fitted = fitted(&data, options);
@@ -227,7 +227,7 @@ fn a_named_model_becomes_an_ensemble_of_its_starts() {
         assert_eq!(ensemble.members().len(), expected, "{model:?}");
         assert!(ensemble.members().iter().all(|member| member.name() == model));
         if expected > 1 {
-            assert_ne!(ensemble.members()[0].body(), ensemble.members()[1].body());
+            assert_ne!(ensemble.members()[0].predictor(), ensemble.members()[1].predictor());
         }
     }
 }
@@ -243,7 +243,7 @@ fn however_early_it_is_stopped_there_is_a_model() {
             if heard > patience { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let observer: &mut Observer = &mut observer;
-        let model = identify(&data, &Request::Auto(options(None)), observer).unwrap().model;
+        let model = identify(&data, &FitSpec::Auto(options(None)), observer).unwrap().model;
         assert_eq!(model.provenance().termination, Termination::Stopped, "after {patience}");
         assert!(model.simulate(&data.records()[0]).unwrap().iter().all(|y| y.is_finite()));
         assert_eq!(Model::from_json(&model.to_json()).unwrap(), model);
@@ -317,9 +317,9 @@ fn folds_hold_out_what_they_do_not_train_on() {
 #[test]
 fn cross_validation_is_a_fit_to_each_fold_and_its_error_on_the_rest() {
     let data = data();
-    let request = Request::Classical(ClassicalOptions {
+    let request = FitSpec::Classical(ClassicalOptions {
         operators: Some(8),
-        ..ClassicalOptions::of(Rival::PrandtlIshlinskii)
+        ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
     });
     let validation = cross_validate(&data, &request, 5, &mut on).unwrap();
     assert_eq!(validation.folds.len(), 3);
@@ -341,21 +341,21 @@ fn cross_validation_is_a_fit_to_each_fold_and_its_error_on_the_rest() {
 fn an_ensemble_that_makes_no_sense_is_refused() {
     let data = data();
     let member = identify(&data, &small(ModelName::Network(Family::Pnn), None), &mut on).unwrap().model;
-    let voice = |member| Voice { weights: Weights::equal(), who: Speaker::Member(member) };
-    let group = |voices| Group { name: "g".into(), voices };
-    let new = |members: &[&Model], voices, range| {
-        Ensemble::new(members.iter().map(|one| (*one).clone()).collect(), group(voices), range)
+    let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
+    let group = |nodes| Group { name: "g".into(), nodes };
+    let new = |members: &[&Model], nodes, range| {
+        Ensemble::new(members.iter().map(|one| (*one).clone()).collect(), group(nodes), range)
     };
     let range = (-1.0, 1.0);
-    assert!(new(&[&member], vec![voice(0)], range).is_ok());
+    assert!(new(&[&member], vec![node(0)], range).is_ok());
     let refused = |result: hysid::Result<Ensemble>| result.unwrap_err().to_string();
     assert!(refused(new(&[&member], vec![], range)).contains("at least one"));
-    assert!(refused(new(&[&member], vec![voice(1)], range)).contains("no member 1"));
-    assert!(refused(new(&[&member], vec![voice(0)], (1.0, 1.0))).contains("no range"));
-    let none = Voice { weights: Weights { inside: 0.0, outside: 0.0 }, ..voice(0) };
+    assert!(refused(new(&[&member], vec![node(1)], range)).contains("no member 1"));
+    assert!(refused(new(&[&member], vec![node(0)], (1.0, 1.0))).contains("no range"));
+    let none = Node { weights: Weights { inside: 0.0, outside: 0.0 }, ..node(0) };
     assert!(refused(new(&[&member], vec![none], range)).contains("not all 0"));
     let whole = shared();
-    assert!(refused(new(&[whole], vec![voice(0)], range)).contains("member of another"));
+    assert!(refused(new(&[whole], vec![node(0)], range)).contains("member of another"));
 }
 
 #[test]

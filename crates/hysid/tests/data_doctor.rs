@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
+use hysid::diagnosis::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
 use hysid::operator::{Operator, Stop};
 use hysid::specimens::{Ferromagnet, Specimen, with_noise};
 
@@ -83,11 +83,11 @@ fn noisy(data: &Dataset, percent: f64, seed: u64) -> Dataset {
     with_noise(data, percent * (high - low) / deviation, seed).unwrap()
 }
 
-fn doctor(data: &Dataset) -> Vec<Complaint> {
+fn doctor(data: &Dataset) -> Vec<DataIssue> {
     Diagnosis::of(data, &DiagnosisOptions::default()).unwrap().doctor
 }
 
-fn kinds(data: &Dataset) -> Vec<ComplaintKind> {
+fn kinds(data: &Dataset) -> Vec<DataIssueKind> {
     doctor(data).into_iter().map(|complaint| complaint.kind).collect()
 }
 
@@ -106,7 +106,7 @@ fn sound() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 }
 
 /// The only complaint about data.
-fn only(data: &Dataset, kind: ComplaintKind) -> Complaint {
+fn only(data: &Dataset, kind: DataIssueKind) -> DataIssue {
     let found = doctor(data);
     assert!(found.len() == 1 && found[0].kind == kind, "{kind:?} wanted: {found:#?}");
     found.into_iter().next().unwrap()
@@ -131,10 +131,10 @@ fn sound_data_are_not_complained_of() {
 
 #[test]
 fn specimens_are_not_complained_of_without_reason() {
-    use ComplaintKind::{Lag, LagChangesWithSpeed, NotVirgin, UnclosedLoops};
+    use DataIssueKind::{Lag, LagChangesWithSpeed, NotVirgin, UnclosedLoops};
     for specimen in Specimen::all() {
         // Loops that wear out stay open.
-        let true_of_it: &[ComplaintKind] = match specimen.name {
+        let true_of_it: &[DataIssueKind] = match specimen.name {
             "reinforced-concrete-joint" | "reinforced-concrete-joint-cycles" => &[UnclosedLoops],
             "rate-dependent-actuator" => &[LagChangesWithSpeed],
             "piezo-actuator" => &[LagChangesWithSpeed],
@@ -160,7 +160,7 @@ fn specimens_are_not_complained_of_without_reason() {
 
 /// The lag that is complained of, if any.
 fn lag(data: &Dataset) -> Option<f64> {
-    let lag = doctor(data).into_iter().find(|complaint| complaint.kind == ComplaintKind::Lag)?;
+    let lag = doctor(data).into_iter().find(|complaint| complaint.kind == DataIssueKind::Lag)?;
     assert_eq!(lag.unit.as_deref(), Some("s"));
     lag.value
 }
@@ -259,10 +259,10 @@ fn what_depends_on_the_rate_is_no_delay() {
 fn drift_is_told_from_wear() {
     let (time, x, y) = sound();
     let drifting = y.iter().zip(&time).map(|(y, t)| y + 0.02 * t).collect();
-    let complaint = only(&rebuilt(time.clone(), x.clone(), drifting), ComplaintKind::Drift);
+    let complaint = only(&rebuilt(time.clone(), x.clone(), drifting), DataIssueKind::Drift);
     assert!((complaint.value.unwrap() / 0.08 - 1.0).abs() < 0.2, "{complaint:?}");
     let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.05 * t).exp()).collect();
-    assert!(!kinds(&rebuilt(time, x, wearing)).contains(&ComplaintKind::Drift));
+    assert!(!kinds(&rebuilt(time, x, wearing)).contains(&DataIssueKind::Drift));
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn creep_in_a_hold() {
             hold(&y, &relaxed),
         );
         let found = doctor(&data);
-        let creep: Vec<_> = found.iter().filter(|c| c.kind == ComplaintKind::Creep).collect();
+        let creep: Vec<_> = found.iter().filter(|c| c.kind == DataIssueKind::Creep).collect();
         assert_eq!(creep.len(), usize::from(creeps), "{found:#?}");
         if let Some(creep) = creep.first() {
             assert!(creep.value.unwrap() < -0.07 && creep.evidence[0].rows.0 >= turn - 10, "{creep:?}");
@@ -297,16 +297,16 @@ fn clipping() {
     let (time, x, y) = sound();
     let top = y.iter().copied().fold(0.0, f64::max);
     let clipped = y.iter().map(|y| y.min(0.8 * top)).collect();
-    let complaint = only(&rebuilt(time.clone(), x.clone(), clipped), ComplaintKind::OutputClipped);
+    let complaint = only(&rebuilt(time.clone(), x.clone(), clipped), DataIssueKind::OutputClipped);
     assert_eq!(complaint.value, Some(0.8 * top));
     let clipped = x.iter().map(|x| x.max(-0.5)).collect();
     let found = doctor(&rebuilt(time, clipped, y));
-    let input = found.iter().find(|complaint| complaint.kind == ComplaintKind::InputClipped);
+    let input = found.iter().find(|complaint| complaint.kind == DataIssueKind::InputClipped);
     assert_eq!(input.expect("the input is clipped").value, Some(-0.5));
     // An ideal slider stands still at its extreme, as nothing but a law does.
     let (time, x, _) = columns(&delayed(sliders, Wave::Triangle, 1.0, 0.0025, 0.0, 6.0));
     let slider = Stop::new(0.5).unwrap().run(&x);
-    assert!(!kinds(&rebuilt(time, x, slider)).contains(&ComplaintKind::OutputClipped));
+    assert!(!kinds(&rebuilt(time, x, slider)).contains(&DataIssueKind::OutputClipped));
 }
 
 #[test]
@@ -318,18 +318,18 @@ fn repetition() {
     let twice: Vec<usize> =
         rows.iter().flat_map(|&row| if row % 8 == 0 { vec![row, row] } else { vec![row] }).collect();
     let stamps = (0..twice.len()).map(|k| k as f64 * time[1]).collect();
-    let complaint = only(&rebuilt(stamps, pick(&x, &twice), pick(&y, &twice)), ComplaintKind::RepeatedRows);
+    let complaint = only(&rebuilt(stamps, pick(&x, &twice), pick(&y, &twice)), DataIssueKind::RepeatedRows);
     assert!((complaint.value.unwrap() - 100.0 / 9.0).abs() < 0.5, "{complaint:?}");
 
     let held: Vec<usize> = rows.iter().map(every(4)).collect();
     let found = doctor(&rebuilt(time.clone(), x.clone(), pick(&y, &held)));
-    let complaint = found.iter().find(|complaint| complaint.kind == ComplaintKind::HeldSamples);
+    let complaint = found.iter().find(|complaint| complaint.kind == DataIssueKind::HeldSamples);
     assert_eq!(complaint.expect("the output is held").value, Some(4.0));
 
     let (low, high) = (y.iter().copied().fold(0.0, f64::min), y.iter().copied().fold(0.0, f64::max));
     let step = (high - low) / 60.0;
     let rounded = y.iter().map(|y| (y / step).round() * step).collect();
-    let complaint = only(&rebuilt(time, x, rounded), ComplaintKind::CoarseResolution);
+    let complaint = only(&rebuilt(time, x, rounded), DataIssueKind::CoarseResolution);
     assert!((complaint.value.unwrap() / step - 1.0).abs() < 1e-9);
 }
 
@@ -340,33 +340,33 @@ fn sampling() {
     let kept: Vec<usize> = (0..x.len()).filter(|&row| row < x.len() / 2 || row % 3 == 0).collect();
     let pick = |values: &[f64], rows: &[usize]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
     let part = |rows: &[usize]| rebuilt(pick(&time, rows), pick(&x, rows), pick(&y, rows));
-    let complaint = only(&part(&kept), ComplaintKind::ChangingSamplingRate);
+    let complaint = only(&part(&kept), DataIssueKind::ChangingSamplingRate);
     assert!((complaint.value.unwrap() - 3.0).abs() < 1e-6);
 
     let gap: Vec<usize> = (0..x.len()).filter(|row| !(1000..1030).contains(row)).collect();
-    let complaint = only(&part(&gap), ComplaintKind::TimeGap);
+    let complaint = only(&part(&gap), DataIssueKind::TimeGap);
     assert!((complaint.value.unwrap() - 31.0 * 0.0025).abs() < 1e-9);
     assert_eq!(complaint.evidence[0].rows, (999, 1000));
 
     let few: Vec<usize> = (0..x.len()).step_by(40).collect();
-    assert_eq!(only(&part(&few), ComplaintKind::FewSamples).value, Some(5.0));
+    assert_eq!(only(&part(&few), DataIssueKind::FewSamples).value, Some(5.0));
     let short: Vec<usize> = (0..450).collect();
-    assert_eq!(only(&part(&short), ComplaintKind::FewTurningPoints).value, Some(2.0));
+    assert_eq!(only(&part(&short), DataIssueKind::FewTurningPoints).value, Some(2.0));
 }
 
 #[test]
 fn columns_the_wrong_way_round() {
     let (time, x, y) = sound();
     let turned = y.iter().map(|y| -y).collect();
-    only(&rebuilt(time.clone(), x.clone(), turned), ComplaintKind::WrongSign);
+    only(&rebuilt(time.clone(), x.clone(), turned), DataIssueKind::WrongSign);
     // Steel near saturation answers a sine by anything but a sine.
     for wave in [Wave::Sine, Wave::Triangle] {
         let (time, x, _) = columns(&delayed(steel, wave, 1.0, 0.0025, 0.0, 6.0));
         let flux = Ferromagnet::m330_50a().run(&x.iter().map(|x| 300.0 * x).collect::<Vec<f64>>());
         assert!(
-            !kinds(&rebuilt(time.clone(), x.clone(), flux.clone())).contains(&ComplaintKind::SwappedColumns)
+            !kinds(&rebuilt(time.clone(), x.clone(), flux.clone())).contains(&DataIssueKind::SwappedColumns)
         );
-        assert!(kinds(&rebuilt(time, flux, x)).contains(&ComplaintKind::SwappedColumns), "{wave:?}");
+        assert!(kinds(&rebuilt(time, flux, x)).contains(&DataIssueKind::SwappedColumns), "{wave:?}");
     }
 }
 
@@ -378,11 +378,11 @@ fn beginnings() {
         rebuilt(cut(&time), cut(&x), cut(&y))
     };
     // At the top of the first cycle, and where the second begins: at rest, but with a past.
-    only(&from(60), ComplaintKind::UnknownStart);
-    only(&from(400), ComplaintKind::NotVirgin);
+    only(&from(60), DataIssueKind::UnknownStart);
+    only(&from(400), DataIssueKind::NotVirgin);
     let mut reset = y.clone();
     reset[0] += 0.5 * y.iter().copied().fold(0.0, f64::max) + 1.0;
-    assert!(kinds(&rebuilt(time.clone(), x.clone(), reset)).contains(&ComplaintKind::NotVirgin));
+    assert!(kinds(&rebuilt(time.clone(), x.clone(), reset)).contains(&DataIssueKind::NotVirgin));
     // A blank first cycle is a past.
     let mut blank = y.clone();
     blank[..400].fill(f64::NAN);
@@ -394,5 +394,5 @@ fn unclosed_loops() {
     let (time, x, y) = sound();
     let wearing = y.iter().zip(&time).map(|(y, t)| y * (-0.3 * t).exp() + 0.3 * t).collect();
     let found = doctor(&rebuilt(time, x, wearing));
-    assert!(found.iter().any(|complaint| complaint.kind == ComplaintKind::UnclosedLoops), "{found:#?}");
+    assert!(found.iter().any(|complaint| complaint.kind == DataIssueKind::UnclosedLoops), "{found:#?}");
 }

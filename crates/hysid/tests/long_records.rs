@@ -7,8 +7,8 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::operator::{Operator, Stop};
-use hysid::options::Request;
-use hysid::options::classical::{ClassicalOptions, Rival};
+use hysid::options::FitSpec;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 
 /// Growing cycles of so many rows each, of three plays in parallel.
 fn cycles(rows: usize, period: usize) -> Dataset {
@@ -25,16 +25,16 @@ fn cycles(rows: usize, period: usize) -> Dataset {
     Dataset::new(ColumnNames::plain(1), vec![record]).unwrap()
 }
 
-fn fitted(data: &Dataset, model: Rival) -> Model {
+fn fitted(data: &Dataset, model: ClassicalModel) -> Model {
     let options = ClassicalOptions {
         starts: Some(2),
         epochs: Some(8),
         operators: Some(6),
-        hidden: (model == Rival::NeuroMadelung).then_some(3),
+        hidden: (model == ClassicalModel::NeuroMadelung).then_some(3),
         rate: model.needs_rate().then_some(RateMethod::Central),
         ..ClassicalOptions::of(model)
     };
-    identify(data, &Request::Classical(options), &mut |_| ControlFlow::Continue(())).unwrap().model
+    identify(data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(())).unwrap().model
 }
 
 fn error(model: &Model, data: &Dataset) -> f64 {
@@ -46,11 +46,11 @@ fn error(model: &Model, data: &Dataset) -> f64 {
 fn rows_of_a_cycle_do_not_matter() {
     for (period, every) in [(7, 7), (10, 20), (20, 20), (64, 16)] {
         let data = cycles(5000 * every, period);
-        let found = error(&fitted(&data, Rival::GeneralizedPrandtlIshlinskii), &data);
+        let found = error(&fitted(&data, ClassicalModel::GeneralizedPrandtlIshlinskii), &data);
         assert!(found < 8.0, "{period} rows a cycle: {found} %");
     }
     let data = cycles(100_000, 20);
-    let found = error(&fitted(&data, Rival::BoucWen), &data);
+    let found = error(&fitted(&data, ClassicalModel::BoucWen), &data);
     assert!(found < 12.0, "Bouc-Wen: {found} %");
 }
 
@@ -59,7 +59,7 @@ fn rows_of_a_cycle_do_not_matter() {
 fn rows_of_a_cycle_do_not_matter_to_laws_with_a_rate() {
     for period in [19, 20] {
         let data = cycles(20_000, period);
-        let found = error(&fitted(&data, Rival::RateDependentPrandtlIshlinskii), &data);
+        let found = error(&fitted(&data, ClassicalModel::RateDependentPrandtlIshlinskii), &data);
         assert!(found < 4.0, "{period} rows a cycle: {found} %");
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::diagnosis::{Complaint, ComplaintKind, Diagnosis, DiagnosisOptions};
+use hysid::diagnosis::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
 use hysid::fit::network::fit;
 use hysid::network::{Family, Sizes};
 use hysid::options::network::FitOptions;
@@ -84,7 +84,7 @@ fn a_piezo_actuator_with_its_rate() {
     quick_fit("piezo-sine", Some(RateMethod::Central), 1600, 1);
 }
 
-fn doctor(case: &str) -> Option<Vec<Complaint>> {
+fn doctor(case: &str) -> Option<Vec<DataIssue>> {
     let data = read(&folder()?.join(case).join("train.csv"));
     Some(Diagnosis::of(&data, &DiagnosisOptions::default()).unwrap().doctor)
 }
@@ -93,12 +93,12 @@ fn doctor(case: &str) -> Option<Vec<Complaint>> {
 fn the_doctor_sees_what_is_in_measured_records() {
     // 367 of 1087 rows of the coupon are the row before, counted with awk; the piezo actuator begins at 149.9 V.
     if let Some(coupon) = doctor("steel-coupon") {
-        let repeated = coupon.iter().find(|complaint| complaint.kind == ComplaintKind::RepeatedRows);
+        let repeated = coupon.iter().find(|complaint| complaint.kind == DataIssueKind::RepeatedRows);
         let percent = repeated.expect("rows repeat").value.unwrap();
         assert!((percent - 100.0 * 367.0 / 1087.0).abs() < 0.5, "{percent}");
     }
     if let Some(piezo) = doctor("piezo-sine") {
-        let kinds: Vec<ComplaintKind> = piezo.iter().map(|complaint| complaint.kind).collect();
-        assert_eq!(kinds, [ComplaintKind::UnknownStart]);
+        let kinds: Vec<DataIssueKind> = piezo.iter().map(|complaint| complaint.kind).collect();
+        assert_eq!(kinds, [DataIssueKind::UnknownStart]);
     }
 }

@@ -12,9 +12,9 @@ use hysid::fit::network::fit;
 use hysid::model::{FORMAT_VERSION, Model};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
-use hysid::options::classical::Rival;
+use hysid::options::classical::ClassicalModel;
 use hysid::options::network::FitOptions;
-use hysid::options::{ModelName, Request};
+use hysid::options::{FitSpec, ModelName};
 
 /// Uneven steps in time, so that no two rows are alike.
 fn record(inputs: usize, rows: usize) -> Record {
@@ -382,7 +382,7 @@ fn a_file_of_version_1_is_read() {
         (model.name(), model.rate()),
         (ModelName::Network(Family::XpnnPlus), Some(RateMethod::Central))
     );
-    let Request::Network(options) = &model.provenance().options else { panic!("not a network") };
+    let FitSpec::Network(options) = &model.provenance().options else { panic!("not a network") };
     assert_eq!((options.training, options.epochs), (hysid::options::network::Trainer::LevenbergMarquardt, 6));
     let x = vec![0.0, 0.05218, 0.10412, 0.15493];
     let time = vec![0.0, 0.1, 0.2, 0.3];
@@ -401,8 +401,8 @@ fn a_file_of_version_1_is_read() {
 fn a_file_of_version_2_is_read() {
     // Written before there were ensembles; the outputs are what it simulated.
     let model = Model::from_json(include_str!("data/model-version-2.json")).unwrap();
-    assert_eq!(model.name(), ModelName::Rival(Rival::PrandtlIshlinskii));
-    assert!(model.preprocessing().is_none() && model.band().is_none());
+    assert_eq!(model.name(), ModelName::Classical(ClassicalModel::PrandtlIshlinskii));
+    assert!(model.input_transform().is_none() && model.band().is_none());
     let history = |k: usize| (0.19 * k as f64).sin() * (0.4 + 0.6 * (0.011 * k as f64).sin().abs());
     // The file's table had six decimals.
     let x: Vec<f64> = (0..120).map(|k| (1e6 * history(k)).round() / 1e6).collect();

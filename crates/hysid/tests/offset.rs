@@ -10,7 +10,7 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::identify;
 use hysid::model::Model;
 use hysid::options::ModelName;
-use hysid::options::classical::Rival;
+use hysid::options::classical::ClassicalModel;
 
 use small_models::{record, small};
 
@@ -38,7 +38,7 @@ fn errors_are_the_same_wherever_the_input_is() {
     let (low, high) = shifted(0.0).input_range(0);
     let half = 0.5 * (high - low);
     let all = ModelName::all().chain([ModelName::AUTO]);
-    for model in all.filter(|model| *model != ModelName::Rival(Rival::JilesAtherton)) {
+    for model in all.filter(|model| *model != ModelName::Classical(ClassicalModel::JilesAtherton)) {
         let there = shifted(0.0);
         let expected = error(&fitted(&there, model), &there);
         // The automatic model takes the others' time together.
@@ -71,15 +71,15 @@ fn a_shifted_model_steps_as_it_simulates() {
         assert_eq!(stepper.step(&x, record.time().unwrap()[row], Some(rates[row])).unwrap(), *y);
     }
     assert_eq!(model.trained_ranges().inputs[0], data.input_range(0));
-    assert_eq!(model.preprocessing().origins, [record.inputs()[0][0]]);
+    assert_eq!(model.input_transform().origins, [record.inputs()[0][0]]);
 }
 
 /// Jiles and Atherton's law is about a field of 0: it is not shifted.
 #[test]
 fn the_origin_of_a_field_stays() {
     let data = shifted(5000.0);
-    let model = fitted(&data, ModelName::Rival(Rival::JilesAtherton));
-    assert!(model.preprocessing().is_none());
+    let model = fitted(&data, ModelName::Classical(ClassicalModel::JilesAtherton));
+    assert!(model.input_transform().is_none());
 }
 
 /// A further input far from 0 is measured from its middle.

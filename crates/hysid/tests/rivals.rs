@@ -15,10 +15,10 @@ use hysid::fit::network::Fit;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
 use hysid::law::{Classical, Dimension, Sample};
-use hysid::model::{Body, Model};
+use hysid::model::{Model, Predictor};
 use hysid::network::Family;
-use hysid::options::classical::{ClassicalOptions, Rival};
-use hysid::options::{ModelName, Request};
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 
 use small_models::{record, small};
@@ -33,7 +33,7 @@ fn data() -> Dataset {
     Dataset::new(names, vec![record(180, "a"), record(120, "b")]).unwrap()
 }
 
-fn quietly(request: &Request) -> Fit {
+fn quietly(request: &FitSpec) -> Fit {
     identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
@@ -49,7 +49,7 @@ fn names_are_found_and_are_different() {
     }
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), Family::ALL.len() + Rival::ALL.len());
+    assert_eq!(names.len(), Family::ALL.len() + ClassicalModel::ALL.len());
     let error = "presach".parse::<ModelName>().unwrap_err().to_string();
     assert!(error.contains("preisach") && error.contains("xpnn+"), "{error}");
 }
@@ -86,11 +86,13 @@ fn every_model_comes_back_from_its_file_and_steps_as_it_simulates() {
 /// A fit without rounds listens in its midst: it ends with what it has, and is otherwise not disturbed.
 #[test]
 fn fits_without_rounds_end_when_they_are_told_to() {
-    for rival in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii, Rival::RandomStops] {
-        let request = small(ModelName::Rival(rival), None);
+    for rival in
+        [ClassicalModel::Preisach, ClassicalModel::ModifiedPrandtlIshlinskii, ClassicalModel::RandomStops]
+    {
+        let request = small(ModelName::Classical(rival), None);
         let mut asked = 0;
         let whole = identify(&data(), &request, &mut |progress| {
-            assert_eq!((progress.model, progress.is_part), (ModelName::Rival(rival), false));
+            assert_eq!((progress.model, progress.is_part), (ModelName::Classical(rival), false));
             asked += 1;
             ControlFlow::Continue(())
         });
@@ -144,10 +146,10 @@ fn wild_inputs_leave_every_model_finite() {
 
 #[test]
 fn parameters_of_laws_are_named_within_bounds_and_in_units() {
-    for &rival in Rival::ALL {
-        let model = quietly(&small(ModelName::Rival(rival), Some(RateMethod::Central))).model;
-        let Body::Law(law) = model.body() else {
-            assert_eq!(rival, Rival::RandomStops);
+    for &rival in ClassicalModel::ALL {
+        let model = quietly(&small(ModelName::Classical(rival), Some(RateMethod::Central))).model;
+        let Predictor::Law(law) = model.predictor() else {
+            assert_eq!(rival, ClassicalModel::RandomStops);
             continue;
         };
         let parameters = law.parameters();
@@ -163,7 +165,7 @@ fn parameters_of_laws_are_named_within_bounds_and_in_units() {
         }
         // The weights of a neural network are pure numbers.
         let has_units = parameters.iter().any(|parameter| parameter.unit != Dimension::NONE);
-        assert_eq!(has_units, rival != Rival::NeuroMadelung, "{rival:?}");
+        assert_eq!(has_units, rival != ClassicalModel::NeuroMadelung, "{rival:?}");
     }
 }
 
@@ -184,7 +186,7 @@ fn units_are_products_of_powers() {
 
 #[test]
 fn what_a_model_cannot_be_fitted_to_is_said() {
-    let rival = ModelName::Rival(Rival::RateDependentPrandtlIshlinskii);
+    let rival = ModelName::Classical(ClassicalModel::RateDependentPrandtlIshlinskii);
     assert_eq!(rival.check_data(&data(), None), Err(Error::RateNeeded(rival.name())));
     assert_eq!(rival.check_data(&data(), Some(RateMethod::Central)), Ok(()));
     let two = Record::new("r", vec![vec![0.0, 1.0], vec![1.0, 0.0]], vec![0.0, 1.0]).unwrap();
@@ -194,22 +196,24 @@ fn what_a_model_cannot_be_fitted_to_is_said() {
         assert_eq!(refused, !name.takes_further_inputs(), "{name:?}");
     }
     let refused =
-        |request: &Request| identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap_err();
-    assert_eq!(refused(&Request::of(rival, None, 1)), Error::RateNeeded(rival.name()));
-    for (model, operators) in
-        [(Rival::Preisach, 0), (Rival::PrandtlIshlinskii, 0), (Rival::GeneralizedPrandtlIshlinskii, 0)]
-    {
+        |request: &FitSpec| identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(refused(&FitSpec::of(rival, None, 1)), Error::RateNeeded(rival.name()));
+    for (model, operators) in [
+        (ClassicalModel::Preisach, 0),
+        (ClassicalModel::PrandtlIshlinskii, 0),
+        (ClassicalModel::GeneralizedPrandtlIshlinskii, 0),
+    ] {
         let options = ClassicalOptions { operators: Some(operators), ..ClassicalOptions::of(model) };
-        let error = refused(&Request::Classical(options));
+        let error = refused(&FitSpec::Classical(options));
         assert!(matches!(&error, Error::Option(error) if error.option == "operators"), "{error}");
     }
 }
 
 #[test]
 fn the_slope_of_every_law_is_that_of_its_output() {
-    for &rival in Rival::ALL {
-        let model = quietly(&small(ModelName::Rival(rival), Some(RateMethod::Central))).model;
-        let Body::Law(law) = model.body() else { continue };
+    for &rival in ClassicalModel::ALL {
+        let model = quietly(&small(ModelName::Classical(rival), Some(RateMethod::Central))).model;
+        let Predictor::Law(law) = model.predictor() else { continue };
         assert_eq!(law.facts().name, rival.name());
         let (low, high) = data().input_range(0);
         let range = high - low;

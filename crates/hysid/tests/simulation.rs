@@ -11,9 +11,9 @@ use hysid::error::{DataProblem, Error};
 use hysid::fit::identify;
 use hysid::model::{Model, Prediction, Simulation};
 use hysid::network::Family;
-use hysid::options::chosen::ChosenOptions;
-use hysid::options::classical::Rival;
-use hysid::options::{ModelName, Request};
+use hysid::options::chosen::NamedOptions;
+use hysid::options::classical::ClassicalModel;
+use hysid::options::{FitSpec, ModelName};
 
 use small_models::{record, small};
 
@@ -35,7 +35,7 @@ fn with_rate(rows: usize, name: &str) -> Record {
     record(rows, name).with_given_rate(rate).unwrap()
 }
 
-fn fitted(records: Vec<Record>, request: &Request) -> Model {
+fn fitted(records: Vec<Record>, request: &FitSpec) -> Model {
     let inputs = records[0].inputs().len();
     let names =
         ColumnNames { rate: records[0].given_rate().map(|_| "v".into()), ..ColumnNames::plain(inputs) };
@@ -117,11 +117,11 @@ fn every_model_with_every_rate_is_the_same_in_blocks() {
 #[test]
 fn further_inputs_and_what_a_model_makes_of_its_input_are_the_same_in_blocks() {
     for method in METHODS {
-        let mut chosen = ChosenOptions::of(serde_json::from_str(OPTIONS).unwrap()).unwrap();
+        let mut chosen = NamedOptions::of(serde_json::from_str(OPTIONS).unwrap()).unwrap();
         chosen.model = Some(ModelName::Network(Family::XpnnPlus));
         let request = chosen.request(Some(method), true);
         let model = fitted(vec![rich(200, "a"), rich(150, "b")], &request);
-        assert!(model.preprocessing().companding.is_some() && model.preprocessing().history.is_some());
+        assert!(model.input_transform().companding.is_some() && model.input_transform().history.is_some());
         check(&model, &[rich(2100, "long"), rich(3, "short")], &format!("{method:?}"));
     }
 }
@@ -146,7 +146,8 @@ fn an_ensemble_and_its_band_are_the_same_in_blocks() {
             }
         }
     }
-    let single = fitted(vec![record(150, "a")], &small(ModelName::Rival(Rival::PrandtlIshlinskii), None));
+    let single =
+        fitted(vec![record(150, "a")], &small(ModelName::Classical(ClassicalModel::PrandtlIshlinskii), None));
     assert!(
         single.simulation_with_band(0.9).is_err()
             && single.predict(&record(9, "r").excitation(), 0.9).is_err()
@@ -155,8 +156,10 @@ fn an_ensemble_and_its_band_are_the_same_in_blocks() {
 
 #[test]
 fn errors_in_blocks_are_those_of_the_whole_to_the_last_bit() {
-    let (model, record) =
-        (fitted(vec![record(150, "a")], &small(ModelName::Rival(Rival::Masing), None)), record(3000, "long"));
+    let (model, record) = (
+        fitted(vec![record(150, "a")], &small(ModelName::Classical(ClassicalModel::Masing), None)),
+        record(3000, "long"),
+    );
     let simulated = model.simulate(&record).unwrap();
     let (mut whole, mut parts) = (ErrorSums::default(), ErrorSums::default());
     whole.add(record.output(), &simulated);
@@ -192,7 +195,7 @@ fn a_step_is_finite_for_any_finite_input_and_rate() {
 fn a_sample_that_is_refused_changes_nothing() {
     let options = serde_json::json!({ "model": "xpnn+", "members": 3, "stops": 3, "hidden": 2, "epochs": 2, "history": true });
     let serde_json::Value::Object(options) = options else { panic!("a map") };
-    let request = ChosenOptions::of(options).unwrap().request(Some(RateMethod::Backward), false);
+    let request = NamedOptions::of(options).unwrap().request(Some(RateMethod::Backward), false);
     let model = fitted(vec![record(150, "r")], &request);
     let mut stepper = model.stepper();
     stepper.step(&[0.1], 0.0, None).unwrap();

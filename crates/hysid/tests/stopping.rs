@@ -8,9 +8,9 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::identify;
 use hysid::fit::network::{Checkpoint, Progress, fit, resume};
-use hysid::options::chosen::ChosenOptions;
+use hysid::options::chosen::NamedOptions;
 use hysid::options::network::FitOptions;
-use hysid::options::{ModelName, Request};
+use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 use serde_json::json;
 
@@ -41,12 +41,12 @@ fn noisy(rows: usize, records: usize) -> Dataset {
     Dataset::new(ColumnNames::plain(1), (0..records).map(record).collect()).unwrap()
 }
 
-fn request(options: serde_json::Value) -> Request {
+fn request(options: serde_json::Value) -> FitSpec {
     let serde_json::Value::Object(options) = options else { panic!("a map") };
-    ChosenOptions::of(options).unwrap().request(Some(RateMethod::Central), false)
+    NamedOptions::of(options).unwrap().request(Some(RateMethod::Central), false)
 }
 
-fn assert_stops_soon(data: &Dataset, request: &Request) {
+fn assert_stops_soon(data: &Dataset, request: &FitSpec) {
     let began = Instant::now();
     let mut observer = |_: &Progress| match began.elapsed() >= LIMIT {
         true => ControlFlow::Break(()),

@@ -10,7 +10,7 @@ use hysid::fit::network::{Fit, Progress, fit};
 use hysid::model::history::{Phase, Run};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::network::FitOptions;
 use hysid::options::network::Regularisation;
 use hysid::specimens::with_noise;
@@ -305,7 +305,7 @@ fn validation_is_that_of_a_cross_validation() {
     let data = dataset(vec![record("a", 1.0, 0.0), record("b", 1.4, 0.0), record("c", 7.0, 300.0)]);
     let options = FitOptions { starts: 3, epochs: 6, ridge: Some(1e-6), ..small(Family::Pnn, 3, 0) };
     let validation = quietly(&data, &options).model.provenance().validation.clone().unwrap();
-    let expected = cross_validate(&data, &Request::Network(options), 5, &mut |_| ControlFlow::Continue(()));
+    let expected = cross_validate(&data, &FitSpec::Network(options), 5, &mut |_| ControlFlow::Continue(()));
     let expected = expected.unwrap().unseen;
     assert_eq!(validation.samples, 180);
     assert!((validation.rmse - expected.rmse).abs() < 1e-9 * expected.rmse, "{validation:?} {expected:?}");

@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
-use hysid::options::chosen::ChosenOptions;
+use hysid::options::chosen::NamedOptions;
 use hysid::options::table::{FitOption, OPTIONS, Values};
 use serde_json::{Map, Value};
 
@@ -11,7 +11,7 @@ const IN_SHORT_HELP: [&str; 4] = ["model", "members", "seed", "validation"];
 
 /// What was asked for of the model and its training.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ModelOptions(pub ChosenOptions);
+pub struct ModelOptions(pub NamedOptions);
 
 impl Args for ModelOptions {
     fn augment_args(command: Command) -> Command {
@@ -27,7 +27,7 @@ impl FromArgMatches for ModelOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let given =
             OPTIONS.iter().filter_map(|option| Some((option.name.to_string(), value(option, matches)?)));
-        let options = ChosenOptions::of(given.collect::<Map<_, _>>());
+        let options = NamedOptions::of(given.collect::<Map<_, _>>());
         options.map(Self).map_err(|error| clap::Error::raw(clap::error::ErrorKind::ValueValidation, error))
     }
 

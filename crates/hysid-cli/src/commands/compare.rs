@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use hysid::data::summary::Summary;
 use hysid::options::ModelName;
-use hysid::options::chosen::ChosenOptions;
+use hysid::options::chosen::NamedOptions;
 use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
@@ -40,7 +40,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     let mut requests = Vec::new();
     for &model in &models {
         let chosen =
-            ChosenOptions { model: Some(model), seed: Some(arguments.seed), ..ChosenOptions::default() };
+            NamedOptions { model: Some(model), seed: Some(arguments.seed), ..NamedOptions::default() };
         let request =
             request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?;
         requests.extend(request.variants());

@@ -9,9 +9,9 @@ use hysid::fit::network::Checkpoint;
 use hysid::model::Model;
 use hysid::model::selection::Selection;
 use hysid::network::Architecture;
-use hysid::options::chosen::{ChosenOptions, Ignored, RateChoice};
+use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
-use hysid::options::{ModelName, Request};
+use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 use hysid_files::{Destination, Kind};
 
@@ -40,7 +40,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let chosen = &arguments.model.0;
     let request = match &begun {
-        Some(begun) => Request::Network(options_of(begun, &arguments.columns.rate)?),
+        Some(begun) => FitSpec::Network(options_of(begun, &arguments.columns.rate)?),
         None => request(chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?,
     };
     if arguments.checkpoint.is_some() {
@@ -127,25 +127,25 @@ fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
 }
 
 /// Refuses checkpoints of what has none.
-fn check_checkpoints(request: &Request) -> Result<()> {
+fn check_checkpoints(request: &FitSpec) -> Result<()> {
     let what = match request {
-        Request::Network(_) => return Ok(()),
-        Request::Classical(options) => options.model.name(),
-        Request::Auto(options) if options.only.is_some() => "an ensemble",
-        Request::Auto(_) => "auto",
+        FitSpec::Network(_) => return Ok(()),
+        FitSpec::Classical(options) => options.model.name(),
+        FitSpec::Auto(options) if options.only.is_some() => "an ensemble",
+        FitSpec::Auto(_) => "auto",
     };
     let advice = "only a single network has, such as that of --model xpnn+";
     Err(Usage(format!("{what} has no checkpoints: {advice}")).into())
 }
 
 /// What the options ask for, with these columns.
-pub fn request(chosen: &ChosenOptions, rate: &RateOption, roles: &Roles) -> Result<Request> {
+pub fn request(chosen: &NamedOptions, rate: &RateOption, roles: &Roles) -> Result<FitSpec> {
     let is_decided = !matches!(rate, RateOption::Choice(RateChoice::Auto | RateChoice::None));
     Ok(chosen.request(rate_method(rate, roles, chosen.model())?, is_decided))
 }
 
 /// Warns of options that the model ignores.
-pub fn warn_of_ignored(chosen: &ChosenOptions) {
+pub fn warn_of_ignored(chosen: &NamedOptions) {
     for Ignored { option, by } in chosen.ignored() {
         warning(format_args!("{by} ignores --{}", flag(option)));
     }

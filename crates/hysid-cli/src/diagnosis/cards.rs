@@ -37,7 +37,7 @@ fn card(finding: &Finding, quantities: &Quantities, place: &str) -> Card {
     parts.extend(finding.experiment.as_ref().map(|experiment| {
         Part::Paragraph(Text::from(Piece::Strong("To tell:".into())).and(Piece::Plain(sentence(experiment))))
     }));
-    let place = if place.is_empty() { String::new() } else { format!(" Seen in {place}.") };
+    let place = if place.is_empty() { String::new() } else { format!(" Transformed in {place}.") };
     parts.push(Part::note(numbers(finding) + &place));
     let heading = Text::from(badge(finding.verdict)).and(Piece::Plain(heading(finding)));
     Card { anchor: finding.property.name().into(), heading, parts }

@@ -1,6 +1,6 @@
 //! What the data doctor complains of, and which model is advised.
 
-use hysid::diagnosis::{Advice, Complaint, Severity, Verdict};
+use hysid::diagnosis::{Advice, DataIssue, Severity, Verdict};
 use hysid_document::plain::indented;
 use hysid_document::{Item, Part};
 
@@ -10,7 +10,7 @@ use super::cards::sentence;
 const INDENT: usize = 4;
 
 /// The complaints under a heading; none is told too.
-pub fn doctor_text(complaints: &[Complaint]) -> String {
+pub fn doctor_text(complaints: &[DataIssue]) -> String {
     let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
     match complaints.len() {
         0 => "data doctor: nothing to complain of\n".into(),
@@ -19,11 +19,11 @@ pub fn doctor_text(complaints: &[Complaint]) -> String {
 }
 
 /// A complaint with how much it matters and whom it concerns.
-fn labelled(complaint: &Complaint) -> String {
+fn labelled(complaint: &DataIssue) -> String {
     format!("{}: {}", severity(complaint), complaint.statement)
 }
 
-fn severity(complaint: &Complaint) -> &'static str {
+fn severity(complaint: &DataIssue) -> &'static str {
     match complaint.severity {
         Severity::Warning => "warning",
         Severity::Note => "note",
@@ -69,8 +69,8 @@ pub fn verdict(advice: &Advice) -> [Part; 2] {
 }
 
 /// The complaints on a page.
-pub fn doctor_section(complaints: &[Complaint]) -> Part {
-    let item = |complaint: &Complaint| Item {
+pub fn doctor_section(complaints: &[DataIssue]) -> Part {
+    let item = |complaint: &DataIssue| Item {
         text: sentence(&labelled(complaint)).into(),
         is_warning: complaint.severity == Severity::Warning,
     };

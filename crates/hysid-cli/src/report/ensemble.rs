@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use hysid::model::selection::{CandidateResult, Selection};
-use hysid::model::{Ensemble, Group, Model, Speaker};
+use hysid::model::{Ensemble, Group, Model, NodeKind};
 use hysid_document::{Cell, Part, Table, number};
 
 use super::Report;
@@ -20,7 +20,7 @@ pub fn section(report: &Report) -> Option<Part> {
     let (counting, others): (Vec<&CandidateResult>, Vec<&CandidateResult>) =
         selection.candidates.iter().partition(|one| counts(one));
     let (heading, content) = match report.model.ensemble() {
-        Some(ensemble) => ("The ensemble", voices(report, selection, ensemble, counting)),
+        Some(ensemble) => ("The ensemble", nodes(report, selection, ensemble, counting)),
         None => ("How it was chosen", single(selection, counting)),
     };
     let mut parts = vec![Part::Definitions(lines)];
@@ -35,7 +35,7 @@ fn counts(candidate: &CandidateResult) -> bool {
 }
 
 /// Those that answer together, what each adds and what it costs.
-fn voices(
+fn nodes(
     report: &Report,
     selection: &Selection,
     ensemble: &Ensemble,
@@ -146,18 +146,18 @@ fn held_out(selection: &Selection) -> Part {
 /// The places of a candidate's members.
 fn members_of(ensemble: &Ensemble, candidate: &CandidateResult) -> Vec<usize> {
     let named = |group: &'_ Group, name: &str| -> Option<Group> {
-        group.voices.iter().find_map(|voice| match &voice.who {
-            Speaker::Group(group) if group.name == name => Some(group.clone()),
+        group.nodes.iter().find_map(|node| match &node.kind {
+            NodeKind::Group(group) if group.name == name => Some(group.clone()),
             _ => None,
         })
     };
     let found = named(ensemble.group(), &candidate.kind).and_then(|kind| named(&kind, &candidate.name));
-    let voices = found.map_or_else(Vec::new, |group| group.voices);
-    let member = |voice: &hysid::model::Voice| match voice.who {
-        Speaker::Member(place) => Some(place),
-        Speaker::Group(_) => None,
+    let nodes = found.map_or_else(Vec::new, |group| group.nodes);
+    let member = |node: &hysid::model::Node| match node.kind {
+        NodeKind::Member(place) => Some(place),
+        NodeKind::Group(_) => None,
     };
-    voices.iter().filter_map(member).collect()
+    nodes.iter().filter_map(member).collect()
 }
 
 /// Nanoseconds for a sample on the training data; `None` if it cannot be run there.

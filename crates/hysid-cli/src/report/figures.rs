@@ -3,7 +3,7 @@
 use hysid::data::record::Record;
 use hysid::model::history::Phase;
 use hysid::model::{Model, Provenance};
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::network::Method;
 use hysid_document::chart::thin::thin_path;
 use hysid_document::{Chart, Colour, Curve, Part, convergence, count, unit};
@@ -118,7 +118,7 @@ pub fn convergence_section(model: &Model) -> Option<Part> {
 fn convergence_words(provenance: &Provenance) -> String {
     let on_all_data = provenance.runs.iter().filter(|run| run.phase == Phase::AllData);
     let mut words = match (&provenance.options, provenance.options.starts()) {
-        (Request::Network(_), starts) if starts > 1 => format!(
+        (FitSpec::Network(_), starts) if starts > 1 => format!(
             "Of {} on all data, number {} has the lowest error. ",
             count(starts, "random start"),
             provenance.chosen_start + 1,

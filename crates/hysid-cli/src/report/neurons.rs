@@ -136,7 +136,7 @@ fn stop_note(report: &Report, stops: &[Stop]) -> Part {
 
 fn channel_name(report: &Report, channel: usize) -> String {
     match (channel, network(report).architecture().rate) {
-        (1, true) if report.model.preprocessing().rate_companding.is_some() => "the spread rate".into(),
+        (1, true) if report.model.input_transform().rate_companding.is_some() => "the spread rate".into(),
         (1, true) => "the rate".into(),
         (channel, rate) => input_name(report, channel - usize::from(rate && channel > 0)),
     }
@@ -147,7 +147,7 @@ fn input_name(report: &Report, input: usize) -> String {
     let names = &report.model.names().inputs;
     let name = |input: usize| unit::split(&names[input]).0;
     match input.checked_sub(names.len()) {
-        None if input == 0 && report.model.preprocessing().companding.is_some() => seen_label(report),
+        None if input == 0 && report.model.input_transform().companding.is_some() => seen_label(report),
         None => name(input),
         Some(0) => format!("largest |{}| so far", name(0)),
         Some(_) => format!("path of {} so far", name(0)),
@@ -159,7 +159,7 @@ fn strength_left(report: &Report, stops: &[Stop]) -> Option<Vec<f64>> {
     let data = report.sets.first()?.data;
     let longest: &Record = data.records().iter().max_by_key(|record| record.len())?;
     let longest = Dataset::new(data.names().clone(), vec![longest.clone()]).ok()?;
-    let (seen, rate) = report.model.preprocessing().data(&longest, report.model.rate()).ok()?;
+    let (seen, rate) = report.model.input_transform().data(&longest, report.model.rate()).ok()?;
     let longest = &seen.records()[0];
     let drive = scaling(report).drive(longest, network(report).architecture(), rate).ok()?;
     let left = |stop: &Stop| {

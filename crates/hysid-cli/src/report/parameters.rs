@@ -1,7 +1,7 @@
 //! The parameters of a classical law, in the field's symbols and the user's units.
 
 use hysid::data::unit::of_column;
-use hysid::model::Body;
+use hysid::model::Predictor;
 use hysid_document::{Cell, Part, Table, count, number};
 
 use super::{Report, seen_label};
@@ -11,9 +11,9 @@ const MOST_ROWS: usize = 60;
 
 /// The section on the parameters; `None` for a network, whose neurons are shown.
 pub fn section(report: &Report) -> Option<Part> {
-    let Body::Law(law) = report.model.body() else { return None };
+    let Predictor::Law(law) = report.model.predictor() else { return None };
     let names = report.model.names();
-    let is_companded = report.model.preprocessing().companding.is_some();
+    let is_companded = report.model.input_transform().companding.is_some();
     let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
     let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
     let parameters = law.parameters();

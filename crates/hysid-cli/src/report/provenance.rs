@@ -1,7 +1,7 @@
 //! What was understood of the data, warnings, and how the model came about.
 
 use hysid::data::rate::RateMethod;
-use hysid::options::Request;
+use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
 use hysid::options::network::FitOptions;
@@ -41,12 +41,12 @@ pub fn section(report: &Report) -> Part {
         Some(RateMethod::SavitzkyGolay) => "Savitzky-Golay",
     };
     let mut pairs = match &provenance.options {
-        Request::Network(options) => of_network(report, options),
-        Request::Classical(options) => of_rival(options),
-        Request::Auto(options) => of_auto(report, options),
+        FitSpec::Network(options) => of_network(report, options),
+        FitSpec::Classical(options) => of_rival(options),
+        FitSpec::Auto(options) => of_auto(report, options),
     };
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
-    let preprocessing = report.model.preprocessing();
+    let preprocessing = report.model.input_transform();
     for (input, origin) in report.model.names().inputs.iter().zip(&preprocessing.origins) {
         say(&format!("{input} is measured from"), number(*origin, 6));
     }

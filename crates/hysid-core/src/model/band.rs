@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::model::ensemble::Votes;
+use crate::model::ensemble::Predictions;
 
 /// Probabilities that the factors are kept for.
 const LEVELS: [f64; 10] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.975, 0.99];
@@ -71,7 +71,7 @@ pub struct HeldOutRow {
 }
 
 /// Half the distance between the quantiles that a normal distribution has at one deviation on each side.
-pub fn disagreement(votes: &mut Votes) -> f64 {
+pub fn disagreement(votes: &mut Predictions) -> f64 {
     0.5 * (votes.quantile(0.841) - votes.quantile(0.159))
 }
 
@@ -91,16 +91,16 @@ impl Band {
         if rows.len() < FEWEST_ROWS {
             return None;
         }
-        let mut errors = Votes::default();
-        rows.iter().for_each(|row| errors.cast(row.error.abs(), row.weight));
+        let mut errors = Predictions::default();
+        rows.iter().for_each(|row| errors.push(row.error.abs(), row.weight));
         // A typical error, so that rows where all members agree by chance do not ask for factors beyond all
         // reason.
         let floor = 0.5 * errors.quantile(0.5).max(f64::MIN_POSITIVE);
         let factors = |of: &[HeldOutRow]| {
             let rows = if of.len() < FEWEST_ROWS { rows } else { of };
-            let mut scores = Votes::default();
+            let mut scores = Predictions::default();
             rows.iter()
-                .for_each(|row| scores.cast(row.error.abs() / floor.hypot(row.disagreement), row.weight));
+                .for_each(|row| scores.push(row.error.abs() / floor.hypot(row.disagreement), row.weight));
             LEVELS.map(|level| scores.quantile(of_rows(level, rows.len()))).to_vec()
         };
         let (mut of_outside, of_inside) = (factors(&outside), factors(&inside));

@@ -5,9 +5,9 @@
 //! w_i = (1-o) a_i/Σa + o b_i/Σb           where that is 0 for all i          theory.md (11.9)
 //! ```
 //!
-//! The median, not the mean: a single fit that runs away does not move it. Voices come in groups that first
+//! The median, not the mean: a single fit that runs away does not move it. Nodes come in groups that first
 //! agree among themselves (fits of one kind from several starts, kinds of one family), so that a kind does
-//! not win by being many. A voice that is good inside the range it was trained on need not be good outside,
+//! not win by being many. A node that is good inside the range it was trained on need not be good outside,
 //! so it has two weights, and `o` tells how far outside the record has been.
 
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ const WAY_OUT: f64 = 0.06;
 /// Groups within groups, at most.
 const DEEPEST: usize = 8;
 
-/// Several models that answer together.
+/// Several models whose predictions are combined by nested weighted medians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ensemble {
     members: Vec<Model>,
@@ -30,37 +30,39 @@ pub struct Ensemble {
     range: (f64, f64),
 }
 
-/// Voices that agree on one answer.
+/// Nodes that are combined by their weighted median.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Group {
     /// What they have in common.
     pub name: String,
-    /// Those who agree.
-    pub voices: Vec<Voice>,
+    /// Its members and groups.
+    #[serde(rename = "voices")]
+    pub nodes: Vec<Node>,
 }
 
-/// One that is heard.
+/// A weighted node of the ensemble.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Voice {
-    /// What it counts.
+pub struct Node {
+    /// Its weights in its group.
     pub weights: Weights,
-    /// Who it is.
-    pub who: Speaker,
+    /// A member or a group.
+    #[serde(rename = "who")]
+    pub kind: NodeKind,
 }
 
-/// Who is heard.
+/// What a node is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Speaker {
+pub enum NodeKind {
     /// A member, by its place among all.
     Member(usize),
-    /// The answer of a group.
+    /// The weighted median of a group.
     Group(Group),
 }
 
-/// What a voice counts in its group.
+/// Weights of a node in its group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
@@ -111,21 +113,21 @@ impl Excursion {
 
 /// Value and weight of each member, and room to sort them.
 #[derive(Debug, Clone, Default)]
-pub struct Votes(Vec<(f64, f64)>);
+pub struct Predictions(Vec<(f64, f64)>);
 
-impl Votes {
+impl Predictions {
     /// Forgets all values.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
     /// Adds the value of a member with its weight.
-    pub fn cast(&mut self, value: f64, weight: f64) {
+    pub fn push(&mut self, value: f64, weight: f64) {
         self.0.push((value, weight));
     }
 
-    /// Gives the votes other weights, in the order in which they were cast.
-    fn weigh_anew(&mut self, weights: impl Iterator<Item = f64>) {
+    /// Gives the predictions other weights, in the order in which they were added.
+    fn set_weights(&mut self, weights: impl Iterator<Item = f64>) {
         self.0.iter_mut().zip(weights).for_each(|(vote, weight)| vote.1 = weight);
     }
 
@@ -134,7 +136,7 @@ impl Votes {
         self.0.iter().map(|(_, weight)| weight).sum()
     }
 
-    /// The weighted quantile, theory.md (11.3): each vote stands at the middle of its weight, and values
+    /// The weighted quantile, theory.md (11.3): each value stands at the middle of its weight, and values
     /// between are interpolated. With equal weights, `quantile(0.5)` is the ordinary median.
     pub fn quantile(&mut self, level: f64) -> f64 {
         self.0.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -163,7 +165,7 @@ impl Ensemble {
     /// were trained on.
     ///
     /// # Errors
-    /// A group without voices, a member that is not there, an ensemble as a member, members of different
+    /// A group without nodes, a member that is not there, an ensemble as a member, members of different
     /// inputs, weights that are negative, not finite or all 0, inside and outside.
     pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
@@ -204,7 +206,7 @@ impl Ensemble {
 
 impl Group {
     fn check(&self, members: usize, deepest: usize) -> Result<()> {
-        if self.voices.is_empty() {
+        if self.nodes.is_empty() {
             return Err(Error::Parts("an ensemble needs at least one member".into()));
         }
         if deepest == 0 {
@@ -213,16 +215,16 @@ impl Group {
         let (inside, outside) = self.sums();
         let is_weight = |weight: f64| (0.0..=1e9).contains(&weight);
         let are_weights =
-            |Voice { weights, .. }: &Voice| is_weight(weights.inside) && is_weight(weights.outside);
-        if !self.voices.iter().all(are_weights) || inside.max(outside) < 1e-9 {
+            |Node { weights, .. }: &Node| is_weight(weights.inside) && is_weight(weights.outside);
+        if !self.nodes.iter().all(are_weights) || inside.max(outside) < 1e-9 {
             let problem = "a group of an ensemble needs weights from 0 to 1e9 that are not all 0";
             return Err(Error::Parts(problem.into()));
         }
-        for voice in &self.voices {
-            match &voice.who {
-                Speaker::Group(group) => group.check(members, deepest - 1)?,
-                Speaker::Member(member) if *member < members => {}
-                Speaker::Member(member) => {
+        for node in &self.nodes {
+            match &node.kind {
+                NodeKind::Group(group) => group.check(members, deepest - 1)?,
+                NodeKind::Member(member) if *member < members => {}
+                NodeKind::Member(member) => {
                     return Err(Error::Parts(format!("an ensemble of {members} has no member {member}")));
                 }
             }
@@ -232,33 +234,33 @@ impl Group {
 
     /// The same with something else in the place of each member, or nothing; `None` if nothing is left. The
     /// weights of each group sum to 1; a class whose weights are all gone has those of the other.
-    pub fn map_members(&self, with: &mut impl FnMut(usize) -> Option<Speaker>) -> Option<Group> {
-        let mut voices = Vec::new();
-        for Voice { weights, who } in &self.voices {
-            let who = match who {
-                Speaker::Member(member) => with(*member),
-                Speaker::Group(group) => group.map_members(with).map(Speaker::Group),
+    pub fn map_members(&self, with: &mut impl FnMut(usize) -> Option<NodeKind>) -> Option<Group> {
+        let mut nodes = Vec::new();
+        for Node { weights, kind } in &self.nodes {
+            let kind = match kind {
+                NodeKind::Member(member) => with(*member),
+                NodeKind::Group(group) => group.map_members(with).map(NodeKind::Group),
             };
-            voices.extend(who.map(|who| Voice { weights: *weights, who }));
+            nodes.extend(kind.map(|kind| Node { weights: *weights, kind }));
         }
-        let mut group = Group { name: self.name.clone(), voices };
+        let mut group = Group { name: self.name.clone(), nodes };
         let (inside, outside): (Vec<f64>, Vec<f64>) =
             (group.blended(0.0).collect(), group.blended(1.0).collect());
-        for (voice, (inside, outside)) in group.voices.iter_mut().zip(inside.into_iter().zip(outside)) {
-            voice.weights = Weights { inside, outside };
+        for (node, (inside, outside)) in group.nodes.iter_mut().zip(inside.into_iter().zip(outside)) {
+            node.weights = Weights { inside, outside };
         }
         let (inside, outside) = group.sums();
         (inside > 0.0 && outside > 0.0).then_some(group)
     }
 
-    /// What each member counts in the whole, inside and outside.
+    /// Weights of each member in the whole, inside and outside.
     pub fn shares(&self) -> Vec<(usize, Weights)> {
         let mut shares = Vec::new();
         let weights = self.blended(0.0).zip(self.blended(1.0));
-        for (voice, (inside, outside)) in self.voices.iter().zip(weights) {
-            match &voice.who {
-                Speaker::Member(member) => shares.push((*member, Weights { inside, outside })),
-                Speaker::Group(group) => {
+        for (node, (inside, outside)) in self.nodes.iter().zip(weights) {
+            match &node.kind {
+                NodeKind::Member(member) => shares.push((*member, Weights { inside, outside })),
+                NodeKind::Group(group) => {
                     shares.extend(group.shares().into_iter().map(|(member, weights)| {
                         let (inside, outside) = (inside * weights.inside, outside * weights.outside);
                         (member, Weights { inside, outside })
@@ -271,7 +273,7 @@ impl Group {
 
     /// Sums of the weights inside and outside.
     fn sums(&self) -> (f64, f64) {
-        let weights = || self.voices.iter().map(|voice| voice.weights);
+        let weights = || self.nodes.iter().map(|node| node.weights);
         (weights().map(|weights| weights.inside).sum(), weights().map(|weights| weights.outside).sum())
     }
 
@@ -279,7 +281,7 @@ impl Group {
     /// (11.9). A class without weights has those of the other.
     fn blended(&self, outside: f64) -> impl Iterator<Item = f64> {
         let (a, b) = self.sums();
-        self.voices.iter().map(move |Voice { weights, .. }| {
+        self.nodes.iter().map(move |Node { weights, .. }| {
             let of_inside = if a > 0.0 { weights.inside / a } else { weights.outside / b };
             let of_outside = if b > 0.0 { weights.outside / b } else { weights.inside / a };
             (1.0 - outside) * of_inside + outside * of_outside
@@ -288,80 +290,85 @@ impl Group {
 
     /// Sum of the weights of (11.4).
     fn sum_at(&self, outside: f64) -> f64 {
-        self.voices.iter().map(|voice| voice.weights.at(outside)).sum()
+        self.nodes.iter().map(|node| node.weights.at(outside)).sum()
     }
 
     fn remembers_excursions(&self) -> bool {
         // Only the proportions of the weights count.
-        let first = self.voices[0].weights;
-        self.voices.iter().any(|Voice { weights, who }| {
+        let first = self.nodes[0].weights;
+        self.nodes.iter().any(|Node { weights, kind }| {
             weights.inside * first.outside != weights.outside * first.inside
-                || matches!(who, Speaker::Group(group) if group.remembers_excursions())
+                || matches!(kind, NodeKind::Group(group) if group.remembers_excursions())
         })
     }
 
     fn depth(&self) -> usize {
-        let of_voice = |voice: &Voice| match &voice.who {
-            Speaker::Member(_) => 0,
-            Speaker::Group(group) => group.depth(),
+        let of_voice = |node: &Node| match &node.kind {
+            NodeKind::Member(_) => 0,
+            NodeKind::Group(group) => group.depth(),
         };
-        1 + self.voices.iter().map(of_voice).max().unwrap_or_default()
+        1 + self.nodes.iter().map(of_voice).max().unwrap_or_default()
     }
 
-    /// What the group answers; `levels` has room for the votes of this group and of those below.
-    fn answer(&self, outside: f64, of_member: &impl Fn(usize) -> f64, levels: &mut [Votes]) -> f64 {
-        let Some((votes, deeper)) = levels.split_first_mut() else { return f64::NAN };
-        votes.clear();
-        for voice in &self.voices {
-            let value = match &voice.who {
-                Speaker::Member(member) => of_member(*member),
-                Speaker::Group(group) => group.answer(outside, of_member, deeper),
+    /// The weighted median of the group; `levels` has room for the predictions of this group and of those below.
+    fn median(&self, outside: f64, of_member: &impl Fn(usize) -> f64, levels: &mut [Predictions]) -> f64 {
+        let Some((predictions, deeper)) = levels.split_first_mut() else { return f64::NAN };
+        predictions.clear();
+        for node in &self.nodes {
+            let value = match &node.kind {
+                NodeKind::Member(member) => of_member(*member),
+                NodeKind::Group(group) => group.median(outside, of_member, deeper),
             };
-            votes.cast(value, voice.weights.at(outside));
+            predictions.push(value, node.weights.at(outside));
         }
-        if votes.weight() == 0.0 {
-            votes.weigh_anew(self.blended(outside));
+        if predictions.weight() == 0.0 {
+            predictions.set_weights(self.blended(outside));
         }
-        votes.quantile(0.5)
+        predictions.quantile(0.5)
     }
 
-    /// Casts the votes of all members below, which share out `share`.
-    fn gather(&self, outside: f64, share: f64, of_member: &impl Fn(usize) -> f64, all: &mut Votes) {
+    /// Collects the predictions of all members below, whose weights sum to `share`.
+    fn gather(&self, outside: f64, share: f64, of_member: &impl Fn(usize) -> f64, all: &mut Predictions) {
         let sum = self.sum_at(outside);
-        let of_11_4 = self.voices.iter().map(|voice| voice.weights.at(outside) / sum);
+        let of_11_4 = self.nodes.iter().map(|node| node.weights.at(outside) / sum);
         let mut blended = self.blended(outside);
-        for (voice, weight) in self.voices.iter().zip(of_11_4) {
+        for (node, weight) in self.nodes.iter().zip(of_11_4) {
             let share = share * if sum > 0.0 { weight } else { blended.next().unwrap_or_default() };
-            match &voice.who {
-                Speaker::Member(member) => all.cast(of_member(*member), share),
-                Speaker::Group(group) => group.gather(outside, share, of_member, all),
+            match &node.kind {
+                NodeKind::Member(member) => all.push(of_member(*member), share),
+                NodeKind::Group(group) => group.gather(outside, share, of_member, all),
             }
         }
     }
 }
 
-/// Room to hear all voices of a row in.
+/// Buffers for the medians of one row.
 #[derive(Debug, Clone)]
-pub struct Council {
-    /// Votes of the group that is being heard, at each depth.
-    levels: Vec<Votes>,
-    /// Votes of all members, each with what it counts in the whole.
-    all: Votes,
+pub struct MedianBuffers {
+    /// Predictions of the group at each depth.
+    levels: Vec<Predictions>,
+    /// Predictions of all members, each with its weight in the whole.
+    all: Predictions,
 }
 
-impl Council {
-    /// Room for a group and all groups in it.
+impl MedianBuffers {
+    /// Buffers for a group and all groups in it.
     pub fn new(group: &Group) -> Self {
-        Self { levels: vec![Votes::default(); group.depth()], all: Votes::default() }
+        Self { levels: vec![Predictions::default(); group.depth()], all: Predictions::default() }
     }
 
-    /// What all answer together where each member says `of_member`.
+    /// The output of the ensemble, where `of_member` is the prediction of each member.
     pub fn output(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> f64 {
-        group.answer(outside, &of_member, &mut self.levels)
+        group.median(outside, &of_member, &mut self.levels)
     }
 
-    /// The votes of all members.
-    pub fn everybody(&mut self, group: &Group, outside: f64, of_member: impl Fn(usize) -> f64) -> &mut Votes {
+    /// The predictions of all members with their weights.
+    pub fn predictions(
+        &mut self,
+        group: &Group,
+        outside: f64,
+        of_member: impl Fn(usize) -> f64,
+    ) -> &mut Predictions {
         self.all.clear();
         group.gather(outside, 1.0, &of_member, &mut self.all);
         &mut self.all
@@ -372,8 +379,8 @@ impl Council {
 mod tests {
     use super::*;
 
-    fn quantile(votes: &[(f64, f64)], level: f64) -> f64 {
-        Votes(votes.to_vec()).quantile(level)
+    fn quantile(predictions: &[(f64, f64)], level: f64) -> f64 {
+        Predictions(predictions.to_vec()).quantile(level)
     }
 
     #[test]
@@ -384,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vote_without_weight_counts_nothing_and_one_with_most_decides() {
+    fn a_value_without_weight_counts_nothing_and_one_with_most_decides() {
         assert_eq!(quantile(&[(-9.0, 0.0), (1.0, 1.0), (9.0, 0.0)], 0.5), 1.0);
         let near = quantile(&[(0.0, 1.0), (1.0, 1e-9), (-1.0, 1e-9)], 0.5);
         assert!(near.abs() < 1e-8, "{near}");
@@ -392,22 +399,22 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_rise_with_their_level_and_stay_among_the_votes() {
-        let votes = [(3.0, 0.2), (-1.0, 1.0), (0.5, 0.7), (2.0, 0.1)];
+    fn quantiles_rise_with_their_level_and_stay_among_the_values() {
+        let predictions = [(3.0, 0.2), (-1.0, 1.0), (0.5, 0.7), (2.0, 0.1)];
         let mut last = f64::NEG_INFINITY;
         for percent in 0..=100 {
-            let value = quantile(&votes, f64::from(percent) / 100.0);
+            let value = quantile(&predictions, f64::from(percent) / 100.0);
             assert!(value >= last && (-1.0..=3.0).contains(&value), "{percent}: {value} after {last}");
             last = value;
         }
     }
 
     fn group(weights: &[(f64, f64)]) -> Group {
-        let voice = |(member, &(inside, outside)): (usize, &(f64, f64))| Voice {
+        let node = |(member, &(inside, outside)): (usize, &(f64, f64))| Node {
             weights: Weights { inside, outside },
-            who: Speaker::Member(member),
+            kind: NodeKind::Member(member),
         };
-        Group { name: "g".into(), voices: weights.iter().enumerate().map(voice).collect() }
+        Group { name: "g".into(), nodes: weights.iter().enumerate().map(node).collect() }
     }
 
     /// theory.md (11.9): a degree at which no member has a weight of (11.4), a class without any.
@@ -416,9 +423,9 @@ mod tests {
         let values = [1.0, 3.0];
         let output = |weights: &[(f64, f64)], outside: f64| {
             let group = group(weights);
-            let mut council = Council::new(&group);
+            let mut council = MedianBuffers::new(&group);
             let output = council.output(&group, outside, |member| values[member]);
-            let all = council.everybody(&group, outside, |member| values[member]);
+            let all = council.predictions(&group, outside, |member| values[member]);
             assert!((all.weight() - 1.0).abs() < 1e-12 && all.quantile(0.5).is_finite());
             output
         };
@@ -444,12 +451,12 @@ mod tests {
     fn weights_that_are_left_sum_to_one() {
         let tree = Group {
             name: "all".into(),
-            voices: vec![
-                Voice {
+            nodes: vec![
+                Node {
                     weights: Weights { inside: 1.0, outside: 0.0 },
-                    who: Speaker::Group(group(&[(1.0, 1e-12), (2.0, 1.0)])),
+                    kind: NodeKind::Group(group(&[(1.0, 1e-12), (2.0, 1.0)])),
                 },
-                Voice { weights: Weights { inside: 3.0, outside: 2.0 }, who: Speaker::Member(2) },
+                Node { weights: Weights { inside: 3.0, outside: 2.0 }, kind: NodeKind::Member(2) },
             ],
         };
         let shares = tree.shares();
@@ -458,12 +465,12 @@ mod tests {
         close(shares[1].1.inside, 0.5 / 3.0);
         close(shares[2].1.outside, 1.0);
         // Without its second member the first group has next to no weight outside; it has all there is.
-        let left = tree.map_members(&mut |member| (member != 1).then_some(Speaker::Member(member))).unwrap();
+        let left = tree.map_members(&mut |member| (member != 1).then_some(NodeKind::Member(member))).unwrap();
         left.check(3, DEEPEST).unwrap();
-        let Speaker::Group(first) = &left.voices[0].who else { panic!("a group") };
-        assert_eq!(first.voices[0].weights, Weights { inside: 1.0, outside: 1.0 });
-        let alone = tree.map_members(&mut |member| (member == 0).then_some(Speaker::Member(0))).unwrap();
-        assert_eq!(alone.voices[0].weights, Weights { inside: 1.0, outside: 1.0 });
+        let NodeKind::Group(first) = &left.nodes[0].kind else { panic!("a group") };
+        assert_eq!(first.nodes[0].weights, Weights { inside: 1.0, outside: 1.0 });
+        let alone = tree.map_members(&mut |member| (member == 0).then_some(NodeKind::Member(0))).unwrap();
+        assert_eq!(alone.nodes[0].weights, Weights { inside: 1.0, outside: 1.0 });
         assert_eq!(tree.map_members(&mut |_| None), None);
     }
 

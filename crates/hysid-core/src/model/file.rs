@@ -11,8 +11,8 @@ use crate::data::record::ColumnNames;
 use crate::data::unit;
 use crate::error::{Error, Result};
 use crate::law::Classical;
-use crate::model::preprocessing::Preprocessing;
-use crate::model::{Band, Body, Ensemble, Group, Model, Provenance, TrainedRanges};
+use crate::model::input_transform::InputTransform;
+use crate::model::{Band, Ensemble, Group, Model, Predictor, Provenance, TrainedRanges};
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Layout, Network};
 use crate::options::ModelName;
@@ -36,8 +36,8 @@ struct File {
     columns: ColumnNames,
     units: Units,
     rate: Option<RateMethod>,
-    #[serde(default, skip_serializing_if = "Preprocessing::is_none")]
-    preprocessing: Preprocessing,
+    #[serde(default, skip_serializing_if = "InputTransform::is_none")]
+    preprocessing: InputTransform,
     trained_ranges: TrainedRanges,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkParts>,
@@ -66,8 +66,8 @@ struct EnsembleParts {
 struct MemberParts {
     model: ModelName,
     rate: Option<RateMethod>,
-    #[serde(default, skip_serializing_if = "Preprocessing::is_none")]
-    preprocessing: Preprocessing,
+    #[serde(default, skip_serializing_if = "InputTransform::is_none")]
+    preprocessing: InputTransform,
     trained_ranges: TrainedRanges,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkParts>,
@@ -195,11 +195,11 @@ impl NetworkParts {
 }
 
 /// The parts of a body: a network, a law or an ensemble.
-fn parts(body: &Body) -> (Option<NetworkParts>, Option<Classical>, Option<EnsembleParts>) {
+fn parts(body: &Predictor) -> (Option<NetworkParts>, Option<Classical>, Option<EnsembleParts>) {
     match body {
-        Body::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
-        Body::Law(law) => (None, Some(law.clone()), None),
-        Body::Ensemble(ensemble) => {
+        Predictor::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
+        Predictor::Law(law) => (None, Some(law.clone()), None),
+        Predictor::Ensemble(ensemble) => {
             let members = ensemble.members().iter().map(MemberParts::of).collect();
             let (range, group) = (ensemble.range(), ensemble.group().clone());
             (None, None, Some(EnsembleParts { range, group, members }))
@@ -330,13 +330,13 @@ fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
     value
 }
 
-fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Body> {
+fn single(network: Option<NetworkParts>, law: Option<Classical>) -> Result<Predictor> {
     match (network, law) {
         (Some(parts), None) => {
             parts.scaling.check()?;
-            Ok(Body::Network { network: parts.network()?, scaling: parts.scaling })
+            Ok(Predictor::Network { network: parts.network()?, scaling: parts.scaling })
         }
-        (None, Some(law)) => Ok(Body::Law(law.validated()?)),
+        (None, Some(law)) => Ok(Predictor::Law(law.validated()?)),
         _ => Err(Error::Parts("it must have either a network or a law".into())),
     }
 }
@@ -346,7 +346,7 @@ fn assemble(file: File) -> Result<Model> {
         None => single(file.network, file.law)?,
         Some(parts) if file.network.is_none() && file.law.is_none() => {
             let members = parts.members.into_iter().map(|member| member.model(&file.columns));
-            Body::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.group, parts.range)?)
+            Predictor::Ensemble(Ensemble::new(members.collect::<Result<_>>()?, parts.group, parts.range)?)
         }
         Some(_) => return Err(Error::Parts("it is an ensemble and has parts of another model".into())),
     };
@@ -368,12 +368,12 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.trained.check()?;
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {
-        Body::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {
+        Predictor::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {
             network.architecture().inputs.saturating_sub(added)
         }
-        Body::Network { .. } => 0,
-        Body::Law(_) => 1 - added.min(1),
-        Body::Ensemble(_) => model.inputs(),
+        Predictor::Network { .. } => 0,
+        Predictor::Law(_) => 1 - added.min(1),
+        Predictor::Ensemble(_) => model.inputs(),
     };
     if inputs == 0 || [model.names.inputs.len(), model.trained.inputs.len()] != [inputs; 2] {
         return Err(Error::Parts(format!("it does not describe {inputs} inputs throughout")));
@@ -383,7 +383,7 @@ fn checked(model: Model, name: ModelName) -> Result<Model> {
             "its preprocessing does not have an origin for each of {inputs} inputs"
         )));
     }
-    if let Body::Network { network, scaling } = &model.body
+    if let Predictor::Network { network, scaling } = &model.body
         && (network.architecture().rate != model.rate.is_some()
             || model.rate.is_some() != scaling.rate.is_some())
     {

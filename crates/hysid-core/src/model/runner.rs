@@ -8,10 +8,10 @@ use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
 use crate::law::{Classical, ClassicalState, Sample};
 use crate::model::band::disagreement;
-use crate::model::ensemble::{Council, Excursion};
-use crate::model::preprocessing::{Past, Preprocessing};
+use crate::model::ensemble::{Excursion, MedianBuffers};
+use crate::model::input_transform::{InputTransform, Past};
 use crate::model::ranges::Ranges;
-use crate::model::{Body, Ensemble, Model};
+use crate::model::{Ensemble, Model, Predictor};
 use crate::network::free_run::{CHUNK, FreeRun};
 
 /// How sure an output is.
@@ -47,7 +47,7 @@ enum Parts<'m> {
 struct Single<'m> {
     mechanism: Mechanism<'m>,
     /// `None` for a model that sees its input as it is.
-    preprocessing: Option<&'m Preprocessing>,
+    preprocessing: Option<&'m InputTransform>,
     rate: Option<RateMethod>,
     past: Past,
     /// Columns of a chunk as the model sees them.
@@ -67,7 +67,7 @@ struct Members<'m> {
     ensemble: &'m Ensemble,
     members: Vec<Single<'m>>,
     outputs: Vec<Vec<f64>>,
-    council: Council,
+    medians: MedianBuffers,
 }
 
 /// Some rows of a record: inputs in the user's units, rates by method, and the time since the row before.
@@ -83,20 +83,22 @@ impl<'m> Runner<'m> {
     pub fn of_model(model: &'m Model) -> Self {
         let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
         let range = match &model.body {
-            Body::Ensemble(ensemble) => ensemble.range(),
-            Body::Network { .. } | Body::Law(_) => model.trained.inputs[0],
+            Predictor::Ensemble(ensemble) => ensemble.range(),
+            Predictor::Network { .. } | Predictor::Law(_) => model.trained.inputs[0],
         };
         Self { range, excursion: Excursion::beyond(range), ..run }
     }
 
     /// A run of what simulates alone.
     pub fn of_body(
-        body: &'m Body,
-        preprocessing: Option<&'m Preprocessing>,
+        body: &'m Predictor,
+        preprocessing: Option<&'m InputTransform>,
         rate: Option<RateMethod>,
     ) -> Self {
         let (body, range) = match body {
-            Body::Ensemble(ensemble) => (Parts::Ensemble(Box::new(Members::of(ensemble))), ensemble.range()),
+            Predictor::Ensemble(ensemble) => {
+                (Parts::Ensemble(Box::new(Members::of(ensemble))), ensemble.range())
+            }
             body => {
                 let everything = (f64::NEG_INFINITY, f64::INFINITY);
                 (Parts::Single(Box::new(Single::of(body, preprocessing, rate))), everything)
@@ -241,14 +243,14 @@ impl Chunk<'_> {
 
 impl<'m> Single<'m> {
     /// A part without members.
-    fn of(body: &'m Body, preprocessing: Option<&'m Preprocessing>, rate: Option<RateMethod>) -> Self {
+    fn of(body: &'m Predictor, preprocessing: Option<&'m InputTransform>, rate: Option<RateMethod>) -> Self {
         let mechanism = match body {
-            Body::Network { network, scaling } => {
+            Predictor::Network { network, scaling } => {
                 let rate = rate.map(|_| RateMethod::Given);
                 Mechanism::Network(Box::new(FreeRun::new(network, scaling, rate)))
             }
-            Body::Law(law) => Mechanism::Law(law, law.virgin(), Vec::new()),
-            Body::Ensemble(_) => unreachable!("members are networks or laws"),
+            Predictor::Law(law) => Mechanism::Law(law, law.virgin(), Vec::new()),
+            Predictor::Ensemble(_) => unreachable!("members are networks or laws"),
         };
         let preprocessing = preprocessing.filter(|preprocessing| !preprocessing.is_none());
         let (seen, seen_rate) = (Vec::new(), Vec::new());
@@ -256,7 +258,7 @@ impl<'m> Single<'m> {
     }
 
     fn inputs(&self) -> usize {
-        let added = self.preprocessing.map_or(0, Preprocessing::added_inputs);
+        let added = self.preprocessing.map_or(0, InputTransform::added_inputs);
         match &self.mechanism {
             Mechanism::Network(network) => network.inputs() - added,
             Mechanism::Law(..) => 1,
@@ -288,7 +290,7 @@ impl<'m> Single<'m> {
 }
 
 /// Inputs as a model sees them, column by column.
-fn see(preprocessing: &Preprocessing, inputs: &[&[f64]], past: &mut Past, seen: &mut Vec<Vec<f64>>) {
+fn see(preprocessing: &InputTransform, inputs: &[&[f64]], past: &mut Past, seen: &mut Vec<Vec<f64>>) {
     seen.resize(inputs.len() + preprocessing.added_inputs(), Vec::new());
     seen.iter_mut().for_each(Vec::clear);
     let (mut sample, mut sample_seen) = (vec![0.0; inputs.len()], Vec::new());
@@ -330,7 +332,7 @@ impl<'m> Members<'m> {
         let member = |member: &'m Model| Single::of(&member.body, Some(&member.preprocessing), member.rate);
         let members: Vec<Single<'m>> = ensemble.members().iter().map(member).collect();
         let outputs = vec![Vec::new(); members.len()];
-        Self { ensemble, members, outputs, council: Council::new(ensemble.group()) }
+        Self { ensemble, members, outputs, medians: MedianBuffers::new(ensemble.group()) }
     }
 
     fn run(
@@ -344,13 +346,13 @@ impl<'m> Members<'m> {
             of_member.resize(outputs.len(), 0.0);
             member.run(chunk, of_member)?;
         }
-        let (group, of_members, council) = (self.ensemble.group(), &self.outputs, &mut self.council);
+        let (group, of_members, medians) = (self.ensemble.group(), &self.outputs, &mut self.medians);
         let mut spreads = spreads.into_iter().flatten();
         for (row, (output, &x)) in outputs.iter_mut().zip(chunk.inputs[0]).enumerate() {
             let outside = excursion.take(x);
-            *output = council.output(group, outside, |member| of_members[member][row]);
+            *output = medians.output(group, outside, |member| of_members[member][row]);
             if let Some(spread) = spreads.next() {
-                let all = council.everybody(group, outside, |member| of_members[member][row]);
+                let all = medians.predictions(group, outside, |member| of_members[member][row]);
                 *spread = Spread { disagreement: disagreement(all), outside };
             }
         }

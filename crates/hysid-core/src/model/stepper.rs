@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use crate::error::{Result, SampleError};
 use crate::law::{ClassicalState, Sample};
-use crate::model::ensemble::{Council, Excursion};
-use crate::model::preprocessing::{Past, limited};
-use crate::model::{Body, Model};
+use crate::model::ensemble::{Excursion, MedianBuffers};
+use crate::model::input_transform::{Past, limited};
+use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
 /// A model that is run sample by sample. Fed with the rates that [`Model::simulate`] would use, it
@@ -33,30 +33,30 @@ enum Memory {
     /// A network's simulator, and room for its channels.
     Network(Box<Simulator>, Vec<f64>),
     Law(ClassicalState),
-    Ensemble(Box<Jury>),
+    Ensemble(Box<EnsembleMemory>),
 }
 
 /// The members of an ensemble on their way.
 #[derive(Debug, Clone)]
-struct Jury {
+struct EnsembleMemory {
     members: Vec<State>,
     excursion: Excursion,
     outputs: Vec<f64>,
-    council: Council,
+    medians: MedianBuffers,
 }
 
 impl Memory {
-    fn virgin(body: &Body) -> Self {
+    fn virgin(body: &Predictor) -> Self {
         match body {
-            Body::Network { network, .. } => {
+            Predictor::Network { network, .. } => {
                 Self::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
             }
-            Body::Law(law) => Self::Law(law.virgin()),
-            Body::Ensemble(ensemble) => Self::Ensemble(Box::new(Jury {
+            Predictor::Law(law) => Self::Law(law.virgin()),
+            Predictor::Ensemble(ensemble) => Self::Ensemble(Box::new(EnsembleMemory {
                 members: ensemble.members().iter().map(State::virgin).collect(),
                 excursion: Excursion::beyond(ensemble.range()),
                 outputs: Vec::with_capacity(ensemble.members().len()),
-                council: Council::new(ensemble.group()),
+                medians: MedianBuffers::new(ensemble.group()),
             })),
         }
     }
@@ -109,8 +109,8 @@ impl State {
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {
             return Err(SampleError::NotFinite(*bad).into());
         }
-        if let (Body::Ensemble(ensemble), Memory::Ensemble(jury)) = (&model.body, &self.memory) {
-            let mut members = jury.members.iter().zip(ensemble.members());
+        if let (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) = (&model.body, &self.memory) {
+            let mut members = memory.members.iter().zip(ensemble.members());
             return members.try_for_each(|(state, member)| state.check(member, inputs, time, rate));
         }
         Ok(())
@@ -134,7 +134,7 @@ impl State {
         let seen_rate = rate.map(|rate| model.preprocessing.rate(limited(rate)));
         model.preprocessing.sample(inputs, &mut self.past, &mut self.seen);
         let y = match (&model.body, &mut self.memory) {
-            (Body::Network { scaling, .. }, Memory::Network(simulator, u)) => {
+            (Predictor::Network { scaling, .. }, Memory::Network(simulator, u)) => {
                 let mut channels = u.iter_mut();
                 for (input, (&x, &scale)) in self.seen.iter().zip(&scaling.inputs).enumerate() {
                     *channels.next().expect("a channel for each input") = x * (1.0 / scale);
@@ -146,18 +146,18 @@ impl State {
                 }
                 scaling.output(simulator.step(u, elapsed))
             }
-            (Body::Law(law), Memory::Law(state)) => {
+            (Predictor::Law(law), Memory::Law(state)) => {
                 let step = if model.needs_time() { elapsed } else { 0.0 };
                 law.step(state, Sample { x: self.seen[0], rate: seen_rate.unwrap_or(0.0), step })
             }
-            (Body::Ensemble(ensemble), Memory::Ensemble(jury)) => {
-                let Jury { members, excursion, outputs, council } = &mut **jury;
+            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) => {
+                let EnsembleMemory { members, excursion, outputs, medians } = &mut **memory;
                 let outside = excursion.take(inputs[0]);
                 outputs.clear();
                 for (state, member) in members.iter_mut().zip(ensemble.members()) {
                     outputs.push(state.advance(member, inputs, time, rate));
                 }
-                council.output(ensemble.group(), outside, |member| outputs[member])
+                medians.output(ensemble.group(), outside, |member| outputs[member])
             }
             _ => unreachable!("the memory was made for the body"),
         };
@@ -167,12 +167,12 @@ impl State {
 
     fn reset(&mut self, model: &Model) {
         match (&model.body, &mut self.memory) {
-            (Body::Network { .. }, Memory::Network(simulator, _)) => simulator.reset(),
-            (Body::Ensemble(ensemble), Memory::Ensemble(jury)) => {
-                for (state, member) in jury.members.iter_mut().zip(ensemble.members()) {
+            (Predictor::Network { .. }, Memory::Network(simulator, _)) => simulator.reset(),
+            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) => {
+                for (state, member) in memory.members.iter_mut().zip(ensemble.members()) {
                     state.reset(member);
                 }
-                jury.excursion = Excursion::beyond(ensemble.range());
+                memory.excursion = Excursion::beyond(ensemble.range());
             }
             (body, memory) => *memory = Memory::virgin(body),
         }

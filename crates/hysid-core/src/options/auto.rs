@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::rate::RateMethod;
-use crate::options::Request;
+use crate::options::FitSpec;
 use crate::options::network::SEED;
 
 /// The name of the automatic model.
@@ -23,7 +23,7 @@ pub struct AutoOptions {
     pub model: Automatic,
     /// A model to make an ensemble of; `None` for all candidates.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub only: Option<Box<Request>>,
+    pub only: Option<Box<FitSpec>>,
     /// Members at most; 1 for a single model.
     pub members: usize,
     /// Starts of a random candidate, on all data.

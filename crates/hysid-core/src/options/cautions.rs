@@ -2,14 +2,14 @@
 
 use crate::data::record::Dataset;
 use crate::data::warning::Warning;
-use crate::options::classical::Rival;
-use crate::options::{ModelName, Request};
+use crate::options::classical::ClassicalModel;
+use crate::options::{FitSpec, ModelName};
 use crate::significant::Significant;
 
 /// Half ranges that the middle of the field may lie away from 0.
 const FAR: f64 = 2.0;
 
-impl Request {
+impl FitSpec {
     /// What to be aware of when this is fitted to these data, in sentences.
     pub fn cautions(&self, data: &Dataset) -> Vec<String> {
         let model = self.model();
@@ -23,7 +23,7 @@ impl Request {
     }
 }
 
-impl Request {
+impl FitSpec {
     /// A network with more parameters than rows with an output; of other models the fitted one tells.
     fn larger_than(&self, data: &Dataset) -> Option<Warning> {
         let Self::Network(options) = self else { return None };
@@ -34,7 +34,7 @@ impl Request {
 
 /// The Jiles-Atherton law is about a field of 0; all other models measure the input from where the data go about.
 fn far_from_zero(model: ModelName, data: &Dataset) -> Option<String> {
-    if model != ModelName::Rival(Rival::JilesAtherton) {
+    if model != ModelName::Classical(ClassicalModel::JilesAtherton) {
         return None;
     }
     let (low, high) = data.input_range(0);
@@ -65,23 +65,23 @@ mod tests {
 
     #[test]
     fn a_field_far_from_zero_is_told_of_for_the_law_that_needs_zero() {
-        let cautions = |model, offset| Request::of(model, None, 1).cautions(&data(offset));
-        let jiles_atherton = ModelName::Rival(Rival::JilesAtherton);
+        let cautions = |model, offset| FitSpec::of(model, None, 1).cautions(&data(offset));
+        let jiles_atherton = ModelName::Classical(ClassicalModel::JilesAtherton);
         assert!(cautions(jiles_atherton, 0.0).is_empty());
         assert!(cautions(jiles_atherton, 1.5).is_empty());
         let [caution] = &cautions(jiles_atherton, 200.0)[..] else { panic!("one caution") };
         assert!(caution.contains("199") && caution.contains("201"), "{caution}");
-        assert!(cautions(ModelName::Rival(Rival::Preisach), 200.0).is_empty());
+        assert!(cautions(ModelName::Classical(ClassicalModel::Preisach), 200.0).is_empty());
     }
 
     #[test]
     fn a_rate_that_a_model_cannot_use_is_told_of() {
-        let rival = Rival::Preisach;
+        let rival = ClassicalModel::Preisach;
         let options = crate::options::classical::ClassicalOptions {
             rate: Some(RateMethod::Central),
             ..crate::options::classical::ClassicalOptions::of(rival)
         };
-        let cautions = Request::Classical(options).cautions(&data(0.0));
+        let cautions = FitSpec::Classical(options).cautions(&data(0.0));
         assert_eq!(cautions, ["preisach ignores the rate (xpnn and xpnn+ use it)"]);
     }
 }

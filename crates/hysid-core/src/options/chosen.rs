@@ -10,18 +10,18 @@ use crate::data::rate::RateMethod;
 use crate::error::{Error, OptionError, Result};
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
-use crate::options::classical::{ClassicalOptions, Rival, Sign};
+use crate::options::classical::{ClassicalModel, ClassicalOptions, Sign};
+use crate::options::input_options::InputOptions;
 use crate::options::network::{FitOptions, Trainer};
-use crate::options::shaping::Shaping;
 use crate::options::table::{FitOption, OPTIONS, Values, check};
-use crate::options::{ModelName, Request};
+use crate::options::{FitSpec, ModelName};
 
 /// What was asked for; `None` is the default of the model or its trainer. What each option means is in its row of
 /// [`OPTIONS`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the option of its name")]
-pub struct ChosenOptions {
+pub struct NamedOptions {
     #[serde(deserialize_with = "named")]
     pub model: Option<ModelName>,
     pub members: Option<usize>,
@@ -53,7 +53,7 @@ pub struct ChosenOptions {
     pub differential_form: Option<bool>,
 }
 
-impl ChosenOptions {
+impl NamedOptions {
     /// The options that a map of names and values asks for; `null` is the default.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl ChosenOptions {
 
     /// Refuses more than the model that was named can have.
     fn check(&self) -> Result<()> {
-        let ModelName::Rival(rival) = self.model() else { return Ok(()) };
+        let ModelName::Classical(rival) = self.model() else { return Ok(()) };
         for &(option, most) in rival.facts().limits {
             let asked = match option {
                 "hidden" => self.hidden,
@@ -91,20 +91,20 @@ impl ChosenOptions {
 
     /// The library's request, with the rate decided; `always_rate` if the user has, and wants no model
     /// without it.
-    pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> Request {
+    pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
         let alone = match self.model() {
-            ModelName::Network(family) => Request::Network(used.of_network(family, rate)),
-            ModelName::Rival(rival) => Request::Classical(used.of_rival(rival, rate)),
-            ModelName::Auto(_) => return Request::Auto(used.of_auto(rate, always_rate, None)),
+            ModelName::Network(family) => FitSpec::Network(used.of_network(family, rate)),
+            ModelName::Classical(rival) => FitSpec::Classical(used.of_rival(rival, rate)),
+            ModelName::Auto(_) => return FitSpec::Auto(used.of_auto(rate, always_rate, None)),
         };
         match (self.members, alone) {
             (None | Some(0 | 1), alone) => alone,
             (Some(_), mut alone) => {
-                if let Request::Network(options) = &mut alone {
+                if let FitSpec::Network(options) = &mut alone {
                     options.starts = 1;
                 }
-                Request::Auto(used.of_auto(rate, always_rate, Some(Box::new(alone))))
+                FitSpec::Auto(used.of_auto(rate, always_rate, Some(Box::new(alone))))
             }
         }
     }
@@ -123,7 +123,7 @@ impl ChosenOptions {
         &self,
         rate: Option<RateMethod>,
         always_rate: bool,
-        only: Option<Box<Request>>,
+        only: Option<Box<FitSpec>>,
     ) -> AutoOptions {
         let defaults = AutoOptions::default();
         let members = self.members.unwrap_or(defaults.members);
@@ -175,7 +175,7 @@ impl ChosenOptions {
         }
     }
 
-    fn of_rival(&self, model: Rival, rate: Option<RateMethod>) -> ClassicalOptions {
+    fn of_rival(&self, model: ClassicalModel, rate: Option<RateMethod>) -> ClassicalOptions {
         let defaults = ClassicalOptions::of(model);
         ClassicalOptions {
             model,
@@ -197,8 +197,8 @@ impl ChosenOptions {
         }
     }
 
-    fn shaping(&self) -> Shaping {
-        Shaping {
+    fn shaping(&self) -> InputOptions {
+        InputOptions {
             companding: self.companding.filter(|share| *share != 0.0),
             rate_companding: self.rate_companding.filter(|share| *share != 0.0),
             history: self.history.unwrap_or_default(),
@@ -291,19 +291,19 @@ mod tests {
 
     use super::*;
 
-    fn chosen(value: Value) -> Result<ChosenOptions> {
+    fn chosen(value: Value) -> Result<NamedOptions> {
         let Value::Object(map) = value else { panic!("{value} is no map") };
-        ChosenOptions::of(map)
+        NamedOptions::of(map)
     }
 
     #[test]
     fn nothing_chosen_is_the_default() {
         let rate = Some(RateMethod::Central);
         let request = chosen(json!({})).unwrap().request(rate, false);
-        assert_eq!(request, Request::Auto(AutoOptions { rate, ..AutoOptions::default() }));
-        for &rival in Rival::ALL {
+        assert_eq!(request, FitSpec::Auto(AutoOptions { rate, ..AutoOptions::default() }));
+        for &rival in ClassicalModel::ALL {
             let request = chosen(json!({ "model": rival.name() })).unwrap().request(None, false);
-            assert_eq!(request, Request::Classical(ClassicalOptions::of(rival)));
+            assert_eq!(request, FitSpec::Classical(ClassicalOptions::of(rival)));
         }
     }
 
@@ -311,7 +311,7 @@ mod tests {
     fn every_option_reaches_the_request() {
         let network = json!({ "model": "epnn", "stops": 3, "hidden": 4, "no_deterioration": true,
             "training": "hybrid", "starts": 2, "epochs": 7, "population": 9, "stall": 0, "seed": 5, "validation": 0.5, "ridge": 1e-9 });
-        let Request::Network(options) = chosen(network).unwrap().request(None, false) else { panic!() };
+        let FitSpec::Network(options) = chosen(network).unwrap().request(None, false) else { panic!() };
         let expected = FitOptions {
             model: Family::Xpnn,
             sizes: Sizes { stops: 3, hidden: 4, ..Sizes::default() },
@@ -327,7 +327,7 @@ mod tests {
         };
         assert_eq!(options, expected);
         let law = |options| match chosen(options).unwrap().request(None, false) {
-            Request::Classical(options) => options,
+            FitSpec::Classical(options) => options,
             other => panic!("{other:?}"),
         };
         let given = json!({ "model": "modified-prandtl-ishlinskii", "operators": 6, "thresholds": [0.5, 1.0],
@@ -338,7 +338,7 @@ mod tests {
             sign: Some(Sign::NonPositive),
             dead_zones: Some(2),
             seed: 5,
-            ..ClassicalOptions::of(Rival::ModifiedPrandtlIshlinskii)
+            ..ClassicalOptions::of(ClassicalModel::ModifiedPrandtlIshlinskii)
         };
         assert_eq!(law(given), expected);
         let given = json!({ "model": "rate-dependent-prandtl-ishlinskii", "logarithmic_thresholds": true,
@@ -348,7 +348,7 @@ mod tests {
             free_weights: Some(false),
             starts: Some(2),
             epochs: Some(3),
-            ..ClassicalOptions::of(Rival::RateDependentPrandtlIshlinskii)
+            ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
         };
         assert_eq!(law(given), expected);
         assert!(law(json!({ "model": "bouc-wen", "degradation": true })).degradation);
@@ -384,7 +384,7 @@ mod tests {
 
     #[test]
     fn ignored_options_are_named_and_change_nothing() {
-        let names = |asked: &ChosenOptions| -> Vec<&str> {
+        let names = |asked: &NamedOptions| -> Vec<&str> {
             asked.ignored().into_iter().map(|ignored| ignored.option).collect()
         };
         let ignored = |options| names(&chosen(options).unwrap());
@@ -417,14 +417,14 @@ mod tests {
 
     #[test]
     fn every_option_is_a_row_of_the_table_and_is_used_by_some_model() {
-        let Ok(Value::Object(fields)) = serde_json::to_value(ChosenOptions::default()) else { panic!() };
+        let Ok(Value::Object(fields)) = serde_json::to_value(NamedOptions::default()) else { panic!() };
         let names: Vec<&str> = OPTIONS.iter().map(|option| option.name).collect();
         assert_eq!(fields.keys().len(), names.len());
         for option in &OPTIONS {
             assert!(fields.contains_key(option.name), "{}", option.name);
             assert!(!option.users().is_empty(), "{}", option.name);
         }
-        for &rival in Rival::ALL {
+        for &rival in ClassicalModel::ALL {
             for option in rival.facts().options {
                 assert!(names.contains(option), "{} lists `{option}`", rival.name());
             }

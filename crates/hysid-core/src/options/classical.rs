@@ -16,8 +16,8 @@ use crate::law::neuro_madelung::NeuroMadelung;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::preisach::Preisach;
 use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
+use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
-use crate::options::shaping::Shaping;
 
 /// What is true of random stops.
 const RANDOM_STOPS: Facts = Facts {
@@ -36,13 +36,13 @@ macro_rules! rival {
         /// The models that are no networks of the family.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
-        pub enum Rival {
+        pub enum ClassicalModel {
             $(#[doc = concat!("[`", stringify!($law), "`](crate::law::Classical::", stringify!($law), ").")] $law,)*
             /// Random deteriorating stops and a ridge: a network whose stops are not trained.
             RandomStops,
         }
 
-        impl Rival {
+        impl ClassicalModel {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$law,)* Self::RandomStops];
 
@@ -59,7 +59,7 @@ macro_rules! rival {
 
 for_each_law!(rival);
 
-impl Rival {
+impl ClassicalModel {
     /// The name on the command line and in model files.
     pub fn name(self) -> &'static str {
         self.facts().name
@@ -92,7 +92,7 @@ impl Rival {
 #[serde(deny_unknown_fields)]
 pub struct ClassicalOptions {
     /// The model.
-    pub model: Rival,
+    pub model: ClassicalModel,
     /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops; the model's own
     /// default if `None`.
     pub operators: Option<usize>,
@@ -119,8 +119,8 @@ pub struct ClassicalOptions {
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
     /// What the model sees of the input.
-    #[serde(default, skip_serializing_if = "Shaping::is_none")]
-    pub shaping: Shaping,
+    #[serde(default, skip_serializing_if = "InputOptions::is_none")]
+    pub shaping: InputOptions,
     /// Starts of a search; the model's own default if `None`.
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
@@ -141,7 +141,7 @@ impl ClassicalOptions {
     }
 
     /// The defaults of a model.
-    pub fn of(model: Rival) -> Self {
+    pub fn of(model: ClassicalModel) -> Self {
         Self {
             model,
             operators: None,
@@ -155,7 +155,7 @@ impl ClassicalOptions {
             hidden: None,
             deterioration: None,
             rate: None,
-            shaping: Shaping::default(),
+            shaping: InputOptions::default(),
             starts: None,
             epochs: None,
             seed: SEED,

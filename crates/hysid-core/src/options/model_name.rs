@@ -7,7 +7,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::network::Family;
 use crate::options::auto::Automatic;
-use crate::options::classical::Rival;
+use crate::options::classical::ClassicalModel;
 
 /// A model by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ pub enum ModelName {
     /// A network of the family.
     Network(Family),
     /// Another model.
-    Rival(Rival),
+    Classical(ClassicalModel),
     /// What validation chooses, alone or together.
     Auto(Automatic),
 }
@@ -27,14 +27,17 @@ impl ModelName {
 
     /// All models that there are, the networks first; [`ModelName::AUTO`] chooses among them.
     pub fn all() -> impl Iterator<Item = ModelName> {
-        Family::ALL.into_iter().map(Self::Network).chain(Rival::ALL.iter().copied().map(Self::Rival))
+        Family::ALL
+            .into_iter()
+            .map(Self::Network)
+            .chain(ClassicalModel::ALL.iter().copied().map(Self::Classical))
     }
 
     /// The name on the command line and in model files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Network(family) => family.name(),
-            Self::Rival(rival) => rival.name(),
+            Self::Classical(rival) => rival.name(),
             Self::Auto(_) => "auto",
         }
     }
@@ -43,7 +46,7 @@ impl ModelName {
     pub fn uses_rate(self) -> bool {
         match self {
             Self::Network(family) => family.uses_rate(),
-            Self::Rival(rival) => rival.uses_rate(),
+            Self::Classical(rival) => rival.uses_rate(),
             Self::Auto(_) => true,
         }
     }
@@ -52,7 +55,7 @@ impl ModelName {
     pub fn takes_further_inputs(self) -> bool {
         match self {
             Self::Network(family) => family.takes_further_inputs(),
-            Self::Rival(rival) => rival.takes_further_inputs(),
+            Self::Classical(rival) => rival.takes_further_inputs(),
             Self::Auto(_) => true,
         }
     }
@@ -67,7 +70,7 @@ impl ModelName {
             return Err(Error::SeveralInputs { model: self.name(), found });
         }
         match self {
-            Self::Rival(rival) if rival.needs_rate() && rate.is_none() => {
+            Self::Classical(rival) if rival.needs_rate() && rate.is_none() => {
                 Err(Error::RateNeeded(rival.name()))
             }
             _ => Ok(()),

@@ -10,7 +10,7 @@ use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::network::{Architecture, Family, Sizes};
-use crate::options::shaping::{HISTORY_INPUTS, Shaping};
+use crate::options::input_options::{HISTORY_INPUTS, InputOptions};
 use crate::options::table::check;
 
 /// How networks are trained.
@@ -116,8 +116,8 @@ pub struct FitOptions {
     /// How the rate is found; `None` for no rate.
     pub rate: Option<RateMethod>,
     /// What the network sees of the input.
-    #[serde(default, skip_serializing_if = "Shaping::is_none")]
-    pub shaping: Shaping,
+    #[serde(default, skip_serializing_if = "InputOptions::is_none")]
+    pub shaping: InputOptions,
     /// The trainer.
     #[serde(default)]
     pub training: Trainer,
@@ -173,7 +173,7 @@ impl FitOptions {
             sizes: Sizes::default(),
             no_deterioration: false,
             rate: None,
-            shaping: Shaping::default(),
+            shaping: InputOptions::default(),
             training,
             starts: training.default_starts(),
             epochs: training.default_epochs(),

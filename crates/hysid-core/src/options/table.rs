@@ -8,8 +8,8 @@ use crate::network::Family;
 use crate::options::ModelName;
 use crate::options::auto::MOST_MEMBERS;
 use crate::options::classical::Sign;
+use crate::options::input_options::SHARES;
 use crate::options::network::{MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, Trainer};
-use crate::options::shaping::SHARES;
 
 /// An option of a fit.
 #[derive(Debug, Clone, Copy)]
@@ -334,7 +334,7 @@ fn network_or_auto(model: ModelName, is_used: impl Fn(Family) -> bool) -> bool {
     match model {
         ModelName::Network(family) => is_used(family),
         ModelName::Auto(_) => true,
-        ModelName::Rival(_) => false,
+        ModelName::Classical(_) => false,
     }
 }
 
@@ -376,7 +376,7 @@ impl FitOption {
     /// Whether a model uses it; a network when it is trained by this trainer.
     pub fn is_used_by(&self, model: ModelName, trainer: Trainer) -> bool {
         match model {
-            ModelName::Rival(rival) => {
+            ModelName::Classical(rival) => {
                 OF_EVERY_MODEL.contains(&self.name) || rival.facts().options.contains(&self.name)
             }
             _ => (self.used_by)(model, trainer),

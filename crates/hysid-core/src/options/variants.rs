@@ -1,9 +1,9 @@
 //! The variants of a law: the same equations with and without a term that not every specimen needs.
 
-use crate::options::Request;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 
-impl Request {
+impl FitSpec {
     /// The name of the model, and of the variant of its law if it has more than one.
     pub fn variant_label(&self) -> String {
         if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
@@ -23,7 +23,7 @@ impl Request {
 /// The variants of a law with these options.
 pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
     let rate = options.rate.filter(|_| options.model.uses_rate());
-    let needs_rate = options.model.needs_rate() || options.model == Rival::RandomStops;
+    let needs_rate = options.model.needs_rate() || options.model == ClassicalModel::RandomStops;
     let without_rate = ClassicalOptions { rate: None, ..options.clone() };
     let with_rate = rate.map(|rate| ClassicalOptions { rate: Some(rate), ..options.clone() });
     let by_rate = match with_rate {
@@ -52,7 +52,7 @@ mod tests {
     use crate::options::ModelName;
 
     fn labels(model: ModelName, rate: Option<RateMethod>) -> Vec<String> {
-        Request::of(model, rate, 1).variants().iter().map(Request::variant_label).collect()
+        FitSpec::of(model, rate, 1).variants().iter().map(FitSpec::variant_label).collect()
     }
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn the_simplest_variant_comes_first() {
-        let bouc_wen = ModelName::Rival(Rival::BoucWen);
+        let bouc_wen = ModelName::Classical(ClassicalModel::BoucWen);
         assert_eq!(labels(bouc_wen, None), ["bouc-wen", "bouc-wen (degradation)"]);
         assert_eq!(
             labels(bouc_wen, Some(RateMethod::Central)),

@@ -1,6 +1,6 @@
 //! How far a branch and the one after it stand open, whether or not they close a loop.
 
-use crate::branch::{Branch, Survey};
+use crate::branch::{Branch, BranchSet};
 use crate::{PictureCurve, Piece};
 
 /// Places along the inputs that both branches go through, at most.
@@ -32,12 +32,12 @@ impl Opening {
     }
 
     /// The rows of both branches.
-    pub fn pieces(&self, survey: &Survey) -> Vec<Piece> {
+    pub fn pieces(&self, survey: &BranchSet) -> Vec<Piece> {
         vec![survey.piece(&survey.branches[self.branch]), survey.piece(&survey.branches[self.branch + 1])]
     }
 
     /// Both branches for a picture.
-    pub fn curves(&self, survey: &Survey) -> Vec<PictureCurve> {
+    pub fn curves(&self, survey: &BranchSet) -> Vec<PictureCurve> {
         let curve = |label, index: usize| survey.curve(label, &survey.branches[index]);
         vec![curve("there", self.branch), curve("back", self.branch + 1)]
     }

@@ -2,9 +2,9 @@
 //! law is smooth, and leaves its extreme as soon as the input turns; a clipped channel repeats one value exactly, on
 //! both sides of the turning point, and comes to it abruptly.
 
-use super::{Complaint, ComplaintKind, Severity, Units, piece};
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
 use crate::Piece;
-use crate::branch::Survey;
+use crate::branch::BranchSet;
 use hysid_core::data::record::{Dataset, Record};
 
 /// Rows that repeat the extreme.
@@ -37,7 +37,7 @@ pub(super) fn may_be(data: &Dataset) -> bool {
     })
 }
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let units = Units::of(survey);
     let mut found = Vec::new();
     for of_output in [true, false] {
@@ -46,17 +46,17 @@ pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
                 continue;
             };
             let (kind, name, other, shown) = match of_output {
-                true => (ComplaintKind::OutputClipped, "output", "input", units.output(value)),
-                false => (ComplaintKind::InputClipped, "input", "output", units.input(value)),
+                true => (DataIssueKind::OutputClipped, "output", "input", units.output(value)),
+                false => (DataIssueKind::InputClipped, "input", "output", units.input(value)),
             };
             let statement = format!(
                 "the {name} stands at {shown} for {count} rows while the {other} goes on: clipped by its instrument; measure with a \
                  larger range, or blank the output of these rows"
             );
-            found.push(Complaint {
+            found.push(DataIssue {
                 value: Some(value),
                 unit: if of_output { units.output.clone() } else { units.input.clone() },
-                ..Complaint::of_rows(kind, Severity::Warning, statement, rows)
+                ..DataIssue::of_rows(kind, Severity::Warning, statement, rows)
             });
         }
     }
@@ -65,7 +65,7 @@ pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
 
 /// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped, the value, and the
 /// number of rows.
-fn clipped(survey: &Survey, of_output: bool, sign: f64) -> Option<(Vec<Piece>, f64, usize)> {
+fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<(Vec<Piece>, f64, usize)> {
     let range = if of_output { survey.output } else { survey.input };
     let extreme = if sign > 0.0 { range.1 } else { range.0 };
     let resolution = if of_output { resolution(survey) } else { 0.0 };
@@ -95,7 +95,7 @@ fn clipped(survey: &Survey, of_output: bool, sign: f64) -> Option<(Vec<Piece>, f
 }
 
 /// The smallest difference of two outputs.
-fn resolution(survey: &Survey) -> f64 {
+fn resolution(survey: &BranchSet) -> f64 {
     let outputs = survey.data.records().iter().flat_map(Record::output);
     let mut sorted: Vec<f64> = outputs.copied().filter(|y| !y.is_nan()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -106,7 +106,7 @@ fn resolution(survey: &Survey) -> f64 {
 /// True if the output stands while the input turns, on both sides of its turning point, and came to its extreme
 /// abruptly: steeply, or by a step much larger than the resolution, where a rounded saturation comes by single ones.
 fn output_is_clipped(
-    survey: &Survey,
+    survey: &BranchSet,
     x: &[f64],
     y: &[f64],
     (first, last): (usize, usize),
@@ -129,7 +129,7 @@ fn output_is_clipped(
 }
 
 /// True if the output goes somewhere and comes back, which no creep does.
-fn there_and_back(survey: &Survey, y: &[f64], (first, last): (usize, usize)) -> bool {
+fn there_and_back(survey: &BranchSet, y: &[f64], (first, last): (usize, usize)) -> bool {
     let ends = (y[first].min(y[last]), y[first].max(y[last]));
     let limit = EXCURSION * survey.height() + 5.0 * survey.output_noise;
     y[first..=last].iter().any(|value| *value > ends.1 + limit || *value < ends.0 - limit)

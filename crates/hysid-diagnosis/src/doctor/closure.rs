@@ -1,9 +1,9 @@
 //! Loops of a periodic input that stay open, told as a trouble of the data.
 
-use super::{Complaint, ComplaintKind, Severity};
+use super::{DataIssue, DataIssueKind, Severity};
 use crate::{Finding, Property, Verdict};
 
-pub(super) fn complaints(findings: &[Finding]) -> Vec<Complaint> {
+pub(super) fn complaints(findings: &[Finding]) -> Vec<DataIssue> {
     let verdict = |property| findings.iter().find(|finding| finding.property == property);
     let Some(closure) = verdict(Property::LoopClosure).filter(|finding| finding.verdict == Verdict::No)
     else {
@@ -18,12 +18,12 @@ pub(super) fn complaints(findings: &[Finding]) -> Vec<Complaint> {
          drift off"
     };
     let rows = closure.evidence.iter().flat_map(|evidence| evidence.pieces.iter().cloned()).take(3).collect();
-    vec![Complaint {
+    vec![DataIssue {
         record: None,
         value: Some(percent),
         unit: Some("percent".into()),
-        ..Complaint::of_rows(
-            ComplaintKind::UnclosedLoops,
+        ..DataIssue::of_rows(
+            DataIssueKind::UnclosedLoops,
             Severity::Note,
             format!(
                 "a period of the input leaves the output {percent:.1} % of its range away from where it was: {why}"

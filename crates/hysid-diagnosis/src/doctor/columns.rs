@@ -1,7 +1,7 @@
 //! Columns that may be the wrong way round, or have the wrong sign.
 
-use super::{Complaint, ComplaintKind, Severity};
-use crate::branch::{Branch, Survey};
+use super::{DataIssue, DataIssueKind, Severity};
+use crate::branch::{Branch, BranchSet};
 use crate::noise;
 
 /// Share of the way of the input on which the output goes the other way.
@@ -17,11 +17,11 @@ const ANSWER: f64 = 0.05;
 /// Branches that are looked at.
 const MOST: usize = 40;
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     wrong_sign(survey).into_iter().chain(swapped(survey)).collect()
 }
 
-fn wrong_sign(survey: &Survey) -> Option<Complaint> {
+fn wrong_sign(survey: &BranchSet) -> Option<DataIssue> {
     let (mut falls, mut all) = (0.0, 0.0);
     for branch in survey.branches.iter().filter(|branch| branch.travel() >= LONG * survey.width()) {
         let (Some(from), Some(to)) = (branch.curve.at(branch.from), branch.curve.at(branch.to)) else {
@@ -33,8 +33,8 @@ fn wrong_sign(survey: &Survey) -> Option<Complaint> {
         }
     }
     (all > 0.0 && falls > THROUGHOUT * all).then(|| {
-        Complaint::of_all(
-            ComplaintKind::WrongSign,
+        DataIssue::of_all(
+            DataIssueKind::WrongSign,
             Severity::Note,
             "the output falls as the input grows, throughout: if it should not, one of the two has the wrong sign".into(),
         )
@@ -42,7 +42,7 @@ fn wrong_sign(survey: &Survey) -> Option<Complaint> {
 }
 
 /// An output that is a plain sine or triangle over time while the input is neither.
-fn swapped(survey: &Survey) -> Option<Complaint> {
+fn swapped(survey: &BranchSet) -> Option<DataIssue> {
     let long = |branch: &&Branch| branch.travel() >= LONG * survey.width() && !branch.curve.is_empty();
     let branches: Vec<&Branch> = survey.branches.iter().filter(long).collect();
     if branches.len() < 4 {
@@ -63,8 +63,8 @@ fn swapped(survey: &Survey) -> Option<Complaint> {
     };
     let (input, output) = (plain(false)?, plain(true)?);
     (output < COMMAND && input > ANSWER).then(|| {
-        Complaint::of_all(
-            ComplaintKind::SwappedColumns,
+        DataIssue::of_all(
+            DataIssueKind::SwappedColumns,
             Severity::Note,
             "over time the output is a plain sine or triangle, and the input is not: the output looks like what was commanded; \
              check which column is which, or that this is what you want to model"

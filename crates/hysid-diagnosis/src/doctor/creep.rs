@@ -1,7 +1,7 @@
 //! Creep: the output moves while the input stands still, theory.md (10.24).
 
-use super::{Complaint, ComplaintKind, Severity, Units, piece};
-use crate::branch::Survey;
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use crate::branch::BranchSet;
 
 /// A hold has at least so many rows.
 const FEWEST_ROWS: usize = 20;
@@ -28,7 +28,7 @@ struct Hold {
     movement: f64,
 }
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let mut holds: Vec<Hold> = Vec::new();
     let still = (STILL * survey.width()).max(2.5 * survey.input_noise);
     for (number, record) in survey.data.records().iter().enumerate() {
@@ -62,15 +62,15 @@ pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
         .iter()
         .take(SHOWN)
         .map(|hold| piece(&survey.data.records()[hold.record], hold.rows.0, hold.rows.1));
-    vec![Complaint {
+    vec![DataIssue {
         value: Some(largest.movement),
         unit: units.output.clone(),
-        ..Complaint::of_rows(ComplaintKind::Creep, Severity::Warning, statement, rows.collect())
+        ..DataIssue::of_rows(DataIssueKind::Creep, Severity::Warning, statement, rows.collect())
     }]
 }
 
 /// The hold, if the output creeps during it.
-fn creeping(survey: &Survey, record: usize, rows: (usize, usize)) -> Option<Hold> {
+fn creeping(survey: &BranchSet, record: usize, rows: (usize, usize)) -> Option<Hold> {
     let count = rows.1 + 1 - rows.0;
     if count < FEWEST_ROWS {
         return None;

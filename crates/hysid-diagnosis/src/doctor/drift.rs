@@ -1,8 +1,8 @@
 //! Drift: both tips of a repeated loop move the same way, theory.md (10.23). Where a specimen deteriorates they
 //! move towards each other.
 
-use super::{Complaint, ComplaintKind, Severity, Units};
-use crate::branch::Survey;
+use super::{DataIssue, DataIssueKind, Severity, Units};
+use crate::branch::BranchSet;
 use crate::cycles::repeated;
 use crate::noise;
 use crate::{Cycle, Piece};
@@ -29,7 +29,7 @@ struct Trend<'c> {
     drift: f64,
 }
 
-pub(super) fn complaints(survey: &Survey, cycles: &[Cycle]) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet, cycles: &[Cycle]) -> Vec<DataIssue> {
     let groups = repeated(survey, cycles);
     let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(group)).collect();
     // A tip is an extreme of many rows: its noise is a fraction of theirs.
@@ -55,10 +55,10 @@ pub(super) fn complaints(survey: &Survey, cycles: &[Cycle]) -> Vec<Complaint> {
         100.0 * longest.drift.abs() / survey.height()
     );
     let rows = [first, last].map(|cycle| Piece { record: cycle.record.clone(), rows: cycle.rows });
-    vec![Complaint {
+    vec![DataIssue {
         value: Some(longest.drift),
         unit: units.output.clone(),
-        ..Complaint::of_rows(ComplaintKind::Drift, Severity::Warning, statement, rows.into())
+        ..DataIssue::of_rows(DataIssueKind::Drift, Severity::Warning, statement, rows.into())
     }]
 }
 

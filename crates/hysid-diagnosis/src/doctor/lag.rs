@@ -9,9 +9,9 @@ mod turn;
 
 use turn::{Beside, Turn, Window};
 
-use super::{Complaint, ComplaintKind, Severity, Units};
+use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::Delay;
-use crate::branch::Survey;
+use crate::branch::BranchSet;
 use crate::minimum::lowest;
 
 /// Shares of the shorter branch that are taken around a turning point, the narrowest first.
@@ -99,7 +99,7 @@ impl Lag {
 
 /// What is said about a lag: of whole branches at several speeds, if a delay makes them agree, which know it better
 /// than their ends do; otherwise of turning points.
-pub(super) fn complaints(survey: &Survey, delay: Option<&Delay>) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet, delay: Option<&Delay>) -> Vec<DataIssue> {
     match delay {
         Some(delay) => vec![between_speeds(survey, delay)],
         None => at_turning_points(survey),
@@ -107,7 +107,7 @@ pub(super) fn complaints(survey: &Survey, delay: Option<&Delay>) -> Vec<Complain
 }
 
 /// The longest lag that the slowest turning points allow, either way; `None` where they do not tell.
-pub(super) fn longest(survey: &Survey) -> Option<f64> {
+pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
     const SURE: f64 = 3.0;
     let turns = turns(survey);
     let lag = at_one_speed(survey, speeds(&turns).first()?)?;
@@ -115,7 +115,7 @@ pub(super) fn longest(survey: &Survey) -> Option<f64> {
 }
 
 /// A delay that makes all speeds agree, theory.md (10.14).
-fn between_speeds(survey: &Survey, delay: &Delay) -> Complaint {
+fn between_speeds(survey: &BranchSet, delay: &Delay) -> DataIssue {
     let units = Units::of(survey);
     let statement = format!(
         "the output is {}, the same at all speeds, and what looks like rate dependence goes with it; shift the output by {} to {} \
@@ -124,14 +124,14 @@ fn between_speeds(survey: &Survey, delay: &Delay) -> Complaint {
         units.time(delay.time.abs()),
         if delay.time > 0.0 { "an earlier" } else { "a later" },
     );
-    Complaint {
+    DataIssue {
         value: Some(delay.time),
         unit: units.time,
-        ..Complaint::of_all(ComplaintKind::Lag, Severity::Warning, statement)
+        ..DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement)
     }
 }
 
-fn at_turning_points(survey: &Survey) -> Vec<Complaint> {
+fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
     let turns = turns(survey);
     let speeds = speeds(&turns);
     let several = speeds.len() > 1;
@@ -152,7 +152,7 @@ fn at_turning_points(survey: &Survey) -> Vec<Complaint> {
             units.behind(fast.time),
             units.speed(fast.speed)
         );
-        return vec![Complaint::of_all(ComplaintKind::LagChangesWithSpeed, Severity::Note, statement)];
+        return vec![DataIssue::of_all(DataIssueKind::LagChangesWithSpeed, Severity::Note, statement)];
     }
     let knows = |lag: &&Lag| lag.deviation <= CONFIRMS * sharpest.time.abs();
     if several && lags.iter().filter(knows).count() < 2 {
@@ -181,10 +181,10 @@ fn at_turning_points(survey: &Survey) -> Vec<Complaint> {
         time(value.abs()),
         if value > 0.0 { "an earlier" } else { "a later" },
     );
-    vec![Complaint {
+    vec![DataIssue {
         value: Some(value),
         unit: units.time.clone(),
-        ..Complaint::of_all(ComplaintKind::Lag, Severity::Warning, statement)
+        ..DataIssue::of_all(DataIssueKind::Lag, Severity::Warning, statement)
     }]
 }
 
@@ -247,7 +247,7 @@ impl<'t, 'd> Turns<'t, 'd> {
 }
 
 /// All turning points between long branches, the slowest first.
-fn turns<'d>(survey: &Survey<'d>) -> Vec<Turn<'d>> {
+fn turns<'d>(survey: &BranchSet<'d>) -> Vec<Turn<'d>> {
     let mut turns: Vec<Turn> = survey
         .branches
         .windows(2)
@@ -275,7 +275,7 @@ fn speeds<'t, 'd>(turns: &'t [Turn<'d>]) -> Vec<&'t [Turn<'d>]> {
     speeds.into_iter().step_by(every).collect()
 }
 
-fn at_one_speed(survey: &Survey, turns: &[Turn]) -> Option<Lag> {
+fn at_one_speed(survey: &BranchSet, turns: &[Turn]) -> Option<Lag> {
     let turns: Vec<&Turn> = turns.iter().step_by(turns.len().div_ceil(MOST)).collect();
     let shortest = turns.iter().map(|turn| turn.duration()).fold(f64::INFINITY, f64::min);
     let reach = LONGEST * shortest;

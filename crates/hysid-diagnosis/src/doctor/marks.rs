@@ -1,7 +1,7 @@
 //! Values that were not measured: marks of a missing value such as -999, full scale of an integer, and spikes. They
 //! stand far from all others; a mark within the range is known by its value and by the jumps to it and back.
 
-use super::{Complaint, ComplaintKind, Severity, piece};
+use super::{DataIssue, DataIssueKind, Severity, piece};
 use crate::Piece;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::unit;
@@ -66,7 +66,7 @@ struct Column<'d> {
     of: Box<dyn Fn(&'d Record) -> &'d [f64] + 'd>,
 }
 
-pub(super) fn complaints(data: &Dataset) -> Vec<Complaint> {
+pub(super) fn complaints(data: &Dataset) -> Vec<DataIssue> {
     let names = data.names();
     let inputs = names.inputs.iter().enumerate().map(|(input, name)| Column {
         name,
@@ -86,7 +86,7 @@ struct Apart {
 }
 
 impl<'d> Column<'d> {
-    fn complaints(&self, data: &'d Dataset) -> Vec<Complaint> {
+    fn complaints(&self, data: &'d Dataset) -> Vec<DataIssue> {
         let values = data.records().iter().flat_map(|record| (self.of)(record));
         let mut sorted: Vec<f64> = values.copied().filter(|value| !value.is_nan()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -129,7 +129,7 @@ impl<'d> Column<'d> {
         jumps.iter().filter(|jump| **jump >= least).count() as f64 >= 0.8 * jumps.len() as f64
     }
 
-    fn complaint(&self, data: &'d Dataset, apart: &Apart) -> Complaint {
+    fn complaint(&self, data: &'d Dataset, apart: &Apart) -> DataIssue {
         let mut rows: Vec<Piece> = Vec::new();
         let (mut count, mut first) = (0, None);
         for record in data.records() {
@@ -164,10 +164,10 @@ impl<'d> Column<'d> {
         let name = self.name;
         let statement =
             format!("\"{name}\" {which} in {how_many}{place}: {what} If it was not measured, {help}");
-        Complaint {
+        DataIssue {
             value: Some(if apart.low.abs() > apart.high.abs() { apart.low } else { apart.high }),
             unit,
-            ..Complaint::of_rows(ComplaintKind::MissingValueMark, Severity::Warning, statement, rows)
+            ..DataIssue::of_rows(DataIssueKind::MissingValueMark, Severity::Warning, statement, rows)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Values that repeat: whole rows, values held for a fixed number of rows, and columns with few different values.
 
-use super::{Complaint, ComplaintKind, Severity, Units, piece};
-use crate::branch::Survey;
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use crate::branch::BranchSet;
 use crate::noise;
 
 /// Share of rows that repeat the row before, where it matters.
@@ -19,8 +19,8 @@ const COARSE: f64 = 0.005;
 /// Rows that are looked at for the resolution.
 const MOST_ROWS: usize = 20_000;
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
-    let mut found: Vec<Complaint> = repeated_rows(survey).into_iter().collect();
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
+    let mut found: Vec<DataIssue> = repeated_rows(survey).into_iter().collect();
     let rows_repeat = !found.is_empty();
     for of_output in [true, false] {
         let coarse = coarse_resolution(survey, of_output);
@@ -33,7 +33,7 @@ pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
 }
 
 /// Rows that are the row before once more.
-fn repeated_rows(survey: &Survey) -> Option<Complaint> {
+fn repeated_rows(survey: &BranchSet) -> Option<DataIssue> {
     let (mut repeated, mut rows) = (0, 0);
     let mut shown = None;
     for (number, record) in survey.data.records().iter().enumerate() {
@@ -57,12 +57,12 @@ fn repeated_rows(survey: &Survey) -> Option<Complaint> {
              that rates and weights are right",
             100.0 * share
         );
-        Complaint {
+        DataIssue {
             record: None,
             value: Some(100.0 * share),
             unit: Some("percent".into()),
-            ..Complaint::of_rows(
-                ComplaintKind::RepeatedRows,
+            ..DataIssue::of_rows(
+                DataIssueKind::RepeatedRows,
                 Severity::Note,
                 statement,
                 shown.into_iter().collect(),
@@ -72,7 +72,7 @@ fn repeated_rows(survey: &Survey) -> Option<Complaint> {
 }
 
 /// A column that changes every so many rows while the other changes with each.
-fn held_samples(survey: &Survey, of_output: bool) -> Option<Complaint> {
+fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let mut lengths: Vec<usize> = Vec::new();
     let (mut held, mut while_other_moves) = (0, 0);
     for record in survey.data.records() {
@@ -105,10 +105,10 @@ fn held_samples(survey: &Survey, of_output: bool) -> Option<Complaint> {
         && lengths.len() > 10;
     is_held.then(|| {
         let name = if of_output { "output" } else { "input" };
-        Complaint {
+        DataIssue {
             value: Some(typical as f64),
-            ..Complaint::of_all(
-                ComplaintKind::HeldSamples,
+            ..DataIssue::of_all(
+                DataIssueKind::HeldSamples,
                 Severity::Warning,
                 format!(
                     "the {name} keeps its value for {typical} rows at a time while the other channel changes: it was sampled less \
@@ -120,7 +120,7 @@ fn held_samples(survey: &Survey, of_output: bool) -> Option<Complaint> {
 }
 
 /// A column whose values are all multiples of a large step.
-fn coarse_resolution(survey: &Survey, of_output: bool) -> Option<Complaint> {
+fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let stride = survey.data.rows().div_ceil(MOST_ROWS).max(1);
     let column = |record| -> &[f64] { if of_output { output(record) } else { input(record) } };
     let records = survey.data.records();
@@ -166,10 +166,10 @@ fn coarse_resolution(survey: &Survey, of_output: bool) -> Option<Complaint> {
          trusted; measure in a smaller range of the instrument",
         100.0 * step / range
     );
-    Some(Complaint {
+    Some(DataIssue {
         value: Some(step),
         unit: if of_output { units.output.clone() } else { units.input.clone() },
-        ..Complaint::of_all(ComplaintKind::CoarseResolution, Severity::Note, statement)
+        ..DataIssue::of_all(DataIssueKind::CoarseResolution, Severity::Note, statement)
     })
 }
 

@@ -1,7 +1,7 @@
 //! How the data were sampled: gaps, changing time steps, too few rows for a cycle, too few turning points.
 
-use super::{Complaint, ComplaintKind, Severity, Units, piece};
-use crate::branch::Survey;
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use crate::branch::BranchSet;
 
 /// A step so many times those on both sides of it is a gap.
 const GAP: f64 = 5.0;
@@ -18,14 +18,14 @@ const LONG: f64 = 0.2;
 /// Turning points.
 const FEWEST_TURNS: usize = 4;
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let mut found = time_steps(survey);
     found.extend(rows_of_a_branch(survey));
     found.extend(turning_points(survey));
     found
 }
 
-fn time_steps(survey: &Survey) -> Vec<Complaint> {
+fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
     let units = Units::of(survey);
     let mut found = Vec::new();
     for (number, record) in survey.data.records().iter().enumerate() {
@@ -46,11 +46,11 @@ fn time_steps(survey: &Survey) -> Vec<Complaint> {
                 units.time(steps[longest]),
                 units.time(time[longest])
             );
-            found.push(Complaint {
+            found.push(DataIssue {
                 value: Some(steps[longest]),
                 unit: units.time.clone(),
-                ..Complaint::of_rows(
-                    ComplaintKind::TimeGap,
+                ..DataIssue::of_rows(
+                    DataIssueKind::TimeGap,
                     Severity::Warning,
                     statement,
                     vec![piece(&survey.data.records()[number], longest, longest + 1)],
@@ -68,10 +68,10 @@ fn time_steps(survey: &Survey) -> Vec<Complaint> {
                 units.time(short),
                 units.time(long)
             );
-            found.push(Complaint {
+            found.push(DataIssue {
                 value: Some(long / short),
-                ..Complaint::of_rows(
-                    ComplaintKind::ChangingSamplingRate,
+                ..DataIssue::of_rows(
+                    DataIssueKind::ChangingSamplingRate,
                     Severity::Note,
                     statement,
                     vec![piece(&survey.data.records()[number], 0, record.len() - 1)],
@@ -82,7 +82,7 @@ fn time_steps(survey: &Survey) -> Vec<Complaint> {
     found
 }
 
-fn rows_of_a_branch(survey: &Survey) -> Option<Complaint> {
+fn rows_of_a_branch(survey: &BranchSet) -> Option<DataIssue> {
     let mut counts: Vec<usize> = survey
         .branches
         .iter()
@@ -91,10 +91,10 @@ fn rows_of_a_branch(survey: &Survey) -> Option<Complaint> {
         .collect();
     counts.sort_unstable();
     let typical = *counts.get(counts.len() / 2)?;
-    (typical < FEWEST_ROWS).then(|| Complaint {
+    (typical < FEWEST_ROWS).then(|| DataIssue {
         value: Some(typical as f64),
-        ..Complaint::of_all(
-            ComplaintKind::FewSamples,
+        ..DataIssue::of_all(
+            DataIssueKind::FewSamples,
             Severity::Warning,
             format!(
                 "there are {typical} rows from turning point to turning point: too few to see the shape of a branch; sample {} \
@@ -105,13 +105,13 @@ fn rows_of_a_branch(survey: &Survey) -> Option<Complaint> {
     })
 }
 
-fn turning_points(survey: &Survey) -> Option<Complaint> {
+fn turning_points(survey: &BranchSet) -> Option<DataIssue> {
     let units = Units::of(survey);
     let found = survey.branches.len().saturating_sub(survey.data.records().len());
-    (found < FEWEST_TURNS).then(|| Complaint {
+    (found < FEWEST_TURNS).then(|| DataIssue {
         value: Some(found as f64),
-        ..Complaint::of_all(
-            ComplaintKind::FewTurningPoints,
+        ..DataIssue::of_all(
+            DataIssueKind::FewTurningPoints,
             Severity::Warning,
             format!(
                 "the input turns {} only (by more than {}): hardly any memory to learn from; measure several cycles of \

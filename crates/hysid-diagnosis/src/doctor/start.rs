@@ -1,7 +1,7 @@
 //! Where records begin: a model starts from the virgin state, and a record that does not misleads it.
 
-use super::{Complaint, ComplaintKind, Severity, Units, piece};
-use crate::branch::{Branch, Survey};
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use crate::branch::{Branch, BranchSet};
 
 /// A first input within this share of the largest is at rest.
 const AT_REST: f64 = 0.05;
@@ -18,11 +18,11 @@ const SIDE: f64 = 0.15;
 const HELP: &str =
     "put a few rows of its past, with blank outputs, before it, or leave its first cycle blank";
 
-pub(super) fn complaints(survey: &Survey) -> Vec<Complaint> {
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     (0..survey.data.records().len()).filter_map(|record| beginning(survey, record)).collect()
 }
 
-fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
+fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
     let record = &survey.data.records()[number];
     let (x, y) = (record.inputs()[0][0], record.output()[0]);
     // Blank rows at first are its past.
@@ -31,7 +31,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
     }
     let units = Units::of(survey);
     let complaint = |kind, severity, statement: String| {
-        Some(Complaint::of_rows(kind, severity, statement, vec![piece(&survey.data.records()[number], 0, 0)]))
+        Some(DataIssue::of_rows(kind, severity, statement, vec![piece(&survey.data.records()[number], 0, 0)]))
     };
     let largest = survey.input.0.abs().max(survey.input.1.abs());
     let later: Vec<&Branch> = survey.of_record(number).iter().skip(2).collect();
@@ -49,7 +49,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
     let margin = OUTSIDE * survey.height() + 4.0 * survey.output_noise;
     if readings.len() >= 2 && (y > high + margin || y < low - margin) {
         return complaint(
-            ComplaintKind::NotVirgin,
+            DataIssueKind::NotVirgin,
             Severity::Warning,
             format!(
                 "it begins with an output of {} at an input of {}, where later loops are between {} and {}: a virgin curve \
@@ -63,7 +63,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
     }
     if x.abs() > AT_REST * largest {
         return complaint(
-            ComplaintKind::UnknownStart,
+            DataIssueKind::UnknownStart,
             Severity::Note,
             format!(
                 "it begins at an input of {}, not at rest, so its memory is not known; {HELP}",
@@ -81,7 +81,7 @@ fn beginning(survey: &Survey, number: usize) -> Option<Complaint> {
     let side = (y - up).abs().min((y - down).abs()) / (up - down).abs();
     if both_ways && open && side < SIDE {
         return complaint(
-            ComplaintKind::NotVirgin,
+            DataIssueKind::NotVirgin,
             Severity::Warning,
             format!(
                 "it begins with an output of {} at an input of {}, on one side of its later loops ({} and {}) and not between them, as \

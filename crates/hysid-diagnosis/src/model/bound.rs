@@ -1,7 +1,7 @@
 //! Bounds of a model's output for bounded inputs, from its parameters alone, theory.md (10.42).
 
 use hysid_core::law::interval::Interval;
-use hysid_core::model::{Body, Model};
+use hysid_core::model::{Model, Predictor};
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::{Layout, Network};
 
@@ -24,7 +24,7 @@ pub(super) fn whatever_the_input(model: &Model) -> Option<Interval> {
 }
 
 fn possible(model: &Model, inputs: &[Interval], rate: Interval) -> Interval {
-    let preprocessing = model.preprocessing();
+    let preprocessing = model.input_transform();
     let seen = inputs.iter().enumerate();
     let mut seen: Vec<Interval> =
         seen.map(|(input, range)| range.rising(|value| preprocessing.input_as_seen(input, value))).collect();
@@ -35,11 +35,11 @@ fn possible(model: &Model, inputs: &[Interval], rate: Interval) -> Interval {
         seen.extend([Interval(0.0, farthest / largest), Interval(0.0, f64::INFINITY)]);
     }
     let seen_rate = rate.rising(|rate| preprocessing.rate(rate));
-    let exact = match model.body() {
-        Body::Network { network, scaling } => network_output(network, scaling, &seen, seen_rate),
-        Body::Law(law) => law.output_bound(seen[0], seen_rate),
+    let exact = match model.predictor() {
+        Predictor::Network { network, scaling } => network_output(network, scaling, &seen, seen_rate),
+        Predictor::Law(law) => law.output_bound(seen[0], seen_rate),
         // A median lies among the values it is taken of.
-        Body::Ensemble(ensemble) => ensemble
+        Predictor::Ensemble(ensemble) => ensemble
             .members()
             .iter()
             .map(|member| possible(member, inputs, rate))

@@ -11,7 +11,7 @@ use super::structure::sees_time;
 use super::weights::WeightDiagnosis;
 use crate::{Finding, Property, Verdict};
 use hysid_core::error::Result;
-use hysid_core::model::Body;
+use hysid_core::model::Predictor;
 use hysid_core::significant::Significant;
 
 /// Rows to half the range of the path that is refined.
@@ -148,30 +148,35 @@ fn refine(probe: &Probe) -> Result<Refinement> {
             Significant(100.0 * by_ten)
         )
     };
-    let basis = if exact && step_is_free(probe.model.body()) { Basis::Structure } else { Basis::Probing };
+    let basis =
+        if exact && step_is_free(probe.model.predictor()) { Basis::Structure } else { Basis::Probing };
     let independent = Claim { holds: exact, basis, measured: Some(by_two.max(by_ten)), statement };
     Ok(Refinement { by_two, by_ten, independent })
 }
 
 /// True for what consists of plays, stops and turning points, where clamps of one direction join to one.
-fn step_is_free(body: &Body) -> bool {
+fn step_is_free(body: &Predictor) -> bool {
     match body {
-        Body::Ensemble(ensemble) => ensemble.members().iter().all(|member| step_is_free(member.body())),
-        Body::Network { network, .. } => !sees_time(network.architecture()),
-        Body::Law(law) => law.is_step_free(),
+        Predictor::Ensemble(ensemble) => {
+            ensemble.members().iter().all(|member| step_is_free(member.predictor()))
+        }
+        Predictor::Network { network, .. } => !sees_time(network.architecture()),
+        Predictor::Law(law) => law.is_step_free(),
     }
 }
 
-fn sees_rate_or_time(body: &Body) -> bool {
+fn sees_rate_or_time(body: &Predictor) -> bool {
     match body {
-        Body::Network { network, .. } => sees_time(network.architecture()),
-        Body::Law(law) => law.sees_rate(),
-        Body::Ensemble(ensemble) => ensemble.members().iter().any(|member| sees_rate_or_time(member.body())),
+        Predictor::Network { network, .. } => sees_time(network.architecture()),
+        Predictor::Law(law) => law.sees_rate(),
+        Predictor::Ensemble(ensemble) => {
+            ensemble.members().iter().any(|member| sees_rate_or_time(member.predictor()))
+        }
     }
 }
 
 fn rate_independent(probe: &Probe, index: Option<f64>) -> Claim {
-    let sees = sees_rate_or_time(probe.model.body());
+    let sees = sees_rate_or_time(probe.model.predictor());
     let measured = index.unwrap_or(0.0);
     let (holds, basis, statement) = if !sees {
         let basis = if probe.speeds.matter() { Basis::Weights } else { Basis::Structure };

@@ -106,7 +106,7 @@ impl<'a> Inside<'a> {
         };
         let path = probe.path(&PROTOCOL);
         let every = path.x.len().div_ceil(COMPARED);
-        let preprocessing = probe.model.preprocessing();
+        let preprocessing = probe.model.input_transform();
         let [low, high] = [-probe.half, probe.half].map(|by| preprocessing.input(probe.centre + by));
         let fastest = preprocessing.rate(probe.speeds.tried()[3]);
         let mut inside = Self {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::{Error, Result};
-use hysid_core::model::{Body, Model};
+use hysid_core::model::{Model, Predictor};
 use hysid_core::network::Layout;
 
 /// Rows from the middle of the range to its end. Every tenth of the way falls on a row, and a branch over the
@@ -114,7 +114,7 @@ fn median_relaxation_time(model: &Model) -> Option<f64> {
     if let Some(ensemble) = model.ensemble() {
         return ensemble.members().iter().find_map(median_relaxation_time);
     }
-    let Body::Network { network, .. } = model.body() else { return None };
+    let Predictor::Network { network, .. } = model.predictor() else { return None };
     let ln_tau = &network.parameters()[Layout::new(*network.architecture()).ln_tau];
     if ln_tau.is_empty() {
         return None;
@@ -171,7 +171,7 @@ impl<'m> Probe<'m> {
     /// A rate that cannot be computed.
     pub fn as_seen(&self, record: Record) -> Result<(Record, Option<RateMethod>)> {
         let data = Dataset::new(self.model.names().clone(), vec![record])?;
-        let (seen, rate) = self.model.preprocessing().data(&data, self.model.rate())?;
+        let (seen, rate) = self.model.input_transform().data(&data, self.model.rate())?;
         Ok((seen.records()[0].clone(), rate))
     }
 
@@ -220,7 +220,7 @@ impl<'m> Probe<'m> {
 /// Where the memory of a model is virgin, in the unit of the first input; of an ensemble's members that do not
 /// agree, 0.
 fn origin(model: &Model) -> f64 {
-    let Some(ensemble) = model.ensemble() else { return model.preprocessing().origin(0) };
+    let Some(ensemble) = model.ensemble() else { return model.input_transform().origin(0) };
     let mut origins = ensemble.members().iter().map(origin);
     let first = origins.next().unwrap_or_default();
     if origins.all(|other| other == first) { first } else { 0.0 }

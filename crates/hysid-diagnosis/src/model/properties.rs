@@ -3,7 +3,7 @@
 
 use super::direct;
 use super::probe::{Probe, data, extent};
-use crate::branch::Survey;
+use crate::branch::BranchSet;
 use crate::cycles::{Cycle, cycles};
 use crate::{
     DiagnosisOptions, Finding, Property, Verdict, congruency, deterioration, loop_closure, masing,
@@ -42,8 +42,8 @@ const FASTER: &str =
 const LARGER: &str = "fit the model to a record with loops over a larger range of the input";
 
 /// Looks through a model's own data.
-pub(super) fn survey(data: &Dataset) -> Survey<'_> {
-    Survey::new(data, &EXACT)
+pub(super) fn survey(data: &Dataset) -> BranchSet<'_> {
+    BranchSet::new(data, &EXACT)
 }
 
 /// The whole loop repeated, for wear.

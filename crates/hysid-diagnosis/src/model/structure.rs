@@ -8,12 +8,12 @@ use super::probe::Probe;
 use crate::{Finding, Property, Verdict};
 use hysid_core::law::Classical;
 use hysid_core::law::properties::{CONGRUENT, MASING, ODD, RATE_INDEPENDENT, WIPES_OUT};
-use hysid_core::model::{Body, Ensemble, Model};
+use hysid_core::model::{Ensemble, Model, Predictor};
 use hysid_core::network::Architecture;
 
 /// A property that the equations of a model decide.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Promise {
+pub struct StructuralProperty {
     /// The property.
     #[serde(rename = "name")]
     pub property: Property,
@@ -25,28 +25,28 @@ pub struct Promise {
 }
 
 /// All that is promised, with what was found.
-pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<Promise> {
+pub(super) fn promises(probe: &Probe, findings: &[Finding]) -> Vec<StructuralProperty> {
     let of_model = of_model(probe.model, about_origin(probe));
     let promise = |(property, holds): (Property, bool)| {
         let verdict = if holds { Verdict::Yes } else { Verdict::No };
         let found = findings.iter().find(|finding| finding.property == property)?.verdict;
         let agrees = (found != Verdict::NotTestable).then_some(found == verdict);
-        Some(Promise { property, verdict, agrees })
+        Some(StructuralProperty { property, verdict, agrees })
     };
     of_model.into_iter().filter_map(promise).collect()
 }
 
 fn of_model(model: &Model, about_origin: bool) -> Vec<(Property, bool)> {
-    let mut all = match model.body() {
-        Body::Network { network, .. } => of_network(network.architecture(), about_origin),
-        Body::Law(law) => of_law(law, about_origin),
-        Body::Ensemble(ensemble) => return of_ensemble(ensemble, about_origin),
+    let mut all = match model.predictor() {
+        Predictor::Network { network, .. } => of_network(network.architecture(), about_origin),
+        Predictor::Law(law) => of_law(law, about_origin),
+        Predictor::Ensemble(ensemble) => return of_ensemble(ensemble, about_origin),
     };
-    if model.preprocessing().companding.is_some() {
+    if model.input_transform().companding.is_some() {
         // A branch of a companded input is no initial curve doubled in the input itself.
         all.retain(|promise| *promise != MASING);
     }
-    if model.preprocessing().history.is_some() {
+    if model.input_transform().history.is_some() {
         // The path so far is wiped out by nothing.
         all.retain(|promise| *promise == RATE_INDEPENDENT || *promise == ODD);
     }

@@ -8,12 +8,12 @@ use hysid_core::law::jiles_atherton::{JilesAtherton, JilesAthertonForm};
 use hysid_core::law::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
 };
-use hysid_core::model::preprocessing::Preprocessing;
-use hysid_core::model::{Body, Found};
+use hysid_core::model::input_transform::InputTransform;
+use hysid_core::model::{Found, Predictor};
 use hysid_core::network::scaling::Scaling;
 use hysid_core::network::{Architecture, Family, Network, Sizes};
-use hysid_core::options::Request;
-use hysid_core::options::classical::{ClassicalOptions, Rival};
+use hysid_core::options::FitSpec;
+use hysid_core::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid_core::options::network::FitOptions;
 use hysid_core::termination::Termination;
 
@@ -22,7 +22,7 @@ const X: f64 = 3.0;
 const RATE: f64 = 6.0;
 
 /// A model that was never trained, with the ranges of a triangle from `-X` to `X`.
-fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
+fn model(body: Predictor, request: FitSpec, rate: Option<RateMethod>) -> Model {
     let x: Vec<f64> = [0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0].map(|x| X * x).into();
     let time = (0..x.len()).map(|k| k as f64 * X / RATE).collect();
     let record = Record::new("r", vec![x.clone()], x).unwrap().with_time(time).unwrap();
@@ -36,7 +36,7 @@ fn model(body: Body, request: Request, rate: Option<RateMethod>) -> Model {
         runs: Vec::new(),
         selection: None,
     };
-    Model::new(body, Preprocessing::default(), rate, &data, found).unwrap()
+    Model::new(body, InputTransform::default(), rate, &data, found).unwrap()
 }
 
 fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Model {
@@ -44,8 +44,8 @@ fn network(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -
     let scaling =
         Scaling { inputs: vec![X], rate: rate.map(|_| RATE), output_mean: 10.0, output_deviation: 2.0 };
     let network = Network::new(architecture, parameters, output).unwrap();
-    let request = Request::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() });
-    model(Body::Network { network, scaling }, request, rate)
+    let request = FitSpec::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() });
+    model(Predictor::Network { network, scaling }, request, rate)
 }
 
 /// Stops that go straight to the output.
@@ -177,9 +177,9 @@ fn a_mixing_readout_is_not_congruent() {
     assert!(criteria.iter().all(|criterion| criterion.agrees == Some(true)), "{criteria:?}");
 }
 
-fn law(law: impl Into<hysid_core::law::Classical>, rival: Rival, rate: bool) -> ModelDiagnosis {
-    let request = Request::Classical(ClassicalOptions::of(rival));
-    let model = model(Body::Law(law.into()), request, rate.then_some(RateMethod::Central));
+fn law(law: impl Into<hysid_core::law::Classical>, rival: ClassicalModel, rate: bool) -> ModelDiagnosis {
+    let request = FitSpec::Classical(ClassicalOptions::of(rival));
+    let model = model(Predictor::Law(law.into()), request, rate.then_some(RateMethod::Central));
     let diagnosis = ModelDiagnosis::of(&model).unwrap();
     assert!(
         diagnosis.promises.iter().all(|promise| promise.agrees != Some(false)),
@@ -193,7 +193,7 @@ fn law(law: impl Into<hysid_core::law::Classical>, rival: Rival, rate: bool) -> 
 #[test]
 fn bouc_wen_does_not_wipe_out() {
     let plain = BoucWen { n: 1.5, ..BoucWen::new(0.1, 1.0, 0.8).unwrap() };
-    let diagnosis = law(plain, Rival::BoucWen, false);
+    let diagnosis = law(plain, ClassicalModel::BoucWen, false);
     assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::RateDependence), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::OddSymmetry), Verdict::Yes);
@@ -211,7 +211,7 @@ fn bouc_wen_does_not_wipe_out() {
         delta_psi: 0.0,
         lambda: 0.1,
     };
-    let diagnosis = law(BoucWen { degradation: Some(weakening), ..plain }, Rival::BoucWen, false);
+    let diagnosis = law(BoucWen { degradation: Some(weakening), ..plain }, ClassicalModel::BoucWen, false);
     assert_eq!(diagnosis.verdict(Property::Deterioration), Verdict::Yes);
 }
 
@@ -228,7 +228,7 @@ fn jiles_atherton_does_not_wipe_out() {
         c: 0.1,
         form: JilesAthertonForm::Original,
     };
-    let diagnosis = law(magnet, Rival::JilesAtherton, false);
+    let diagnosis = law(magnet, ClassicalModel::JilesAtherton, false);
     assert_eq!(diagnosis.verdict(Property::WipingOut), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::Orientation), Verdict::No);
     assert_eq!(diagnosis.verdict(Property::Saturation), Verdict::Yes);
@@ -241,7 +241,7 @@ fn jiles_atherton_does_not_wipe_out() {
 #[test]
 fn a_damper_has_a_dynamic_loop_only() {
     let damper = BoucWen { damping: 0.2, ..BoucWen::new(1.5, 0.0, 1.0).unwrap() };
-    let diagnosis = law(damper, Rival::BoucWen, true);
+    let diagnosis = law(damper, ClassicalModel::BoucWen, true);
     let widths = &diagnosis.loop_widths;
     assert!(widths.static_width.unwrap().abs() < 1e-5);
     for at in &widths.dynamic {
@@ -265,7 +265,7 @@ fn a_rate_dependent_play_widens_by_twice_its_threshold() {
         thresholds: Thresholds::Linear { beta },
         weights: PlayWeights::Free(vec![2.0]),
     };
-    let diagnosis = law(play, Rival::RateDependentPrandtlIshlinskii, true);
+    let diagnosis = law(play, ClassicalModel::RateDependentPrandtlIshlinskii, true);
     let widths = &diagnosis.loop_widths;
     assert!((widths.static_width.unwrap() - 2.0 * alpha).abs() < 1e-5);
     for at in &widths.dynamic {

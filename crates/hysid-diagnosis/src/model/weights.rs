@@ -8,7 +8,7 @@ use super::neurons::{Inside, MATTERS, Neuron, NeuronKind, SLIPS};
 use super::probe::Probe;
 use crate::{Finding, Property, Verdict};
 use hysid_core::error::Result;
-use hysid_core::model::Body;
+use hysid_core::model::Predictor;
 
 /// What the rate may move the output by without mattering, as a share of its range; as in probing.
 const NO_RATE: f64 = 0.01;
@@ -59,7 +59,7 @@ impl WeightDiagnosis {
     /// # Errors
     /// A rate that cannot be computed.
     pub(super) fn of(probe: &Probe, findings: &[Finding]) -> Result<Option<Self>> {
-        let Body::Network { network, scaling } = probe.model.body() else { return Ok(None) };
+        let Predictor::Network { network, scaling } = probe.model.predictor() else { return Ok(None) };
         let inside = Inside::new(probe, network, scaling)?;
         let neurons = inside.neurons();
         let wears = wear(&neurons);

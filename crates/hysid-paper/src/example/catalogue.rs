@@ -1,7 +1,7 @@
 //! The paper's examples as data: specimens, rivals, what the paper reports and what is to be reached.
 
 use hysid::network::Family;
-use hysid::options::classical::Rival;
+use hysid::options::classical::ClassicalModel;
 
 /// An example of the paper.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ pub enum Opponent {
     /// Another network with as many stops.
     Network(Family),
     /// A classical model.
-    Law(Rival),
+    Law(ClassicalModel),
     /// The XPNN without the rate.
     WithoutRate,
 }
@@ -92,7 +92,7 @@ const fn wanted(figure: Figure, limit: f64) -> Wanted {
 }
 
 const GPNN: Opponent = Opponent::Network(Family::Gpnn);
-const GPIM: Opponent = Opponent::Law(Rival::GeneralizedPrandtlIshlinskii);
+const GPIM: Opponent = Opponent::Law(ClassicalModel::GeneralizedPrandtlIshlinskii);
 
 /// At most 0.5 % in training and 2 % on unseen data.
 const CLOSE: &[Wanted] = &[wanted(Figure::Training, 0.5), wanted(Figure::Unseen, 2.0)];

@@ -195,15 +195,15 @@ def compare(
             raise ValueError(f"model `{name}` is unknown: choose one of auto, {', '.join(_hysid.model_names())}")
 
     rows: list[Compared] = []
-    requests: list[_hysid.Request] = []
+    requests: list[_hysid.FitSpec] = []
     for name in names:
         try:
             options = as_json({"model": name, "seed": seed})
-            requests += _hysid.Request.variants(options, str(rate) if named else "given", data)
+            requests += _hysid.FitSpec.variants(options, str(rate) if named else "given", data)
         except ValueError as error:
             rows.append(Compared(name, error=str(error)))
 
-    def row(request: _hysid.Request) -> Compared:
+    def row(request: _hysid.FitSpec) -> Compared:
         return _compared(data, request, unseen, time_limit)
 
     workers = threads or os.cpu_count() or 1
@@ -218,7 +218,7 @@ def compare(
 
 def _compared(
     data: _hysid.Dataset,
-    request: _hysid.Request,
+    request: _hysid.FitSpec,
     unseen: Columns | None,
     time_limit: float | None,
 ) -> Compared:

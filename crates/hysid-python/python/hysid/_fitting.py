@@ -245,7 +245,7 @@ def identified(
 
 def fitted(
     data: _hysid.Dataset,
-    request: _hysid.Request,
+    request: _hysid.FitSpec,
     *,
     time_limit: float | None,
     threads: int | None,
@@ -261,14 +261,14 @@ def fitted(
 
 def requested(
     arranged: Columns, rate: str, options: dict[str, Any], threads: int | None
-) -> tuple[_hysid.Dataset, _hysid.Request]:
+) -> tuple[_hysid.Dataset, _hysid.FitSpec]:
     """Data and request as the native module takes them; refuses and warns before there is any work."""
     if rate in ("central", "backward", "savitzky-golay") and arranged.time is None:
         raise ValueError("there is no time to take the rate from (give time, or use rate='none')")
     if threads is not None and not 1 <= threads <= 1024:
         raise ValueError(f"threads {threads}: choose 1 to 1024")
     data = arranged.dataset()
-    request = _hysid.Request(as_json(options), rate, data)
+    request = _hysid.FitSpec(as_json(options), rate, data)
     warn(request.warnings(data) + data.warnings())
     return data, request
 

@@ -7,7 +7,7 @@ import numpy as np
 __all__ = [
     "Dataset",
     "Model",
-    "Request",
+    "FitSpec",
     "Stepper",
     "__version__",
     "deteriorating_stop",
@@ -43,10 +43,10 @@ class Dataset:
     def copies_of(self, trained: Dataset) -> list[str]: ...
 
 @final
-class Request:
-    def __new__(cls, options: str, rate: str, data: Dataset) -> Request: ...
+class FitSpec:
+    def __new__(cls, options: str, rate: str, data: Dataset) -> FitSpec: ...
     @staticmethod
-    def variants(options: str, rate: str, data: Dataset) -> list[Request]: ...
+    def variants(options: str, rate: str, data: Dataset) -> list[FitSpec]: ...
     def label(self) -> str: ...
     def model(self) -> str: ...
     def warnings(self, data: Dataset) -> list[str]: ...
@@ -88,14 +88,14 @@ class Stepper:
 def diagnose(data: Dataset, smallest_reversal: float, smoothing: bool) -> str: ...
 def identify(
     data: Dataset,
-    request: Request,
+    request: FitSpec,
     threads: int | None,
     time_limit: float | None,
     progress: Callable[..., object] | None,
 ) -> tuple[Model, int, bool]: ...
 def validate(
     data: Dataset,
-    request: Request,
+    request: FitSpec,
     folds: int,
     threads: int | None,
     time_limit: float | None,

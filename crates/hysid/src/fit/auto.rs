@@ -31,11 +31,11 @@ use crate::data::metrics::Errors;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::network::{Fit, Observer};
-use crate::model::preprocessing::Preprocessing;
+use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
 use crate::model::selection::WarmUp;
-use crate::model::{Band, Body, Found, HeldOutRow, Model, Provenance};
-use crate::options::Request;
+use crate::model::{Band, Found, HeldOutRow, Model, Predictor, Provenance};
+use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
@@ -61,7 +61,7 @@ const MOST_ROWS: usize = 6000;
 const FITS_EXPECTED: usize = 200;
 
 /// What is fitted to the data, each from its first start.
-pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<Request> {
+pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
 }
 
@@ -129,7 +129,7 @@ fn without_folds(
     let combination = Combination::alone(candidate.kind, 0);
     let trials = [trial];
     let members = |_: usize| trials[0].members.clone();
-    let body = Body::Ensemble(combination.ensemble(&trials, members, data.input_range(0))?);
+    let body = Predictor::Ensemble(combination.ensemble(&trials, members, data.input_range(0))?);
     let model = ensemble(body, data, options, None, None, work)?;
     Ok(Fit { model, evaluations: work.done() })
 }
@@ -163,7 +163,8 @@ impl Chosen<'_, '_, '_> {
         let selection = self.selection(&combination, &kept);
         let validation = combination.validation(&self.trials, folds, &self.data.names().output);
         let members = |place: usize| self.trials[place].members[..kept[place]].to_vec();
-        let body = Body::Ensemble(combination.ensemble(&self.trials, members, self.data.input_range(0))?);
+        let body =
+            Predictor::Ensemble(combination.ensemble(&self.trials, members, self.data.input_range(0))?);
         let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
         if self.options.members == 1
             && let Some(model) = self.single(&combination, &ensemble, selection)?
@@ -239,7 +240,7 @@ impl Chosen<'_, '_, '_> {
 
 /// An ensemble with what is known of it.
 fn ensemble(
-    body: Body,
+    body: Predictor,
     data: &Dataset,
     options: &AutoOptions,
     validation: Option<Errors>,
@@ -247,7 +248,7 @@ fn ensemble(
     work: &Work,
 ) -> Result<Model> {
     let found = Found {
-        options: Request::Auto(options.clone()),
+        options: FitSpec::Auto(options.clone()),
         chosen_start: 0,
         termination: if work.is_stopped() { Termination::Stopped } else { Termination::Converged },
         validation,
@@ -255,7 +256,7 @@ fn ensemble(
         runs: Vec::new(),
         selection,
     };
-    Model::new(body, Preprocessing::default(), options.rate, data, found)
+    Model::new(body, InputTransform::default(), options.rate, data, found)
 }
 
 /// How a single model came about.

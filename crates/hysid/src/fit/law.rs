@@ -28,7 +28,7 @@ use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::preisach::Preisach;
 use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
 use crate::law::{Classical, Law};
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use hysid_core::for_each_law;
@@ -107,8 +107,8 @@ macro_rules! fit {
             stop: StopCheck<'_>,
         ) -> Result<Identified<Classical>> {
             match options.model {
-                $(Rival::$law => $law::identify(data, &options.try_into()?, observer, stop).map(any),)*
-                Rival::RandomStops => unreachable!("random stops are a network"),
+                $(ClassicalModel::$law => $law::identify(data, &options.try_into()?, observer, stop).map(any),)*
+                ClassicalModel::RandomStops => unreachable!("random stops are a network"),
             }
         }
     };

@@ -10,10 +10,10 @@ use crate::fit::auto;
 use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::random_stops::HIDDEN;
 use crate::network::Architecture;
-use crate::options::Request;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::input_options::HISTORY_INPUTS;
 use crate::options::network::{FitOptions, Trainer};
-use crate::options::shaping::HISTORY_INPUTS;
 
 /// Bytes of a number.
 const NUMBER: f64 = 8.0;
@@ -58,11 +58,11 @@ impl MemoryNeed {
 ///
 /// # Errors
 /// Options that make no network of these data.
-pub fn memory_need(data: &Dataset, request: &Request, threads: usize) -> Result<MemoryNeed> {
+pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<MemoryNeed> {
     match request {
-        Request::Network(options) => of_network(data, options, threads),
-        Request::Classical(options) => Ok(of_classical(data, options, threads)),
-        Request::Auto(options) => {
+        FitSpec::Network(options) => of_network(data, options, threads),
+        FitSpec::Classical(options) => Ok(of_classical(data, options, threads)),
+        FitSpec::Auto(options) => {
             let mut largest = MemoryNeed::of(0.0, "nothing", "");
             for candidate in auto::requests(data, options) {
                 // Candidates that cannot be fitted to these data are passed over, as in the fit.
@@ -155,11 +155,11 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
     };
     let operators = |default: usize| options.operators.unwrap_or(default);
     match options.model {
-        Rival::PrandtlIshlinskii | Rival::Masing => {
+        ClassicalModel::PrandtlIshlinskii | ClassicalModel::Masing => {
             let plays = options.thresholds.as_ref().map_or(operators(30), Vec::len);
             linear(plays as f64 + 3.0, plays)
         }
-        Rival::ModifiedPrandtlIshlinskii => {
+        ClassicalModel::ModifiedPrandtlIshlinskii => {
             let plays = options.thresholds.as_ref().map_or(operators(20), Vec::len);
             let zones = 2 * options.dead_zones.unwrap_or(6);
             let sums = linear((plays + zones + 3) as f64, plays);
@@ -172,7 +172,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
                 [(sums.bytes / NUMBER, sums.taken_by, sums.advice), (plays_of_rows, taken_by, advice)],
             )
         }
-        Rival::Preisach => {
+        ClassicalModel::Preisach => {
             let intervals = operators(30) as f64;
             let cells = 0.5 * intervals * (intervals + 1.0) + intervals + 3.0;
             let coarse = linear(233.0, 20);
@@ -183,7 +183,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
                 [(coarse.bytes / NUMBER, coarse.taken_by, FEWER_ROWS), (fine, taken_by, FEWER_OPERATORS)],
             )
         }
-        Rival::RandomStops => {
+        ClassicalModel::RandomStops => {
             let inputs = data.names().inputs.len() + if options.shaping.history { HISTORY_INPUTS } else { 0 };
             let (stops, hidden) = (operators(300), options.hidden.unwrap_or(HIDDEN));
             let features = (stops + hidden + 3) as f64;
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use crate::data::record::{ColumnNames, Record};
     use crate::options::ModelName;
-    use crate::options::chosen::ChosenOptions;
+    use crate::options::chosen::NamedOptions;
 
     fn data(rows: usize, inputs: usize) -> Dataset {
         let input = |c: usize| (0..rows).map(|k| ((k + c) as f64 * 0.1).sin()).collect();
@@ -225,7 +225,7 @@ mod tests {
 
     fn need(data: &Dataset, options: serde_json::Value) -> MemoryNeed {
         let serde_json::Value::Object(options) = options else { panic!("a map") };
-        let request = ChosenOptions::of(options).unwrap().request(None, false);
+        let request = NamedOptions::of(options).unwrap().request(None, false);
         memory_need(data, &request, 2).unwrap()
     }
 

@@ -24,9 +24,9 @@ use crate::fit::law::search::SearchProgress;
 use crate::law::facts::Origin;
 use crate::model::Model;
 use crate::model::history::Phase;
-use crate::model::preprocessing::Seen;
+use crate::model::input_transform::Transformed;
 use crate::options::ModelName;
-use crate::options::classical::Rival;
+use crate::options::classical::ClassicalModel;
 use crate::options::network::FitOptions;
 use crate::options::network::Method;
 pub use checkpoint::Checkpoint;
@@ -94,16 +94,16 @@ impl Progress<'_> {
     }
 
     /// Of a model's fit that has no rounds.
-    pub(crate) fn of_least_squares(model: Rival) -> Self {
+    pub(crate) fn of_least_squares(model: ClassicalModel) -> Self {
         let nothing_yet =
             SearchProgress { round: 0, rounds: 1, evaluations: 0, train_nrmse_percent: f64::NAN };
         Self::of_search(model, &nothing_yet)
     }
 
     /// Of a classical model's search.
-    pub(crate) fn of_search(model: Rival, progress: &SearchProgress) -> Self {
+    pub(crate) fn of_search(model: ClassicalModel, progress: &SearchProgress) -> Self {
         Self {
-            model: ModelName::Rival(model),
+            model: ModelName::Classical(model),
             is_part: false,
             phase: Phase::AllData,
             method: Method::LeastSquares,
@@ -139,7 +139,7 @@ pub struct Fit {
 /// # Errors
 /// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
-    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
@@ -150,6 +150,6 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 /// A checkpoint of other data, or one that contradicts itself.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
     let (options, state) = checkpoint.for_data(data)?;
-    let seen = Seen::of(data, &options.shaping, options.rate, Origin::OfData)?;
+    let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state)?.run(observer)
 }

@@ -4,7 +4,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::identify;
 use crate::fit::network::{Observer, Progress};
-use crate::options::Request;
+use crate::options::FitSpec;
 use crate::validation::{CrossValidation, CrossValidator};
 
 /// Identifies a model on each fold and judges it on what was held out. The observer is as in
@@ -15,7 +15,7 @@ use crate::validation::{CrossValidation, CrossValidator};
 /// Data too few for two folds, and as [`identify`].
 pub fn cross_validate(
     data: &Dataset,
-    request: &Request,
+    request: &FitSpec,
     most_folds: usize,
     observer: &mut Observer<'_>,
 ) -> Result<CrossValidation> {

@@ -7,7 +7,7 @@ use hysid::operator::{Operator, Stop};
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
 use hysid::options::network::FitOptions;
-use hysid::options::{ModelName, Request};
+use hysid::options::{FitSpec, ModelName};
 
 /// A play-like output that lags behind its input, so that every model has something to find. Another name is
 /// another measurement.
@@ -23,21 +23,21 @@ pub fn record(rows: usize, name: &str) -> Record {
 }
 
 /// Small, so that all of them are quick.
-pub fn small(model: ModelName, rate: Option<RateMethod>) -> Request {
-    match Request::of(model, rate, 3) {
-        Request::Network(options) => Request::Network(FitOptions {
+pub fn small(model: ModelName, rate: Option<RateMethod>) -> FitSpec {
+    match FitSpec::of(model, rate, 3) {
+        FitSpec::Network(options) => FitSpec::Network(FitOptions {
             sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
             starts: 1,
             epochs: 4,
             ..options
         }),
-        Request::Classical(options) => Request::Classical(ClassicalOptions {
+        FitSpec::Classical(options) => FitSpec::Classical(ClassicalOptions {
             operators: Some(8),
             starts: options.model.is_searched().then_some(2),
             epochs: options.model.is_searched().then_some(6),
             ..options
         }),
-        Request::Auto(options) => Request::Auto(AutoOptions {
+        FitSpec::Auto(options) => FitSpec::Auto(AutoOptions {
             members: 6,
             starts: 2,
             epochs: Some(3),

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::branch::{Branch, Survey};
+use crate::branch::{Branch, BranchSet};
 
 /// Rows on each side of a turning point at least.
 const FEWEST_ROWS: usize = 5;
@@ -72,7 +72,7 @@ impl Window {
 
 impl<'d> Turn<'d> {
     /// The turning point between two branches that follow one another, of a record with time.
-    pub fn between(survey: &Survey<'d>, before: &Branch, after: &Branch) -> Option<Self> {
+    pub fn between(survey: &BranchSet<'d>, before: &Branch, after: &Branch) -> Option<Self> {
         let record = &survey.data.records()[before.record];
         let (time, x, y) = (record.time()?, record.inputs()[0].as_slice(), record.output());
         let row = after.rows.start;
@@ -300,7 +300,7 @@ mod tests {
 
     /// Root mean square of what is left around the top.
     fn left(data: &Dataset, beside: Beside) -> f64 {
-        let survey = Survey::new(data, &DiagnosisOptions::default());
+        let survey = BranchSet::new(data, &DiagnosisOptions::default());
         let turn = Turn::between(&survey, &survey.branches[0], &survey.branches[1]).unwrap();
         let window = turn.window(0.3, (0.0, 0.03)).unwrap();
         (turn.remainder(&window, beside) / window.len() as f64).sqrt()

@@ -8,12 +8,12 @@ use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::options::input_options::InputOptions;
 use crate::options::network::ENSEMBLE_PENALTIES;
 use crate::options::network::{FitOptions, Regularisation};
-use crate::options::shaping::Shaping;
 use crate::options::variants::variants;
-use crate::options::{ModelName, Request};
+use crate::options::{FitSpec, ModelName};
 
 /// Candidates of one kind, which agree among themselves before they answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl Kind {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
     pub kind: Kind,
-    request: Request,
+    request: FitSpec,
 }
 
 /// Scale of the companding of the input: for what happens within a tenth or a fiftieth of its range.
@@ -80,11 +80,11 @@ const THIN: usize = 3000;
 
 impl Candidate {
     /// A model that the user has decided for.
-    pub fn alone(request: &Request) -> Self {
+    pub fn alone(request: &FitSpec) -> Self {
         let kind = match request {
-            Request::Network(_) => Kind::Networks,
-            Request::Classical(options) if options.model == Rival::RandomStops => Kind::RandomStops,
-            Request::Classical(_) | Request::Auto(_) => Kind::Classical,
+            FitSpec::Network(_) => Kind::Networks,
+            FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => Kind::RandomStops,
+            FitSpec::Classical(_) | FitSpec::Auto(_) => Kind::Classical,
         };
         Self { kind, request: request.clone() }
     }
@@ -93,25 +93,25 @@ impl Candidate {
     pub fn warmed_up(&self, rows: usize) -> Self {
         let mut warmed = self.clone();
         match &mut warmed.request {
-            Request::Network(options) => options.shaping.warm_up = rows,
-            Request::Classical(options) => options.shaping.warm_up = rows,
-            Request::Auto(_) => {}
+            FitSpec::Network(options) => options.shaping.warm_up = rows,
+            FitSpec::Classical(options) => options.shaping.warm_up = rows,
+            FitSpec::Auto(_) => {}
         }
         warmed
     }
 
     /// What is asked for.
-    pub fn asked(&self) -> &Request {
+    pub fn asked(&self) -> &FitSpec {
         &self.request
     }
 
     /// What is asked for, for a start of its own.
-    pub fn request(&self, start: usize) -> Request {
+    pub fn request(&self, start: usize) -> FitSpec {
         let mut request = self.request.clone();
         let seed = match &mut request {
-            Request::Network(options) => &mut options.seed,
-            Request::Classical(options) => &mut options.seed,
-            Request::Auto(_) => unreachable!("no candidate is made of candidates"),
+            FitSpec::Network(options) => &mut options.seed,
+            FitSpec::Classical(options) => &mut options.seed,
+            FitSpec::Auto(_) => unreachable!("no candidate is made of candidates"),
         };
         *seed = seed.wrapping_add((start as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         request
@@ -120,31 +120,31 @@ impl Candidate {
     /// True if another start gives another model; a classical model is searched from several in any case.
     pub fn is_random(&self) -> bool {
         match &self.request {
-            Request::Network(_) => true,
-            Request::Classical(options) => options.model == Rival::RandomStops,
-            Request::Auto(_) => false,
+            FitSpec::Network(_) => true,
+            FitSpec::Classical(options) => options.model == ClassicalModel::RandomStops,
+            FitSpec::Auto(_) => false,
         }
     }
 
     /// The same network with other penalties; none for what is no network.
     pub fn with_other_penalties(&self) -> Vec<Self> {
-        let Request::Network(options) = &self.request else { return Vec::new() };
+        let FitSpec::Network(options) = &self.request else { return Vec::new() };
         let with = |Regularisation { ridge, decay }| {
             let options = FitOptions { ridge: Some(ridge), decay: Some(decay), ..options.clone() };
-            Self { kind: self.kind, request: Request::Network(options) }
+            Self { kind: self.kind, request: FitSpec::Network(options) }
         };
         OTHER_PENALTIES.map(with).into()
     }
 
     /// True for a law whose parameters are searched.
     pub fn is_searched(&self) -> bool {
-        matches!(&self.request, Request::Classical(options) if options.model.is_searched())
+        matches!(&self.request, FitSpec::Classical(options) if options.model.is_searched())
     }
 
     /// The same searched from few starts in few epochs.
     pub fn in_haste(&self) -> Self {
         let mut hasty = self.clone();
-        if let Request::Classical(options) = &mut hasty.request {
+        if let FitSpec::Classical(options) = &mut hasty.request {
             (options.starts, options.epochs) = (Some(STARTS_IN_HASTE), Some(EPOCHS_IN_HASTE));
         }
         hasty
@@ -166,22 +166,22 @@ impl Candidate {
 
 /// A candidate that takes a moment to fit: few random stops.
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
-    let request = Request::Classical(ClassicalOptions {
+    let request = FitSpec::Classical(ClassicalOptions {
         rate: options.rate,
         deterioration: Some(options.deterioration.unwrap_or(true)),
         operators: Some(QUICK_STOPS),
         hidden: Some(0),
         seed: options.seed,
-        ..ClassicalOptions::of(Rival::RandomStops)
+        ..ClassicalOptions::of(ClassicalModel::RandomStops)
     });
     Candidate { kind: Kind::RandomStops, request }
 }
 
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
-    let mut networks = networks(options).into_iter().map(Request::Network);
-    let mut random = random_stops(options).into_iter().map(Request::Classical);
-    let mut linear = linear_laws(options).into_iter().map(Request::Classical);
+    let mut networks = networks(options).into_iter().map(FitSpec::Network);
+    let mut random = random_stops(options).into_iter().map(FitSpec::Classical);
+    let mut linear = linear_laws(options).into_iter().map(FitSpec::Classical);
     let of = |kind| move |request| Candidate { kind, request };
     let mut all = Vec::new();
     // A network and a quick one at a time.
@@ -195,23 +195,23 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
         }
         all.extend(next);
     }
-    all.extend(searched_laws(options).into_iter().map(Request::Classical).map(of(Kind::Classical)));
+    all.extend(searched_laws(options).into_iter().map(FitSpec::Classical).map(of(Kind::Classical)));
     all.retain(|candidate| is_allowed(candidate, data, options));
     all
 }
 
-fn companded(share: f64) -> Shaping {
-    Shaping { companding: Some(share), ..Shaping::default() }
+fn companded(share: f64) -> InputOptions {
+    InputOptions { companding: Some(share), ..InputOptions::default() }
 }
 
 /// Networks, with the ways of seeing the input that may serve them.
 fn networks(options: &AutoOptions) -> Vec<FitOptions> {
     use Family::{PreisachNn, Xpnn, XpnnPlus};
-    let as_it_is = Shaping::default();
+    let as_it_is = InputOptions::default();
     let [tenth, fiftieth] = COMPANDING.map(companded);
-    let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
-    let both = Shaping { rate_companding: Some(RATE_COMPANDING), ..tenth };
-    let history = Shaping { history: true, ..as_it_is };
+    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let both = InputOptions { rate_companding: Some(RATE_COMPANDING), ..tenth };
+    let history = InputOptions { history: true, ..as_it_is };
     let mut networks = Vec::new();
     let mut add = |model, deterioration, shaping, rate, relaxation| {
         networks.push(of_network(options, model, deterioration, shaping, rate, relaxation));
@@ -250,9 +250,9 @@ fn networks(options: &AutoOptions) -> Vec<FitOptions> {
 
 /// Networks whose stops are not trained.
 fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let as_it_is = Shaping::default();
+    let as_it_is = InputOptions::default();
     let tenth = companded(COMPANDING[0]);
-    let rate_tenth = Shaping { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
     let (linear, layered) = (LINEAR_RANDOM_STOPS, LAYERED_RANDOM_STOPS);
     let rate = options.rate;
     let mut all = vec![(as_it_is, None, false, linear), (tenth, None, false, linear)];
@@ -267,13 +267,13 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
         operators: Some(options.operators.unwrap_or(stops)),
         hidden: Some(hidden),
         seed: options.seed,
-        ..ClassicalOptions::of(Rival::RandomStops)
+        ..ClassicalOptions::of(ClassicalModel::RandomStops)
     };
     all.into_iter().map(of).collect()
 }
 
 /// A law with what the user has decided of laws.
-fn of_law(options: &AutoOptions, model: Rival) -> ClassicalOptions {
+fn of_law(options: &AutoOptions, model: ClassicalModel) -> ClassicalOptions {
     ClassicalOptions {
         operators: options.operators,
         epochs: options.epochs,
@@ -286,19 +286,21 @@ fn of_law(options: &AutoOptions, model: Rival) -> ClassicalOptions {
 fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let [tenth, fiftieth] = COMPANDING.map(companded);
     let mut laws = Vec::new();
-    for shaping in [Shaping::default(), tenth, fiftieth] {
-        for model in [Rival::Preisach, Rival::ModifiedPrandtlIshlinskii] {
+    for shaping in [InputOptions::default(), tenth, fiftieth] {
+        for model in [ClassicalModel::Preisach, ClassicalModel::ModifiedPrandtlIshlinskii] {
             laws.push(ClassicalOptions { shaping, ..of_law(options, model) });
         }
     }
-    laws.extend([Rival::PrandtlIshlinskii, Rival::Masing].map(|model| of_law(options, model)));
+    laws.extend(
+        [ClassicalModel::PrandtlIshlinskii, ClassicalModel::Masing].map(|model| of_law(options, model)),
+    );
     laws
 }
 
 /// The laws that are searched, each in all its variants.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let searched = Rival::ALL.iter().copied().filter(|model| model.is_searched());
-    let with_rate = |model: Rival| ClassicalOptions {
+    let searched = ClassicalModel::ALL.iter().copied().filter(|model| model.is_searched());
+    let with_rate = |model: ClassicalModel| ClassicalOptions {
         rate: options.rate.filter(|_| model.uses_rate()),
         starts: Some(STARTS_OF_A_SEARCH),
         ..of_law(options, model)
@@ -311,7 +313,7 @@ fn of_network(
     options: &AutoOptions,
     model: Family,
     deterioration: bool,
-    shaping: Shaping,
+    shaping: InputOptions,
     rate: Option<RateMethod>,
     relaxation: usize,
 ) -> FitOptions {
@@ -340,15 +342,15 @@ fn of_network(
 fn is_allowed(candidate: &Candidate, data: &Dataset, decided: &AutoOptions) -> bool {
     let request = &candidate.request;
     let (shaping, deteriorates) = match request {
-        Request::Network(options) => (options.shaping, !options.no_deterioration),
-        Request::Classical(options) => {
+        FitSpec::Network(options) => (options.shaping, !options.no_deterioration),
+        FitSpec::Classical(options) => {
             (options.shaping, options.deterioration == Some(true) || options.degradation)
         }
-        Request::Auto(_) => return false,
+        FitSpec::Auto(_) => return false,
     };
-    let is_network = matches!(request, Request::Network(_));
-    let relaxes = matches!(request, Request::Network(options) if options.sizes.relaxation > 0);
-    let is_random_stops = request.model() == ModelName::Rival(Rival::RandomStops);
+    let is_network = matches!(request, FitSpec::Network(_));
+    let relaxes = matches!(request, FitSpec::Network(options) if options.sizes.relaxation > 0);
+    let is_random_stops = request.model() == ModelName::Classical(ClassicalModel::RandomStops);
     let takes_history = request.model().takes_further_inputs();
     request.model().check_data(data, request.rate()).is_ok()
         && (!shaping.history || takes_history)

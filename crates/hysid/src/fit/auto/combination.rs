@@ -8,7 +8,9 @@ use crate::fit::auto::candidates::Kind;
 use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
 use crate::fit::auto::trial::{HeldOut, Trial};
-use crate::model::{Council, Ensemble, Group, HeldOutRow, Model, Speaker, Voice, Weights, disagreement};
+use crate::model::{
+    Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Weights, disagreement,
+};
 use crate::validation::PooledErrors;
 
 /// Power of theory.md (11.6) among candidates of a kind, and how many of them count.
@@ -49,18 +51,18 @@ impl Combination {
             Evidence::OneLoop => prior::POWER_OF_KINDS,
         };
         let weights = weights(&scores, power, kinds.len());
-        let voices = kinds.into_iter().zip(weights);
-        let voices = voices.map(|(group, weights)| Voice { weights, who: Speaker::Group(group) });
-        Group { name: "all".into(), voices: voices.collect() }
-            .map_members(&mut |place| Some(Speaker::Member(place)))
+        let nodes = kinds.into_iter().zip(weights);
+        let nodes = nodes.map(|(group, weights)| Node { weights, kind: NodeKind::Group(group) });
+        Group { name: "all".into(), nodes: nodes.collect() }
+            .map_members(&mut |place| Some(NodeKind::Member(place)))
             .map(|group| Self { group })
     }
 
     /// A single candidate.
     pub fn alone(kind: Kind, place: usize) -> Self {
-        let voice = |who| Voice { weights: Weights::equal(), who };
-        let kind = Group { name: kind.name().into(), voices: vec![voice(Speaker::Member(place))] };
-        Self { group: Group { name: "all".into(), voices: vec![voice(Speaker::Group(kind))] } }
+        let node = |kind| Node { weights: Weights::equal(), kind };
+        let kind = Group { name: kind.name().into(), nodes: vec![node(NodeKind::Member(place))] };
+        Self { group: Group { name: "all".into(), nodes: vec![node(NodeKind::Group(kind))] } }
     }
 
     /// What each candidate counts in the whole, by its place.
@@ -70,7 +72,7 @@ impl Combination {
 
     /// Only the candidates that are kept; `None` if these count nothing.
     pub fn only(&self, is_kept: impl Fn(usize) -> bool) -> Option<Self> {
-        let mut keep = |place| is_kept(place).then_some(Speaker::Member(place));
+        let mut keep = |place| is_kept(place).then_some(NodeKind::Member(place));
         self.group.map_members(&mut keep).map(|group| Self { group })
     }
 
@@ -131,18 +133,18 @@ impl Combination {
     ) -> Result<Ensemble> {
         let mut members: Vec<Model> = Vec::new();
         let mut of_candidate = |place: usize| {
-            let voices: Vec<Voice> = models(place)
+            let nodes: Vec<Node> = models(place)
                 .into_iter()
                 .map(|model| {
                     members.push(model);
-                    Voice { weights: Weights::equal(), who: Speaker::Member(members.len() - 1) }
+                    Node { weights: Weights::equal(), kind: NodeKind::Member(members.len() - 1) }
                 })
                 .collect();
             let name = trials[place].candidate.name();
-            (!voices.is_empty()).then_some(Speaker::Group(Group { name, voices }))
+            (!nodes.is_empty()).then_some(NodeKind::Group(Group { name, nodes }))
         };
         let group = self.group.map_members(&mut of_candidate);
-        let nothing = || Group { name: "all".into(), voices: Vec::new() };
+        let nothing = || Group { name: "all".into(), nodes: Vec::new() };
         Ensemble::new(members, group.unwrap_or_else(nothing), range)
     }
 
@@ -151,14 +153,14 @@ impl Combination {
         let held_out = &folds[fold];
         let mut starts: Vec<(usize, usize)> = Vec::new();
         let group = self.group.map_members(&mut |place| {
-            let voices = (0..trials[place].starts.len()).map(|start| {
+            let nodes = (0..trials[place].starts.len()).map(|start| {
                 starts.push((place, start));
-                Voice { weights: Weights::equal(), who: Speaker::Member(starts.len() - 1) }
+                Node { weights: Weights::equal(), kind: NodeKind::Member(starts.len() - 1) }
             });
-            Some(Speaker::Group(Group { name: String::new(), voices: voices.collect() }))
+            Some(NodeKind::Group(Group { name: String::new(), nodes: nodes.collect() }))
         });
         let Some(group) = group else { return Vec::new() };
-        let mut council = Council::new(&group);
+        let mut medians = MedianBuffers::new(&group);
         let row = |row: usize| {
             let outside = held_out.outside[row];
             let of_start = |leaf: usize| {
@@ -166,8 +168,8 @@ impl Combination {
                 trials[place].starts[start][fold].predicted[row]
             };
             HeldOutRow {
-                error: held_out.measured[row] - council.output(&group, outside, of_start),
-                disagreement: disagreement(council.everybody(&group, outside, of_start)),
+                error: held_out.measured[row] - medians.output(&group, outside, of_start),
+                disagreement: disagreement(medians.predictions(&group, outside, of_start)),
                 outside,
                 weight: 1.0 / held_out.measured.len() as f64,
             }
@@ -195,18 +197,18 @@ fn of_kind(
     let (inside, outside) = (sum(|weights| weights.inside), sum(|weights| weights.outside));
     let counts =
         |weights: &Weights| weights.inside >= TOO_LITTLE * inside || weights.outside >= TOO_LITTLE * outside;
-    let voices = places.into_iter().zip(weights).filter(|(_, weights)| counts(weights));
-    let voices: Vec<Voice> =
-        voices.map(|(place, weights)| Voice { weights, who: Speaker::Member(place) }).collect();
-    (!voices.is_empty()).then(|| Group { name: kind.name().into(), voices })
+    let nodes = places.into_iter().zip(weights).filter(|(_, weights)| counts(weights));
+    let nodes: Vec<Node> =
+        nodes.map(|(place, weights)| Node { weights, kind: NodeKind::Member(place) }).collect();
+    (!nodes.is_empty()).then(|| Group { name: kind.name().into(), nodes })
 }
 
 /// What a tree predicts of the rows of each fold.
 fn predictions(group: &Group, trials: &[Trial], folds: &[HeldOut]) -> Vec<Vec<f64>> {
-    let mut council = Council::new(group);
+    let mut medians = MedianBuffers::new(group);
     let mut of_fold = |(fold, held_out): (usize, &HeldOut)| -> Vec<f64> {
         let row = |(row, &outside): (usize, &f64)| {
-            council.output(group, outside, |place| trials[place].predicted[fold][row])
+            medians.output(group, outside, |place| trials[place].predicted[fold][row])
         };
         held_out.outside.iter().enumerate().map(row).collect()
     };
@@ -225,8 +227,8 @@ mod tests {
     use crate::fit::auto::candidates::Candidate;
     use crate::fit::identify;
     use crate::network::Family;
-    use crate::options::Request;
-    use crate::options::classical::{ClassicalOptions, Rival};
+    use crate::options::FitSpec;
+    use crate::options::classical::{ClassicalModel, ClassicalOptions};
     use crate::options::network::FitOptions;
     use crate::validation::folds;
 
@@ -241,9 +243,9 @@ mod tests {
     /// one to eight members.
     fn trials(model: &Model, folds: &[HeldOut], generator: &mut Xoshiro256PlusPlus) -> Vec<Trial> {
         let requests = [
-            Request::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() }),
-            Request::Classical(ClassicalOptions::of(Rival::RandomStops)),
-            Request::Classical(ClassicalOptions::of(Rival::Preisach)),
+            FitSpec::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() }),
+            FitSpec::Classical(ClassicalOptions::of(ClassicalModel::RandomStops)),
+            FitSpec::Classical(ClassicalOptions::of(ClassicalModel::Preisach)),
         ];
         let count = 1 + (generator.random::<u64>() % 14) as usize;
         let one = |_| {
@@ -267,9 +269,11 @@ mod tests {
     #[test]
     fn any_number_of_members_is_an_ensemble() {
         let data = data();
-        let request =
-            ClassicalOptions { operators: Some(3), ..ClassicalOptions::of(Rival::PrandtlIshlinskii) };
-        let fitted = identify(&data, &Request::Classical(request), &mut |_| ControlFlow::Continue(()));
+        let request = ClassicalOptions {
+            operators: Some(3),
+            ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+        };
+        let fitted = identify(&data, &FitSpec::Classical(request), &mut |_| ControlFlow::Continue(()));
         let model = fitted.unwrap().model;
         let folds: Vec<HeldOut> = folds(&data, 5).into_iter().map(HeldOut::of).collect();
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
@@ -294,11 +298,11 @@ mod tests {
                 // Where its members say what was predicted of the folds, the ensemble answers what was validated.
                 let of_member: Vec<usize> =
                     shares.iter().flat_map(|(place, _)| vec![*place; kept[*place]]).collect();
-                let mut council = Council::new(ensemble.group());
+                let mut medians = MedianBuffers::new(ensemble.group());
                 for (fold, (held_out, validated)) in folds.iter().zip(&predictions).enumerate() {
                     for (row, (&outside, validated)) in held_out.outside.iter().zip(validated).enumerate() {
                         let said = |member: usize| trials[of_member[member]].predicted[fold][row];
-                        let answer = council.output(ensemble.group(), outside, said);
+                        let answer = medians.output(ensemble.group(), outside, said);
                         let size = validated.abs().max(1.0);
                         assert!((answer - validated).abs() < 1e-9 * size, "{answer} and {validated}");
                     }

@@ -8,8 +8,8 @@
 
 use crate::data::record::{Dataset, Record};
 use crate::data::turning_points::turning_points;
-use crate::options::Request;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::FitSpec;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 
 /// Reversals below this share of the range are noise.
 const SMALLEST_REVERSAL: f64 = 0.02;
@@ -55,7 +55,7 @@ impl Evidence {
 
     /// What is added to the score of a candidate: mean logarithm of its error inside the loop over its error
     /// on the folds.
-    pub fn prior(self, candidate: &Request) -> f64 {
+    pub fn prior(self, candidate: &FitSpec) -> f64 {
         match self {
             Self::SeveralLoops => 0.0,
             Self::OneLoop => inside_over_folds(candidate),
@@ -78,20 +78,20 @@ fn speed(record: &Record) -> Option<f64> {
     (speed > 0.0 && speed.is_finite()).then_some(speed)
 }
 
-fn inside_over_folds(candidate: &Request) -> f64 {
+fn inside_over_folds(candidate: &FitSpec) -> f64 {
     let companded = |shares: Option<f64>| if shares.is_some() { 0.2 } else { 0.0 };
     match candidate {
-        Request::Network(options) => {
+        FitSpec::Network(options) => {
             companded(options.shaping.companding) + if options.deteriorates() { 0.85 } else { 1.25 }
         }
-        Request::Classical(options) => companded(options.shaping.companding) + of_law(options),
-        Request::Auto(_) => 0.0,
+        FitSpec::Classical(options) => companded(options.shaping.companding) + of_law(options),
+        FitSpec::Auto(_) => 0.0,
     }
 }
 
 fn of_law(options: &ClassicalOptions) -> f64 {
     match options.model {
-        Rival::RandomStops if options.deterioration == Some(true) => 0.6,
+        ClassicalModel::RandomStops if options.deterioration == Some(true) => 0.6,
         model => model.facts().log_error_inside,
     }
 }

@@ -13,9 +13,9 @@ use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Trial, fit_members};
 use crate::fit::auto::work::Work;
-use crate::model::preprocessing::{Preprocessing, origin};
+use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
-use crate::model::{Body, HeldOutRow, Model};
+use crate::model::{HeldOutRow, Model, Predictor};
 use crate::options::auto::AutoOptions;
 
 /// Starts from which a model is distilled, on everything and on each fold.
@@ -105,8 +105,8 @@ impl Makers<'_, '_, '_> {
             };
             let of_fold = self.combination.ensemble(self.trials, of_fold, training.input_range(0))?;
             let of_fold = Model::new(
-                Body::Ensemble(of_fold),
-                Preprocessing::default(),
+                Predictor::Ensemble(of_fold),
+                InputTransform::default(),
                 self.options.rate,
                 training,
                 ensemble.provenance().clone().into(),

@@ -6,7 +6,7 @@ use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::work::Work;
-use crate::model::{Excursion, Model, Votes};
+use crate::model::{Excursion, Model, Predictions};
 use crate::validation::Fold;
 
 /// The rows of a fold that are held out, and what is known of them.
@@ -116,11 +116,11 @@ impl Trial {
 
 /// The median of several predictions, row by row.
 fn medians(predictions: &[&[f64]]) -> Vec<f64> {
-    let mut votes = Votes::default();
+    let mut all = Predictions::default();
     let row = |row: usize| {
-        votes.clear();
-        predictions.iter().for_each(|prediction| votes.cast(prediction[row], 1.0));
-        votes.quantile(0.5)
+        all.clear();
+        predictions.iter().for_each(|prediction| all.push(prediction[row], 1.0));
+        all.quantile(0.5)
     };
     (0..predictions[0].len()).map(row).collect()
 }

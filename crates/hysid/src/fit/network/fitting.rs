@@ -22,13 +22,13 @@ use crate::fit::network::soundness::{Frame, require};
 use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::Phase;
-use crate::model::preprocessing::{Preprocessing, Seen};
-use crate::model::{Body, Found, Model};
+use crate::model::input_transform::{InputTransform, Transformed};
+use crate::model::{Found, Model, Predictor};
 use crate::network::free_run::FreeRun;
 use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Network};
 use crate::options::network::{FitOptions, Regularisation, Trainer};
-use crate::options::{ModelName, Request};
+use crate::options::{FitSpec, ModelName};
 use crate::stop_check::StopCheck;
 use crate::validation::{Fold, PooledErrors, folds};
 
@@ -84,7 +84,7 @@ pub(crate) struct Fitting<'a> {
 /// Data that networks are trained on, as they see them.
 struct Part<'a> {
     data: &'a Dataset,
-    preprocessing: Preprocessing,
+    preprocessing: InputTransform,
     scaling: Scaling,
     /// The options for data seen in this way.
     options: FitOptions,
@@ -119,7 +119,7 @@ struct Validation {
 
 impl<'a> Part<'a> {
     /// `seen` is what the shaping of the options makes of data measured.
-    fn of(seen: &'a Seen<'_>, asked: &FitOptions) -> Result<Self> {
+    fn of(seen: &'a Transformed<'_>, asked: &FitOptions) -> Result<Self> {
         Ok(Self {
             data: &seen.data,
             preprocessing: seen.preprocessing.clone(),
@@ -149,7 +149,7 @@ impl<'a> Part<'a> {
 
 impl<'a> Fitting<'a> {
     /// `seen` is what the shaping of the options makes of the data measured.
-    pub fn new(measured: &'a Dataset, seen: &'a Seen<'_>, asked: FitOptions) -> Result<Self> {
+    pub fn new(measured: &'a Dataset, seen: &'a Transformed<'_>, asked: FitOptions) -> Result<Self> {
         asked.check()?;
         let starts = asked.starts;
         let on_folds = if starts > 1 { MOST_FOLDS * STARTS_ON_FOLDS.min(starts) } else { 0 };
@@ -208,9 +208,9 @@ impl<'a> Fitting<'a> {
             validation: validation.errors,
             penalties: Some(penalties),
             selection: None,
-            options: Request::Network(asked.clone()),
+            options: FitSpec::Network(asked.clone()),
         };
-        let body = Body::Network { network, scaling };
+        let body = Predictor::Network { network, scaling };
         let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
         Ok(Fit { model, evaluations })
     }
@@ -250,9 +250,9 @@ impl<'a> Fitting<'a> {
         let stop = StopCheck::new(&is_to_stop);
         let folds = self.folds();
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
-        let seen: Vec<Seen> = folds
+        let seen: Vec<Transformed> = folds
             .iter()
-            .map(|fold| Seen::of(&fold.train, &shaping, rate, Origin::OfData))
+            .map(|fold| Transformed::of(&fold.train, &shaping, rate, Origin::OfData))
             .collect::<Result<_>>()?;
         let parts: Vec<Part> = seen.iter().map(|seen| Part::of(seen, &self.asked)).collect::<Result<_>>()?;
         let starts = STARTS_ON_FOLDS.min(self.asked.starts);

@@ -11,7 +11,7 @@ use crate::options::table::check;
 /// What is asked for, in shares of what the data show.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Shaping {
+pub struct InputOptions {
     /// `s` of theory.md (11.1) as a share of the largest magnitude of the first input; `None` for an input
     /// as it is.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,7 +38,7 @@ pub const SHARES: RangeInclusive<f64> = 1e-6..=1e3;
 /// Inputs that a summary of the past adds.
 pub const HISTORY_INPUTS: usize = 2;
 
-impl Shaping {
+impl InputOptions {
     /// True if nothing is asked for.
     pub fn is_none(&self) -> bool {
         *self == Self::default()

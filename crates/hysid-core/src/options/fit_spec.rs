@@ -6,13 +6,13 @@ use crate::data::rate::RateMethod;
 use crate::network::Family;
 use crate::options::ModelName;
 use crate::options::auto::AutoOptions;
-use crate::options::classical::{ClassicalOptions, Rival};
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::network::{ENSEMBLE_PENALTIES, FitOptions};
 
 /// What is to be identified, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Request {
+pub enum FitSpec {
     /// A network.
     Network(FitOptions),
     /// Another model.
@@ -21,7 +21,7 @@ pub enum Request {
     Auto(AutoOptions),
 }
 
-impl Request {
+impl FitSpec {
     /// A model with its defaults, and this rate if it has a use for one.
     pub fn of(model: ModelName, rate: Option<RateMethod>, seed: u64) -> Self {
         let rate = rate.filter(|_| model.uses_rate());
@@ -29,7 +29,7 @@ impl Request {
             ModelName::Network(model) => {
                 Self::Network(FitOptions { model, rate, seed, ..FitOptions::default() })
             }
-            ModelName::Rival(model) => {
+            ModelName::Classical(model) => {
                 Self::Classical(ClassicalOptions { rate, seed, ..ClassicalOptions::of(model) })
             }
             ModelName::Auto(_) => Self::Auto(AutoOptions { rate, seed, ..AutoOptions::default() }),
@@ -40,7 +40,7 @@ impl Request {
     pub fn model(&self) -> ModelName {
         match self {
             Self::Network(options) => ModelName::Network(options.model),
-            Self::Classical(options) => ModelName::Rival(options.model),
+            Self::Classical(options) => ModelName::Classical(options.model),
             Self::Auto(options) => ModelName::Auto(options.model),
         }
     }
@@ -64,8 +64,8 @@ impl Request {
                 ]),
             ),
             Self::Classical(options) => {
-                let has_tanh_layer =
-                    options.model == Rival::RandomStops && options.hidden.is_some_and(|hidden| hidden > 0);
+                let has_tanh_layer = options.model == ClassicalModel::RandomStops
+                    && options.hidden.is_some_and(|hidden| hidden > 0);
                 (
                     options.shaping,
                     named([

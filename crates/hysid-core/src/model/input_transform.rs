@@ -21,13 +21,13 @@ use crate::data::record::{Dataset, Excitation, Record};
 use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::facts::Origin;
 use crate::network::scaling::SCALES;
-use crate::options::shaping::HISTORY_INPUTS;
-use crate::options::shaping::Shaping;
+use crate::options::input_options::HISTORY_INPUTS;
+use crate::options::input_options::InputOptions;
 
 /// How a model sees its input, in the user's units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Preprocessing {
+pub struct InputTransform {
     /// `c` of theory.md (11.8): the value of each input that the model sees as 0, in the unit of the input.
     /// The memory is virgin at the `c` of the first input. Empty where all are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -43,7 +43,7 @@ pub struct Preprocessing {
 /// Share of the rows whose rates stay below the one that the companding of the rate is measured by.
 const ROWS_BELOW: f64 = 0.995;
 
-impl Shaping {
+impl InputOptions {
     /// With the scales that the data have.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl Shaping {
         data: &Dataset,
         rate: Option<RateMethod>,
         origin: Origin,
-    ) -> Result<Preprocessing> {
+    ) -> Result<InputTransform> {
         let origins = match origin {
             Origin::Zero => Vec::new(),
             Origin::OfData => origins(data),
@@ -66,7 +66,7 @@ impl Shaping {
             _ => None,
         };
         let longest = || data.records().iter().map(|record| path(&record.inputs()[0])).fold(0.0, f64::max);
-        Ok(Preprocessing {
+        Ok(InputTransform {
             companding: self.companding.map(|share| share * largest),
             rate_companding,
             history: self.history.then(|| (largest, longest())),
@@ -118,21 +118,21 @@ fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
 }
 
 /// Data as a model sees them, and how the rate is found there.
-pub struct Seen<'d> {
+pub struct Transformed<'d> {
     /// How the model sees its input.
-    pub preprocessing: Preprocessing,
+    pub preprocessing: InputTransform,
     /// The data as it sees them.
     pub data: Cow<'d, Dataset>,
     /// How the rate is found there.
     pub rate: Option<RateMethod>,
 }
 
-impl<'d> Seen<'d> {
+impl<'d> Transformed<'d> {
     /// # Errors
     /// Data that no model can be identified from, shares that are none, a rate that cannot be computed.
     pub fn of(
         data: &'d Dataset,
-        shaping: &Shaping,
+        shaping: &InputOptions,
         rate: Option<RateMethod>,
         origin: Origin,
     ) -> Result<Self> {
@@ -170,7 +170,7 @@ impl Past {
     }
 }
 
-impl Preprocessing {
+impl InputTransform {
     /// True if the model sees its input as it is.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
@@ -319,7 +319,7 @@ mod tests {
     fn every_row_follows_the_formulas() {
         let data = data();
         let shaping =
-            Shaping { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
+            InputOptions { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
         let rate = Some(RateMethod::Backward);
         let preprocessing = shaping.of(&data, rate, Origin::OfData).unwrap();
         let (seen, method) = preprocessing.data(&data, rate).unwrap();
@@ -343,7 +343,7 @@ mod tests {
     #[test]
     fn nothing_asked_for_is_nothing_done() {
         let data = data();
-        let preprocessing = Shaping::default().of(&data, None, Origin::OfData).unwrap();
+        let preprocessing = InputOptions::default().of(&data, None, Origin::OfData).unwrap();
         assert!(preprocessing.is_none());
         assert!(matches!(preprocessing.data(&data, None).unwrap().0, Cow::Borrowed(_)));
     }
