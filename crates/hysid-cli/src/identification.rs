@@ -68,7 +68,7 @@ pub struct Said {
 pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Said> {
     let model = match request {
         FitSpec::Network(options) => {
-            let architecture = options.architecture(&data.set).map_err(|error| Usage(error.to_string()))?;
+            let architecture = options.architecture(&data.set).map_err(|error| data.explain(error))?;
             format!(": {} parameters; {}", architecture.parameters(), understanding::parts(&architecture))
         }
         FitSpec::Auto(options) => understanding::choice(options),

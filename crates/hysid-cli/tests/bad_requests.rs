@@ -139,7 +139,7 @@ fn columns() {
             (
                 "fit inputs.csv --model pnn",
                 2,
-                "pnn takes one input, not 2: use xpnn+, or name one with --input",
+                "pnn takes one input, not 2: use xpnn+, or choose one input with --input",
             ),
             (
                 "fit inputs.csv --rate central",
@@ -179,22 +179,22 @@ fn command_lines() {
             (
                 "fit data.csv --model nn",
                 2,
-                "invalid value 'nn' for '--model <MODEL>': model `nn` is unknown: choose one of auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, jiles-atherton, random-stops (see `hysid --help`)",
+                "invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, jiles-atherton, lugre, random-stops] (see `hysid --help`)",
             ),
             (
                 "fit data.csv --stops 0",
                 2,
-                "invalid value '0' for '--stops <N>': choose 1 to 1000 (see `hysid --help`)",
+                "invalid value '0' for '--stops <N>': choose a whole number from 1 to 1000 (see `hysid --help`)",
             ),
             (
                 "fit data.csv --starts 0",
                 2,
-                "invalid value '0' for '--starts <N>': choose 1 to 10000 (see `hysid --help`)",
+                "invalid value '0' for '--starts <N>': choose a whole number from 1 to 10000 (see `hysid --help`)",
             ),
             (
                 "fit data.csv --validation 2",
                 2,
-                "invalid value '2' for '--validation <FRACTION>': a number between 0 and 1 is needed (see `hysid --help`)",
+                "invalid value '2' for '--validation <SHARE>': a number between 0 and 1 is needed (see `hysid --help`)",
             ),
             (
                 "fit data.csv --time-limit 0",
@@ -204,7 +204,7 @@ fn command_lines() {
             (
                 "fit data.csv --training guess",
                 2,
-                "invalid value 'guess' for '--training <TRAINER>' [possible values: levenberg-marquardt, hybrid, genetic, subgradient] (see `hysid --help`)",
+                "invalid value 'guess' for '--training <NAME>' [possible values: levenberg-marquardt, hybrid, genetic, subgradient] (see `hysid --help`)",
             ),
             (
                 "fit data.csv -o data.html",
@@ -220,20 +220,21 @@ fn command_lines() {
 #[test]
 fn negative_numbers_are_refused_by_the_option_that_they_are_for() {
     let bench = Workbench::new();
-    let whole = "choose 0 or more";
-    let companding = "choose 0 for never, or 1e-6 to 1e3";
-    let thresholds = "thresholds are numbers above 0, such as 0.1,0.2,0.5";
+    let whole = "a whole number, 0 or more, is needed";
+    let companding = "choose 0 for off, or 1e-6 to 1e3";
+    let thresholds = "numbers above 0 are needed, such as 0.1, 0.2, 0.5";
+    let epochs = "choose a whole number from 0 to 1000000";
     for (arguments, value, option, advice) in [
-        ("fit data.csv --thresholds -1,2", "-1", "--thresholds <LIST>", thresholds),
-        ("fit data.csv --thresholds 0.1,-2", "-2", "--thresholds <LIST>", thresholds),
+        ("fit data.csv --thresholds -1,2", "-1,2", "--thresholds <LIST>", thresholds),
+        ("fit data.csv --thresholds 0.1,-2", "0.1,-2", "--thresholds <LIST>", thresholds),
         ("fit data.csv --companding -0.1", "-0.1", "--companding <SHARE>", companding),
         ("fit data.csv --rate-companding -1e-3", "-1e-3", "--rate-companding <SHARE>", companding),
         ("fit data.csv --seed -1", "-1", "--seed <N>", whole),
-        ("generate concrete --seed -1", "-1", "--seed <N>", whole),
-        ("fit data.csv --warm-up -3", "-3", "--warm-up <ROWS>", whole),
-        ("fit data.csv --epochs -3", "-3", "--epochs <N>", whole),
-        ("fit data.csv --seed 1.5", "1.5", "--seed <N>", "a whole number, 0 or more, is needed"),
-        ("fit data.csv --stops -3", "-3", "--stops <N>", "a whole number from 1 to 1000 is needed"),
+        ("generate concrete --seed -1", "-1", "--seed <N>", "choose 0 or more"),
+        ("fit data.csv --warm-up -3", "-3", "--warm-up <N>", whole),
+        ("fit data.csv --epochs -3", "-3", "--epochs <N>", epochs),
+        ("fit data.csv --seed 1.5", "1.5", "--seed <N>", whole),
+        ("fit data.csv --stops -3", "-3", "--stops <N>", "choose a whole number from 1 to 1000"),
         ("fit data.csv --threads -1", "-1", "--threads <N>", "-1 is not in 1..=1024"),
         (
             "fit data.csv --time-limit -1",

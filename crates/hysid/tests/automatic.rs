@@ -208,7 +208,7 @@ fn decisions_that_leave_nothing_are_refused() {
         |options: AutoOptions| identify(&data(), &FitSpec::Auto(options), &mut on).unwrap_err().to_string();
     let nothing = AutoOptions { companding: Some(true), history: Some(true), ..options(None) };
     assert!(refused(nothing).contains("no candidate is left"));
-    assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose 1 to"));
+    assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose a whole number from 1 to"));
 }
 
 #[test]

@@ -4,10 +4,6 @@
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::{DataProblem, Error};
 use hysid::fit::law::Identify;
-use hysid::fit::law::masing::MasingOptions;
-use hysid::fit::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskiiOptions;
-use hysid::fit::law::prandtl_ishlinskii::PrandtlIshlinskiiOptions;
-use hysid::fit::law::preisach::PreisachOptions;
 use hysid::fit::law::search::SearchProgress;
 use hysid::fit::network::random_stops::{RandomStopsOptions, fit_random_stops};
 use hysid::law::masing::{Masing, MasingParts};
@@ -18,7 +14,7 @@ use hysid::law::series::run;
 use hysid::law::turning_point_stack::TurningPointStack;
 use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator, Relay, Stop};
-use hysid::options::classical::Sign;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions, Sign};
 use hysid::specimens::Ferromagnet;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -352,8 +348,10 @@ fn a_fit_finds_the_weights_of_plays() {
     let model = lecture_model();
     let x = path(&[0.0, 4.0, -3.5, 3.0, -2.5, 2.0, -1.5, 1.0, -0.5, 4.0, -4.0], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
-    let options =
-        PrandtlIshlinskiiOptions { thresholds: Some(model.thresholds().to_vec()), ..Default::default() };
+    let options = ClassicalOptions {
+        thresholds: Some(model.thresholds().to_vec()),
+        ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+    };
     let fitted = PrandtlIshlinskii::fit(&data, &options, &mut go_on).unwrap().law;
     for (found, exact) in fitted.weights().iter().zip(model.weights()) {
         assert!((found - exact).abs() < 1e-4, "{found} and {exact}");
@@ -363,7 +361,7 @@ fn a_fit_finds_the_weights_of_plays() {
     for sign in [None, Some(Sign::NonNegative)] {
         let fitted = PrandtlIshlinskii::fit(
             &data,
-            &PrandtlIshlinskiiOptions { sign, ..Default::default() },
+            &ClassicalOptions { sign, ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii) },
             &mut go_on,
         )
         .unwrap()
@@ -373,7 +371,10 @@ fn a_fit_finds_the_weights_of_plays() {
     }
     let wrong = PrandtlIshlinskii::fit(
         &data,
-        &PrandtlIshlinskiiOptions { sign: Some(Sign::NonPositive), ..Default::default() },
+        &ClassicalOptions {
+            sign: Some(Sign::NonPositive),
+            ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+        },
         &mut go_on,
     )
     .unwrap()
@@ -388,8 +389,13 @@ fn a_fit_finds_a_virgin_curve() {
     let x = path(&[0.0, 2.5, -2.0, 1.5, -1.0, 0.6, 2.5, -2.5, 2.8, -2.8], 40);
     let data = dataset(x.clone(), outputs(&model, &x));
     let thresholds = Some(model.parts().thresholds.clone());
-    let fitted =
-        Masing::fit(&data, &MasingOptions { thresholds, ..Default::default() }, &mut go_on).unwrap().law;
+    let fitted = Masing::fit(
+        &data,
+        &ClassicalOptions { thresholds, ..ClassicalOptions::of(ClassicalModel::Masing) },
+        &mut go_on,
+    )
+    .unwrap()
+    .law;
     for (found, exact) in fitted.parts().slopes.iter().zip(&model.parts().slopes) {
         assert!((found - exact).abs() < 1e-4, "{found} and {exact}");
     }
@@ -409,15 +415,27 @@ fn a_fit_finds_a_sheet_of_steel() {
     ]);
     b[70..90].fill(f64::NAN);
     let data = dataset(h, b);
-    let fitted =
-        Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: None }, &mut go_on).unwrap().law;
+    let fitted = Preisach::fit(
+        &data,
+        &ClassicalOptions { operators: Some(24), ..ClassicalOptions::of(ClassicalModel::Preisach) },
+        &mut go_on,
+    )
+    .unwrap()
+    .law;
     let (h, b) = sheet(&[0.0, 90.0, -90.0, 250.0, 60.0, 140.0, -30.0, 30.0, -250.0, -20.0, -100.0, 20.0]);
     let error = nrmse(&b, &outputs(&fitted, &h));
     assert!(error < 3.0, "{error} %");
-    let signed =
-        Preisach::fit(&data, &PreisachOptions { intervals: 24, sign: Some(Sign::NonNegative) }, &mut go_on)
-            .unwrap()
-            .law;
+    let signed = Preisach::fit(
+        &data,
+        &ClassicalOptions {
+            operators: Some(24),
+            sign: Some(Sign::NonNegative),
+            ..ClassicalOptions::of(ClassicalModel::Preisach)
+        },
+        &mut go_on,
+    )
+    .unwrap()
+    .law;
     assert!(signed.weights().cells.iter().all(|&w| w >= 0.0));
 }
 
@@ -428,15 +446,20 @@ fn a_fit_finds_plays_behind_dead_zones() {
     let data = dataset(x.clone(), outputs(&model, &x));
     let other = path(&[0.0, 2.2, -0.7, 2.9, -2.8, 1.2, 0.2, 0.9], 23);
     let expected = outputs(&model, &other);
-    let bent =
-        ModifiedPrandtlIshlinskii::fit(&data, &ModifiedPrandtlIshlinskiiOptions::default(), &mut go_on)
-            .unwrap()
-            .law;
+    let bent = ModifiedPrandtlIshlinskii::fit(
+        &data,
+        &ClassicalOptions::of(ClassicalModel::ModifiedPrandtlIshlinskii),
+        &mut go_on,
+    )
+    .unwrap()
+    .law;
     let error = nrmse(&expected, &outputs(&bent, &other));
     assert!(error < 1.5, "{error} %");
     assert!(bent.superposition().slopes().iter().all(|&slope| slope > 0.0));
     let straight =
-        PrandtlIshlinskii::fit(&data, &PrandtlIshlinskiiOptions::default(), &mut go_on).unwrap().law;
+        PrandtlIshlinskii::fit(&data, &ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii), &mut go_on)
+            .unwrap()
+            .law;
     assert!(nrmse(&expected, &outputs(&straight, &other)) > 3.0 * error);
 }
 
@@ -459,7 +482,7 @@ fn random_stops_are_a_network() {
     let other = fit_random_stops(&data, &RandomStopsOptions { seed: 2, ..options.clone() }).unwrap();
     assert_ne!(other.network, fitted.network);
     let none = RandomStopsOptions { stops: 0, ..options };
-    assert!(matches!(fit_random_stops(&data, &none), Err(Error::Option(_))));
+    assert!(matches!(fit_random_stops(&data, &none), Err(Error::Parts(_))));
 }
 
 // ---------------------------------------------------------------- what is refused, and what is finite
@@ -499,23 +522,41 @@ fn unusable_parameters_are_refused() {
 fn data_and_options_without_meaning_are_refused() {
     let two = Record::new("r", vec![[0.0, 1.0].repeat(20), [1.0, 0.0].repeat(20)], [0.0, 1.0].repeat(20));
     let two = Dataset::new(ColumnNames::plain(2), vec![two.unwrap()]).unwrap();
-    let Err(Error::Data(defect)) = Preisach::fit(&two, &PreisachOptions::default(), &mut go_on) else {
+    let Err(Error::Data(defect)) =
+        Preisach::fit(&two, &ClassicalOptions::of(ClassicalModel::Preisach), &mut go_on)
+    else {
         panic!("two inputs were taken");
     };
     assert_eq!(defect.problem, DataProblem::Inputs { expected: 1, found: 2 });
     let x = path(&[0.0, 1.0, -1.0, 0.5], 20);
     let data = dataset(x.clone(), x);
-    assert!(Preisach::fit(&data, &PreisachOptions { intervals: 0, sign: None }, &mut go_on).is_err());
+    assert!(
+        Preisach::fit(
+            &data,
+            &ClassicalOptions { operators: Some(0), ..ClassicalOptions::of(ClassicalModel::Preisach) },
+            &mut go_on
+        )
+        .is_err()
+    );
     assert!(
         PrandtlIshlinskii::fit(
             &data,
-            &PrandtlIshlinskiiOptions { operators: 0, ..Default::default() },
+            &ClassicalOptions {
+                operators: Some(0),
+                ..ClassicalOptions::of(ClassicalModel::PrandtlIshlinskii)
+            },
             &mut go_on
         )
         .is_err()
     );
     // A straight line is no hysteresis, but is fitted all the same.
-    let line = Preisach::fit(&data, &PreisachOptions { intervals: 5, sign: None }, &mut go_on).unwrap().law;
+    let line = Preisach::fit(
+        &data,
+        &ClassicalOptions { operators: Some(5), ..ClassicalOptions::of(ClassicalModel::Preisach) },
+        &mut go_on,
+    )
+    .unwrap()
+    .law;
     assert!((last(&line, &[0.3]) - 0.3).abs() < 1e-3);
 }
 

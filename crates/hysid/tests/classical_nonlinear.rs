@@ -9,13 +9,6 @@ use hysid::data::metrics::ErrorSums;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::law::Identify;
-use hysid::fit::law::bouc_wen::BoucWenOptions;
-use hysid::fit::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskiiOptions;
-use hysid::fit::law::jiles_atherton::JilesAthertonOptions;
-use hysid::fit::law::neuro_madelung::NeuroMadelungOptions;
-use hysid::fit::law::rate_dependent_prandtl_ishlinskii::{
-    RateDependentPrandtlIshlinskiiOptions, ThresholdForm,
-};
 use hysid::fit::law::search::SearchProgress;
 use hysid::law::bouc_wen::{BoucWen, Degradation};
 use hysid::law::generalized_prandtl_ishlinskii::{Envelope, GeneralizedPrandtlIshlinskii, PlayWeights};
@@ -24,6 +17,7 @@ use hysid::law::neuro_madelung::NeuroMadelung;
 use hysid::law::rate_dependent_prandtl_ishlinskii::{RateDependentPrandtlIshlinskii, Thresholds};
 use hysid::law::series::{Series, run};
 use hysid::law::{Law, Sample};
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::termination::Termination;
 
 // ------------------------------------------------------------------------------- paths and laws
@@ -507,7 +501,7 @@ fn paths(place: impl Fn(f64) -> f64) -> (Vec<Vec<Sample>>, Vec<Vec<Sample>>) {
 fn bouc_wen_recovers_itself() {
     let (seen, unseen) = paths(|u| 6.0 * u);
     let law = BoucWen { offset: 3.0, ..bouc_wen(1.6) };
-    let options = BoucWenOptions { starts: 4, ..BoucWenOptions::default() };
+    let options = ClassicalOptions { starts: Some(4), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
     let found = BoucWen::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 0.1, "{}", found.train_nrmse_percent);
     assert!(error(&found.law, &data(&law, &unseen), None) < 0.2);
@@ -524,11 +518,15 @@ fn degradation_is_recovered() {
     };
     let (seen, unseen) = (cycles(&[1.5, 3.0, 3.0, 6.0, 6.0, 6.0, 9.0]), cycles(&[2.0, 5.0, 5.0, 8.0]));
     let law = degrading_bouc_wen();
-    let options = BoucWenOptions { degradation: true, starts: 6, ..BoucWenOptions::default() };
+    let options = ClassicalOptions {
+        degradation: true,
+        starts: Some(6),
+        ..ClassicalOptions::of(ClassicalModel::BoucWen)
+    };
     let found = BoucWen::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
     assert!(error(&found.law, &data(&law, &unseen), None) < 3.0);
-    let plain = BoucWenOptions { starts: 4, ..BoucWenOptions::default() };
+    let plain = ClassicalOptions { starts: Some(4), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
     let without = BoucWen::fit(&data(&law, &seen), &plain, &mut go_on).unwrap();
     assert!(without.train_nrmse_percent > 5.0 * found.train_nrmse_percent);
 }
@@ -541,10 +539,10 @@ fn generalized_plays_recover_themselves_in_both_forms() {
     ] {
         let (seen, unseen) = paths(place);
         for (free_weights, most) in [(false, 1.0), (true, 1.0)] {
-            let options = GeneralizedPrandtlIshlinskiiOptions {
-                free_weights,
-                starts: 8,
-                ..GeneralizedPrandtlIshlinskiiOptions::default()
+            let options = ClassicalOptions {
+                free_weights: Some(free_weights),
+                starts: Some(8),
+                ..ClassicalOptions::of(ClassicalModel::GeneralizedPrandtlIshlinskii)
             };
             let found = GeneralizedPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
             assert!(found.train_nrmse_percent < most, "{} {free_weights}", found.train_nrmse_percent);
@@ -560,10 +558,10 @@ fn rate_dependent_plays_recover_themselves_in_both_forms() {
     let seen = [1.0, 10.0, 50.0].map(|frequency| sine(frequency, 10.0, 100, 2));
     let unseen = [sine(25.0, 10.0, 100, 2), sine(40.0, 6.0, 100, 2)];
     for free_weights in [false, true] {
-        let options = RateDependentPrandtlIshlinskiiOptions {
-            free_weights,
-            rate: RateMethod::Given,
-            ..RateDependentPrandtlIshlinskiiOptions::default()
+        let options = ClassicalOptions {
+            free_weights: Some(free_weights),
+            rate: Some(RateMethod::Given),
+            ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
         };
         let found = RateDependentPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
         assert!(found.train_nrmse_percent < 0.1, "{}", found.train_nrmse_percent);
@@ -575,10 +573,10 @@ fn rate_dependent_plays_recover_themselves_in_both_forms() {
         thresholds: Thresholds::Logarithmic { beta: 2.0, lambda: 0.01, epsilon: 0.8 },
         ..law
     };
-    let options = RateDependentPrandtlIshlinskiiOptions {
-        form: ThresholdForm::Logarithmic,
-        rate: RateMethod::Given,
-        ..RateDependentPrandtlIshlinskiiOptions::default()
+    let options = ClassicalOptions {
+        logarithmic_thresholds: true,
+        rate: Some(RateMethod::Given),
+        ..ClassicalOptions::of(ClassicalModel::RateDependentPrandtlIshlinskii)
     };
     let found = RateDependentPrandtlIshlinskii::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 0.5, "{}", found.train_nrmse_percent);
@@ -593,7 +591,11 @@ fn jiles_atherton_recovers_itself_in_both_forms() {
     let (seen, unseen) = paths(|u| 4000.0 * u);
     for form in [JilesAthertonForm::Original, JilesAthertonForm::Differential] {
         let law = JilesAtherton { permeability: 2.0, offset: 1e4, ..jiles_atherton(form) };
-        let options = JilesAthertonOptions { form, starts: 4, ..JilesAthertonOptions::default() };
+        let options = ClassicalOptions {
+            differential_form: form == JilesAthertonForm::Differential,
+            starts: Some(4),
+            ..ClassicalOptions::of(ClassicalModel::JilesAtherton)
+        };
         let found = JilesAtherton::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
         assert!(found.train_nrmse_percent < 0.2, "{form:?} {}", found.train_nrmse_percent);
         assert!(error(&found.law, &data(&law, &unseen), None) < 0.4);
@@ -605,7 +607,12 @@ fn jiles_atherton_recovers_itself_in_both_forms() {
 fn neuro_madelung_learns_its_own_kind_and_plays() {
     let (seen, unseen) = paths(|u| 2.0 * u);
     let law = neuro_madelung(None);
-    let options = NeuroMadelungOptions { hidden: 6, starts: 6, ..NeuroMadelungOptions::default() };
+    let options = ClassicalOptions {
+        hidden: Some(6),
+        starts: Some(6),
+        seed: 0,
+        ..ClassicalOptions::of(ClassicalModel::NeuroMadelung)
+    };
     let found = NeuroMadelung::fit(&data(&law, &seen), &options, &mut go_on).unwrap();
     assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
     assert!(error(&found.law, &data(&law, &unseen), None) < 15.0);
@@ -625,13 +632,17 @@ fn the_number_of_threads_does_not_matter() {
     let laws = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let options = GeneralizedPrandtlIshlinskiiOptions {
-                starts: 5,
-                epochs: 8,
-                ..GeneralizedPrandtlIshlinskiiOptions::default()
+            let options = ClassicalOptions {
+                starts: Some(5),
+                epochs: Some(8),
+                ..ClassicalOptions::of(ClassicalModel::GeneralizedPrandtlIshlinskii)
             };
             let plays = GeneralizedPrandtlIshlinskii::fit(&data, &options, &mut go_on).unwrap();
-            let options = NeuroMadelungOptions { starts: 3, epochs: 12, ..NeuroMadelungOptions::default() };
+            let options = ClassicalOptions {
+                starts: Some(3),
+                epochs: Some(12),
+                ..ClassicalOptions::of(ClassicalModel::NeuroMadelung)
+            };
             let network = NeuroMadelung::fit(&data, &options, &mut go_on).unwrap();
             (plays.law, plays.evaluations, network.law, network.evaluations)
         })
@@ -648,13 +659,13 @@ fn a_search_can_be_broken_off_and_gives_the_best_so_far() {
         told.push(progress);
         if progress.round == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let found = BoucWen::fit(&data, &BoucWenOptions::default(), &mut observer).unwrap();
+    let found = BoucWen::fit(&data, &ClassicalOptions::of(ClassicalModel::BoucWen), &mut observer).unwrap();
     assert_eq!(found.termination, Termination::Stopped);
     assert_eq!(told.iter().map(|progress| progress.round).collect::<Vec<_>>(), [1, 2, 3]);
     assert!(told.windows(2).all(|pair| pair[1].train_nrmse_percent <= pair[0].train_nrmse_percent));
     assert_eq!(found.train_nrmse_percent, told[2].train_nrmse_percent);
     assert_relative_eq!(found.train_nrmse_percent, error(&found.law, &data, None), max_relative = 1e-6);
-    let none = BoucWenOptions { starts: 0, ..BoucWenOptions::default() };
+    let none = ClassicalOptions { starts: Some(0), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
     assert!(BoucWen::fit(&data, &none, &mut go_on).is_err());
 }
 

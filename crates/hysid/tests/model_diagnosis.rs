@@ -47,7 +47,7 @@ fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
         "rate-dependent-prandtl-ishlinskii" => {
             (&[WipingOut, Congruency, Masing, OddSymmetry, LoopClosure], &[Deterioration])
         }
-        "bouc-wen" => (&[OddSymmetry], &[Deterioration]),
+        "bouc-wen" | "lugre" => (&[OddSymmetry], &[Deterioration]),
         "neuro-madelung" => (&[WipingOut], &[]),
         "xpnn" | "xpnn+" | "random-stops" => (&[], &[]),
         other => panic!("what theory says of {other} is missing here"),

@@ -10,7 +10,6 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::Error;
 use hysid::fit::identify;
 use hysid::fit::law::Identify;
-use hysid::fit::law::lugre::LugreOptions;
 use hysid::fit::network::Fit;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
@@ -250,7 +249,11 @@ fn the_friction_of_a_joint_is_found_again() {
     let blank = Record::new("joint", vec![x], vec![0.0; 2000]).unwrap().with_time(time).unwrap();
     let output = Classical::from(law).run(&samples(&blank.excitation(), Some(RateMethod::Central)).unwrap());
     let data = Dataset::new(ColumnNames::plain(1), vec![blank.with_output(output).unwrap()]).unwrap();
-    let options = LugreOptions { starts: 4, ..LugreOptions::default() };
+    let options = ClassicalOptions {
+        starts: Some(4),
+        rate: Some(RateMethod::Central),
+        ..ClassicalOptions::of(ClassicalModel::Lugre)
+    };
     let found = Lugre::fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap();
     let close = |found: f64, true_value: f64| (found - true_value).abs() < 1e-3 * true_value;
     assert!(found.train_nrmse_percent < 1e-3, "{found:?}");

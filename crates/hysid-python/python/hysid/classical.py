@@ -22,6 +22,7 @@ __all__ = [
     "bouc_wen",
     "generalized_prandtl_ishlinskii",
     "jiles_atherton",
+    "lugre",
     "masing",
     "modified_prandtl_ishlinskii",
     "prandtl_ishlinskii",
@@ -430,3 +431,60 @@ def jiles_atherton(
         "form": "differential" if differential_form else "original",
     }
     return _run("jiles-atherton", parts, x)
+
+
+def lugre(
+    x: Values,
+    time: ArrayLike,
+    sliding: float,
+    presliding: float,
+    stribeck: float = 0.0,
+    stribeck_velocity: float = 1.0,
+    bristle_damping: float = 0.0,
+    viscous: float = 0.0,
+    offset: float = 0.0,
+) -> np.ndarray:
+    """Run a LuGre law: friction of a contact whose bristles bend before they slip.
+
+    Parameters
+    ----------
+    x : array of shape (n,)
+        The displacement.
+    time : array of shape (n,)
+        Time stamps, increasing.
+    sliding : float
+        Friction at a high rate, in the unit of the output.
+    presliding : float
+        Displacement at which the contact slides, in the unit of the input; above 0.
+    stribeck : float
+        Static over sliding friction, less 1; 0 to 10.
+    stribeck_velocity : float
+        Rate at which static friction falls to sliding friction; above 0.
+    bristle_damping : float
+        Damping of the bristles, in the unit of the output multiplied by that of time.
+    viscous : float
+        Viscous friction, output for rate.
+    offset : float
+        In the unit of the output.
+
+    Returns
+    -------
+    array of shape (n,)
+        The friction.
+
+    Examples
+    --------
+    >>> friction = hysid.classical.lugre([0.0, 1.0, 2.0], [0.0, 1.0, 2.0], sliding=2.0, presliding=0.01)
+    >>> bool(np.isclose(friction[2], 2.0))
+    True
+    """
+    parts = {
+        "offset": offset,
+        "sliding": sliding,
+        "presliding": presliding,
+        "stribeck": stribeck,
+        "stribeck_velocity": stribeck_velocity,
+        "bristle_damping": bristle_damping,
+        "viscous": viscous,
+    }
+    return _run("lugre", parts, x, time, "central")

@@ -15,7 +15,7 @@ pub mod rate_dependent_prandtl_ishlinskii;
 pub mod search;
 
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fit::law::search::{Identified, SearchObserver};
 use crate::law::bouc_wen::BoucWen;
 use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
@@ -35,9 +35,6 @@ use hysid_core::for_each_law;
 
 /// A law that can be identified from data.
 pub trait Identify: Law {
-    /// What can be chosen; those of a fit have the defaults of the law where nothing is chosen.
-    type Options: for<'a> TryFrom<&'a ClassicalOptions, Error = Error>;
-
     /// Identifies a law. The observer is told after every round of a search; whatever takes long asks `stop` in its
     /// midst, and ends with the best so far.
     ///
@@ -46,7 +43,7 @@ pub trait Identify: Law {
     /// stop before there was any law.
     fn identify(
         data: &Dataset,
-        options: &Self::Options,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>>;
@@ -57,7 +54,7 @@ pub trait Identify: Law {
     /// As [`Identify::identify`].
     fn fit(
         data: &Dataset,
-        options: &Self::Options,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
     ) -> Result<Identified<Self>> {
         Self::identify(data, options, observer, StopCheck::never())
@@ -66,22 +63,17 @@ pub trait Identify: Law {
 
 /// A law that is found by least squares from one start. Such a fit has no rounds that an observer could hear of.
 pub trait LeastSquaresLaw: Law {
-    /// As [`Identify::Options`].
-    type Options: for<'a> TryFrom<&'a ClassicalOptions, Error = Error>;
-
     /// The law; after a stop, the best of what was compared until then.
     ///
     /// # Errors
     /// As [`Identify::identify`].
-    fn fitted(data: &Dataset, options: &Self::Options, stop: StopCheck<'_>) -> Result<Self>;
+    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self>;
 }
 
 impl<L: LeastSquaresLaw> Identify for L {
-    type Options = L::Options;
-
     fn identify(
         data: &Dataset,
-        options: &Self::Options,
+        options: &ClassicalOptions,
         _: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
@@ -107,7 +99,7 @@ macro_rules! fit {
             stop: StopCheck<'_>,
         ) -> Result<Identified<Classical>> {
             match options.model {
-                $(ClassicalModel::$law => $law::identify(data, &options.try_into()?, observer, stop).map(any),)*
+                $(ClassicalModel::$law => $law::identify(data, options, observer, stop).map(any),)*
                 ClassicalModel::RandomStops => unreachable!("random stops are a network"),
             }
         }

@@ -2,9 +2,8 @@
 //! the offset and the damping follow.
 
 use crate::data::FEWEST_ROWS;
-use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
@@ -12,57 +11,24 @@ use crate::law::Law;
 use crate::law::Sample;
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 
-/// How a Bouc-Wen law is identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BoucWenOptions {
-    /// With the degradation and pinching of Baber and Noori.
-    pub degradation: bool,
-    /// How the rate is found for the damping; without it there is none.
-    pub rate: Option<RateMethod>,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each at most.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 8;
 
-impl Default for BoucWenOptions {
-    fn default() -> Self {
-        Self { degradation: false, rate: None, starts: 8, epochs: 40, seed: SEED }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for BoucWenOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            degradation: options.degradation,
-            rate: options.rate,
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 40;
 
 /// Elementary operations of a row, roughly: it may take some hundred steps.
 const OPERATIONS_A_ROW: usize = 5000;
 
 impl Identify for BoucWen {
-    type Options = BoucWenOptions;
-
     fn identify(
         data: &Dataset,
-        options: &BoucWenOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
@@ -73,7 +39,7 @@ impl Identify for BoucWen {
         // The element starts at 0: an input far from it is reached by yielding.
         let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
         let family = Elements::new(range, options);
-        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         law.offset = found.weights[0];
@@ -92,7 +58,7 @@ struct Elements {
 }
 
 impl Elements {
-    fn new(range: f64, options: &BoucWenOptions) -> Self {
+    fn new(range: f64, options: &ClassicalOptions) -> Self {
         let mut variables = vec![
             Variable::logarithmic(0.005 * range, 2.0 * range),
             Variable::linear(B_BOUNDS.0, 2.0),

@@ -7,14 +7,13 @@
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{OptionError, Result};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::series::{Series, slope, work};
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::law::play_weights::MOST_PLAYS;
@@ -28,66 +27,35 @@ use crate::law::generalized_prandtl_ishlinskii::{
 /// it would leap where the input leaves the range.
 const SMALLEST_SHARE: f64 = 0.1;
 
-/// How a generalized Prandtl-Ishlinskii model is identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct GeneralizedPrandtlIshlinskiiOptions {
-    /// Number of plays.
-    pub operators: usize,
-    /// A weight for each play, not negative, in place of `ρ e^{-τ r}`.
-    pub free_weights: bool,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each at most.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-}
+/// Plays unless the user says otherwise.
+const OPERATORS: usize = 10;
 
-impl Default for GeneralizedPrandtlIshlinskiiOptions {
-    fn default() -> Self {
-        Self { operators: 10, free_weights: true, starts: 32, epochs: 60, seed: SEED }
-    }
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 32;
 
-impl TryFrom<&ClassicalOptions> for GeneralizedPrandtlIshlinskiiOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            operators: options.operators.unwrap_or(defaults.operators),
-            free_weights: options.free_weights.unwrap_or(defaults.free_weights),
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 60;
 
 impl Identify for GeneralizedPrandtlIshlinskii {
-    type Options = GeneralizedPrandtlIshlinskiiOptions;
-
     fn identify(
         data: &Dataset,
-        options: &GeneralizedPrandtlIshlinskiiOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        if options.operators == 0 || options.operators > MOST_PLAYS {
-            return Err(OptionError::value(
-                "operators",
-                options.operators,
-                format!("choose 1 to {MOST_PLAYS}"),
-            )
-            .into());
+        let operators = options.operators.unwrap_or(OPERATORS);
+        if operators == 0 || operators > MOST_PLAYS {
+            return Err(
+                OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
+            );
         }
         let series = Series::all(data, None)?;
         let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
         let lags = sign * work(&series) < 0.0;
         let series = thinned(series, Memory::TurningPoints);
         let family = Plays::new(data.input_range(0), sign, lags, options);
-        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         law.offset = found.weights[0];
@@ -116,12 +84,7 @@ struct Plays {
 }
 
 impl Plays {
-    fn new(
-        (low, high): (f64, f64),
-        sign: f64,
-        lags: bool,
-        options: &GeneralizedPrandtlIshlinskiiOptions,
-    ) -> Self {
+    fn new((low, high): (f64, f64), sign: f64, lags: bool, options: &ClassicalOptions) -> Self {
         let range = high - low;
         let centre = Variable::linear(low - 0.5 * range, high + 0.5 * range);
         let width = Variable::logarithmic(0.02 * range, 5.0 * range);
@@ -140,15 +103,16 @@ impl Plays {
             Variable::linear(-1.0, 1.0),
         ];
         let mut non_negative = vec![false];
-        if options.free_weights {
+        let operators = options.operators.unwrap_or(OPERATORS);
+        let free_weights = options.free_weights.unwrap_or(true);
+        if free_weights {
             // Plays alone lag; a loop the other way round needs weights of both signs.
-            non_negative.extend(vec![lags; options.operators]);
+            non_negative.extend(vec![lags; operators]);
         } else {
             // τ times the largest threshold.
             variables.push(Variable::linear(-2.0, 12.0));
             non_negative.push(true);
         }
-        let (operators, free_weights) = (options.operators, options.free_weights);
         Self { low, high, sign, operators, free_weights, variables, non_negative }
     }
 

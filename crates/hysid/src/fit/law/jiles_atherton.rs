@@ -3,70 +3,40 @@
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 
-/// How a Jiles-Atherton law is identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct JilesAthertonOptions {
-    /// Which differential equation.
-    pub form: JilesAthertonForm,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each at most.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 8;
 
-impl Default for JilesAthertonOptions {
-    fn default() -> Self {
-        Self { form: JilesAthertonForm::Original, starts: 8, epochs: 40, seed: SEED }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for JilesAthertonOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            form: if options.differential_form {
-                JilesAthertonForm::Differential
-            } else {
-                JilesAthertonForm::Original
-            },
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 40;
 
 impl Identify for JilesAtherton {
-    type Options = JilesAthertonOptions;
-
     fn identify(
         data: &Dataset,
-        options: &JilesAthertonOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
         let (low, high) = data.input_range(0);
-        let family = Materials::new(low.abs().max(high.abs()), options.form);
-        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let form = match options.differential_form {
+            true => JilesAthertonForm::Differential,
+            false => JilesAthertonForm::Original,
+        };
+        let family = Materials::new(low.abs().max(high.abs()), form);
+        let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         (law.offset, law.permeability, law.saturation) =

@@ -2,7 +2,6 @@
 //! damping and the offset follow.
 
 use crate::data::FEWEST_ROWS;
-use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
@@ -13,59 +12,30 @@ use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
-/// How a LuGre law is identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LugreOptions {
-    /// How the rate is found.
-    pub rate: RateMethod,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each at most.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 8;
 
-impl Default for LugreOptions {
-    fn default() -> Self {
-        Self { rate: RateMethod::Central, starts: 8, epochs: 40, seed: SEED }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for LugreOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            rate: options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?,
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 40;
 
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 60;
 
 impl Identify for Lugre {
-    type Options = LugreOptions;
-
     fn identify(
         data: &Dataset,
-        options: &LugreOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let series = thinned(Series::all(data, Some(options.rate))?, Memory::EveryRow);
+        let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
+        let series = thinned(Series::all(data, Some(rate))?, Memory::EveryRow);
         let (low, high) = data.input_range(0);
         let family = Contacts::new((high - low).max(f64::MIN_POSITIVE), &series);
-        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         (law.offset, law.sliding, law.bristle_damping, law.viscous) =

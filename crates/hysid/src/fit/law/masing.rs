@@ -1,9 +1,7 @@
 //! Fitting a model by Masing's rule: linear least squares on each of several grids of thresholds.
 
-use serde::{Deserialize, Serialize};
-
 use crate::data::record::Dataset;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::fit::law::LeastSquaresLaw;
 use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
@@ -19,48 +17,20 @@ use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// How a model by Masing's rule is fitted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MasingOptions {
-    /// Number of thresholds, 1 to 1000.
-    pub operators: usize,
-    /// The thresholds, in the unit of the input, positive and rising; without them they are spread over
-    /// the range of the input.
-    pub thresholds: Option<Vec<f64>>,
-    /// Sign of the slopes: a virgin curve that rises, falls, or does both; chosen by cross-validation if
-    /// `None`.
-    pub sign: Option<Sign>,
-}
-
-impl Default for MasingOptions {
-    fn default() -> Self {
-        Self { operators: 30, thresholds: None, sign: None }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for MasingOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            operators: options.operators.unwrap_or(defaults.operators),
-            thresholds: options.thresholds.clone(),
-            sign: options.sign,
-        })
-    }
-}
+/// Plays unless the user says otherwise.
+const OPERATORS: usize = 30;
 
 /// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.
 impl LeastSquaresLaw for Masing {
-    type Options = MasingOptions;
-
-    fn fitted(data: &Dataset, options: &MasingOptions, stop: StopCheck<'_>) -> Result<Self> {
+    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out grids and penalties that were not compared yet.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
-        let grids = grids::candidates(options.thresholds.as_deref(), options.operators, scaling.inputs[0])?;
+        let grids = grids::candidates(
+            options.thresholds.as_deref(),
+            options.operators.unwrap_or(OPERATORS),
+            scaling.inputs[0],
+        )?;
         let (grid, weights) = best_on_grids(grids, |grid| slopes_on_grid(&rows, grid, options.sign, stop))?;
         let slope = scaling.output_deviation / scaling.inputs[0];
         Self::new(MasingParts {

@@ -9,9 +9,6 @@
 //! at the ends of the range of `y`, which keeps the trivial solution away. It compares before the dead
 //! zones; step 2 compares outputs.
 
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::LeastSquaresLaw;
@@ -30,41 +27,13 @@ use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
+use rayon::prelude::*;
 
-/// How a modified Prandtl-Ishlinskii model is fitted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ModifiedPrandtlIshlinskiiOptions {
-    /// Number of plays, 1 to 1000.
-    pub operators: usize,
-    /// Their thresholds in the unit of the input, positive and rising; without them they are spread over
-    /// the range of the input.
-    pub thresholds: Option<Vec<f64>>,
-    /// Sign of the weights of the plays; chosen by cross-validation if `None`.
-    pub sign: Option<Sign>,
-    /// Dead zones on each side of 0, 1 to 100.
-    pub dead_zones: usize,
-}
+/// Plays unless the user says otherwise.
+const OPERATORS: usize = 20;
 
-impl Default for ModifiedPrandtlIshlinskiiOptions {
-    fn default() -> Self {
-        Self { operators: 20, thresholds: None, sign: None, dead_zones: 6 }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for ModifiedPrandtlIshlinskiiOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            operators: options.operators.unwrap_or(defaults.operators),
-            thresholds: options.thresholds.clone(),
-            sign: options.sign,
-            dead_zones: options.dead_zones.unwrap_or(defaults.dead_zones),
-        })
-    }
-}
+/// Dead zones on each side unless the user says otherwise.
+const DEAD_ZONES: usize = 6;
 
 /// Most dead zones on each side.
 const MOST_DEAD_ZONES: usize = 100;
@@ -80,27 +49,24 @@ const ITERATIONS_IN_VALIDATION: usize = 10;
 
 /// A convex start, then Levenberg-Marquardt.
 impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
-    type Options = ModifiedPrandtlIshlinskiiOptions;
-
-    fn fitted(
-        data: &Dataset,
-        options: &ModifiedPrandtlIshlinskiiOptions,
-        stop: StopCheck<'_>,
-    ) -> Result<Self> {
+    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out priors that were not compared yet, and further refinement.
         let rows = TrainingRows::of(data)?;
         let scaling = &rows.scaling;
-        if !(1..=MOST_DEAD_ZONES).contains(&options.dead_zones) {
-            let found = options.dead_zones;
-            return Err(
-                OptionError::value("dead_zones", found, format!("choose 1 to {MOST_DEAD_ZONES}")).into()
-            );
+        let dead_zones = options.dead_zones.unwrap_or(DEAD_ZONES);
+        if !(1..=MOST_DEAD_ZONES).contains(&dead_zones) {
+            return Err(OptionError::value(
+                "dead_zones",
+                dead_zones,
+                format!("choose 1 to {MOST_DEAD_ZONES}"),
+            )
+            .into());
         }
         options.thresholds.as_deref().map_or(Ok(()), check_thresholds)?;
         let given: Option<Vec<f64>> =
             options.thresholds.as_ref().map(|given| given.iter().map(|r| r / scaling.inputs[0]).collect());
-        let grids = grids::candidates(given.as_deref(), options.operators, 1.0)?;
-        let problem = |grid: &[f64]| Problem::new(&rows, grid, options.dead_zones, stop);
+        let grids = grids::candidates(given.as_deref(), options.operators.unwrap_or(OPERATORS), 1.0)?;
+        let problem = |grid: &[f64]| Problem::new(&rows, grid, dead_zones, stop);
         let problems = grids::fits_on_grids(&grids, problem)?;
         let signs = options.sign.map_or(Sign::ALL.to_vec(), |sign| vec![sign]);
         let mut candidates = Vec::new();

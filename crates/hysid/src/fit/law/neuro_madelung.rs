@@ -15,7 +15,6 @@ use std::ops::ControlFlow;
 use rayon::prelude::*;
 
 use crate::data::FEWEST_ROWS;
-use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
@@ -27,7 +26,6 @@ use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, S
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
@@ -40,66 +38,37 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
-/// How a neuro-Madelung model is trained.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct NeuroMadelungOptions {
-    /// Tanh neurons.
-    pub hidden: usize,
-    /// How the rate is found; without it the model is rate independent.
-    pub rate: Option<RateMethod>,
-    /// Random networks to start from.
-    pub starts: usize,
-    /// Epochs of each at most, half of them teacher forced.
-    pub epochs: usize,
-    /// Seed of the random networks.
-    pub seed: u64,
-}
+/// Tanh neurons unless the user says otherwise.
+const HIDDEN: usize = 8;
 
-impl Default for NeuroMadelungOptions {
-    fn default() -> Self {
-        Self { hidden: 8, rate: None, starts: 16, epochs: 60, seed: SEED }
-    }
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 16;
 
-impl TryFrom<&ClassicalOptions> for NeuroMadelungOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            hidden: options.hidden.unwrap_or(defaults.hidden),
-            rate: options.rate,
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 60;
 
 impl Identify for NeuroMadelung {
-    type Options = NeuroMadelungOptions;
-
     fn identify(
         data: &Dataset,
-        options: &NeuroMadelungOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let NeuroMadelungOptions { hidden, starts, epochs, seed, .. } = *options;
+        let hidden = options.hidden.unwrap_or(HIDDEN);
         if hidden == 0 || hidden > MOST_HIDDEN {
             let needed = format!("choose 1 to {MOST_HIDDEN}");
             return Err(OptionError::value("hidden", hidden, needed).into());
         }
-        Effort { starts, epochs, seed }.validated()?;
+        let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
         let frame = frame(data, options)?;
         let whole = Task::new(&frame, data, options, stop)?;
         let Some((kept, held)) = data.split_for_validation(HELD_OUT) else {
-            return Training::new(&whole, &whole, options).run(&whole, observer);
+            return Training::new(&whole, &whole, effort).run(&whole, observer);
         };
         let (kept, held) =
             (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
-        Training::new(&kept, &held, options).run(&whole, observer)
+        Training::new(&kept, &held, effort).run(&whole, observer)
     }
 }
 
@@ -113,10 +82,10 @@ struct Training<'a> {
 }
 
 impl<'a> Training<'a> {
-    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, options: &NeuroMadelungOptions) -> Self {
+    fn new(kept: &'a Task<'a>, held: &'a Task<'a>, effort: Effort) -> Self {
         let walks =
-            (0..options.starts).into_par_iter().map(|start| Walk::new(kept, options.seed, start)).collect();
-        Self { kept, held, walks: MultiStart::new(walks), epochs: options.epochs }
+            (0..effort.starts).into_par_iter().map(|start| Walk::new(kept, effort.seed, start)).collect();
+        Self { kept, held, walks: MultiStart::new(walks), epochs: effort.epochs }
     }
 
     fn run(
@@ -209,7 +178,7 @@ fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProg
 }
 
 /// A model with its scales and without a network.
-fn frame(data: &Dataset, options: &NeuroMadelungOptions) -> Result<NeuroMadelung> {
+fn frame(data: &Dataset, options: &ClassicalOptions) -> Result<NeuroMadelung> {
     let (low, high) = data.input_range(0);
     let series = Series::all(data, options.rate)?;
     let measured: Vec<f64> =
@@ -257,7 +226,7 @@ impl<'a> Task<'a> {
     fn new(
         frame: &'a NeuroMadelung,
         data: &Dataset,
-        options: &NeuroMadelungOptions,
+        options: &ClassicalOptions,
         stop: StopCheck<'a>,
     ) -> Result<Self> {
         // The rate is an input of the network and no part of the memory.
@@ -270,7 +239,7 @@ impl<'a> Task<'a> {
                 *y = (*y - frame.output_mean) / frame.output_scale;
             }
         }
-        Ok(Self { frame, series, hidden: options.hidden, stop })
+        Ok(Self { frame, series, hidden: options.hidden.unwrap_or(HIDDEN), stop })
     }
 
     fn inputs(&self) -> usize {

@@ -6,8 +6,6 @@
 //!
 //! `D²` takes second differences along both axes of the plane, in the numbers of the intervals.
 
-use serde::{Deserialize, Serialize};
-
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::LeastSquaresLaw;
@@ -18,35 +16,12 @@ use crate::law::series::Series;
 use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::{Bounds, Penalty};
-use crate::options::classical::{ClassicalOptions, Sign};
+use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
-/// How a Preisach model is fitted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PreisachOptions {
-    /// Intervals `N` of each axis of the plane, 1 to 200; it has `N (N + 1)/2` cells.
-    pub intervals: usize,
-    /// Sign of the weights of the cells, chosen by cross-validation if `None`. With a sign, the weights of
-    /// the reversible part are at least 0.
-    pub sign: Option<Sign>,
-}
-
-impl Default for PreisachOptions {
-    fn default() -> Self {
-        Self { intervals: 30, sign: None }
-    }
-}
-
-impl TryFrom<&ClassicalOptions> for PreisachOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self { intervals: options.operators.unwrap_or(defaults.intervals), sign: options.sign })
-    }
-}
+/// Intervals of each axis unless the user says otherwise.
+const INTERVALS: usize = 30;
 
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.
 const INTERVALS_FOR_CHOICE: usize = 20;
@@ -56,13 +31,11 @@ const EVEN_SHARE: f64 = 0.5;
 
 /// Linear least squares with a smoothness penalty chosen by cross-validation.
 impl LeastSquaresLaw for Preisach {
-    type Options = PreisachOptions;
-
-    fn fitted(data: &Dataset, options: &PreisachOptions, stop: StopCheck<'_>) -> Result<Self> {
+    fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self> {
         // A stop leaves out folds of the choice, and the finer plane.
         let rows = TrainingRows::of(data)?;
         let TrainingRows { series, folds, scaling } = &rows;
-        let intervals = options.intervals;
+        let intervals = options.operators.unwrap_or(INTERVALS);
         if !(1..=MOST_INTERVALS).contains(&intervals) {
             return Err(
                 OptionError::value("operators", intervals, format!("choose 1 to {MOST_INTERVALS}")).into()

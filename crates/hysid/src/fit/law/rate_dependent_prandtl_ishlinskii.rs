@@ -2,7 +2,6 @@
 //! searched, the weights follow.
 
 use crate::data::FEWEST_ROWS;
-use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::search::{
@@ -12,7 +11,6 @@ use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
 use crate::law::series::{Series, work};
 use crate::options::classical::ClassicalOptions;
-use crate::options::network::SEED;
 use crate::stop_check::StopCheck;
 
 use crate::fit::law::Identify;
@@ -21,91 +19,42 @@ use crate::law::rate_dependent_prandtl_ishlinskii::{
 };
 
 /// Which form the thresholds have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ThresholdForm {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ThresholdForm {
     /// theory.md (8.16).
-    #[default]
     Linear,
     /// theory.md (8.17).
     Logarithmic,
 }
 
-/// How a rate-dependent Prandtl-Ishlinskii model is identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RateDependentPrandtlIshlinskiiOptions {
-    /// Number of plays.
-    pub operators: usize,
-    /// How the thresholds grow with the rate.
-    pub form: ThresholdForm,
-    /// A weight for each play, not negative, in place of `ρ e^{-τ α i}`.
-    pub free_weights: bool,
-    /// How the rate is found.
-    pub rate: RateMethod,
-    /// Starts of the search.
-    pub starts: usize,
-    /// Iterations of each at most.
-    pub epochs: usize,
-    /// Seed of the random starts.
-    pub seed: u64,
-}
+/// Plays unless the user says otherwise.
+const OPERATORS: usize = 10;
 
-impl Default for RateDependentPrandtlIshlinskiiOptions {
-    fn default() -> Self {
-        Self {
-            operators: 10,
-            form: ThresholdForm::Linear,
-            free_weights: true,
-            rate: RateMethod::Central,
-            starts: 16,
-            epochs: 40,
-            seed: SEED,
-        }
-    }
-}
+/// Starts of the search unless the user says otherwise.
+const STARTS: usize = 16;
 
-impl TryFrom<&ClassicalOptions> for RateDependentPrandtlIshlinskiiOptions {
-    type Error = Error;
-
-    fn try_from(options: &ClassicalOptions) -> Result<Self> {
-        let defaults = Self::default();
-        Ok(Self {
-            operators: options.operators.unwrap_or(defaults.operators),
-            form: if options.logarithmic_thresholds {
-                ThresholdForm::Logarithmic
-            } else {
-                ThresholdForm::Linear
-            },
-            free_weights: options.free_weights.unwrap_or(defaults.free_weights),
-            rate: options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?,
-            starts: options.starts.unwrap_or(defaults.starts),
-            epochs: options.epochs.unwrap_or(defaults.epochs),
-            seed: options.seed,
-        })
-    }
-}
+/// Iterations of each start unless the user says otherwise.
+const EPOCHS: usize = 40;
 
 impl Identify for RateDependentPrandtlIshlinskii {
-    type Options = RateDependentPrandtlIshlinskiiOptions;
-
     fn identify(
         data: &Dataset,
-        options: &RateDependentPrandtlIshlinskiiOptions,
+        options: &ClassicalOptions,
         observer: &mut SearchObserver<'_>,
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        if options.operators == 0 || options.operators > MOST_PLAYS {
-            return Err(OptionError::value(
-                "operators",
-                options.operators,
-                format!("choose 1 to {MOST_PLAYS}"),
-            )
-            .into());
+        let operators = options.operators.unwrap_or(OPERATORS);
+        if operators == 0 || operators > MOST_PLAYS {
+            return Err(
+                OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
+            );
         }
-        let series = Series::all(data, Some(options.rate))?;
+        let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
+        let series = Series::all(data, Some(rate))?;
         let family = Plays::new(&series, options);
         let series = thinned(series, Memory::EveryRow);
-        let effort = Effort { starts: options.starts, epochs: options.epochs, seed: options.seed };
+        let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
         (law.offset, law.spring) = (found.weights[0], found.weights[1]);
@@ -132,13 +81,19 @@ struct Plays {
 }
 
 impl Plays {
-    fn new(series: &[Series], options: &RateDependentPrandtlIshlinskiiOptions) -> Self {
+    fn new(series: &[Series], options: &ClassicalOptions) -> Self {
+        let operators = options.operators.unwrap_or(OPERATORS);
+        let free_weights = options.free_weights.unwrap_or(true);
+        let form = match options.logarithmic_thresholds {
+            true => ThresholdForm::Logarithmic,
+            false => ThresholdForm::Linear,
+        };
         let samples = || series.iter().flat_map(|series| &series.samples);
         let input = samples().map(|sample| sample.x.abs()).fold(f64::MIN_POSITIVE, f64::max);
         let rate = samples().map(|sample| sample.rate.abs()).fold(1e-100, f64::max);
         // The largest threshold at rest, as a share of the largest input.
         let mut variables = vec![Variable::logarithmic(0.01, 1.5)];
-        match options.form {
+        match form {
             // Its growth at the largest rate.
             ThresholdForm::Linear => variables.push(Variable::logarithmic(1e-4, 2.0)),
             // β, λ|x'|^ε at the largest rate, ε.
@@ -149,15 +104,14 @@ impl Plays {
             ]),
         }
         let mut non_negative = vec![false, false];
-        if options.free_weights {
+        if free_weights {
             // Plays alone lag; a loop the other way round needs weights of both signs.
-            non_negative.extend(vec![work(series) < 0.0; options.operators]);
+            non_negative.extend(vec![work(series) < 0.0; operators]);
         } else {
             // τ times the largest threshold.
             variables.push(Variable::linear(-3.0, 12.0));
             non_negative.push(false);
         }
-        let (operators, form, free_weights) = (options.operators, options.form, options.free_weights);
         Self { input, rate, operators, form, free_weights, variables, non_negative }
     }
 

@@ -26,6 +26,7 @@ use crate::error::{Error, Result};
 use crate::law::series::Series;
 use crate::optimise::multi_start::{MultiStart, Plan};
 use crate::optimise::random::generator;
+use crate::options::classical::ClassicalOptions;
 use crate::options::table::check;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
@@ -144,6 +145,15 @@ pub(crate) struct Effort {
 }
 
 impl Effort {
+    /// What was asked for, with the law's own starts and epochs where nothing was.
+    pub fn of(options: &ClassicalOptions, starts: usize, epochs: usize) -> Self {
+        Self {
+            starts: options.starts.unwrap_or(starts),
+            epochs: options.epochs.unwrap_or(epochs),
+            seed: options.seed,
+        }
+    }
+
     pub fn validated(self) -> Result<Self> {
         check([("starts", json!(self.starts)), ("epochs", json!(self.epochs))])?;
         Ok(self)
