@@ -20,7 +20,7 @@ use rayon::ThreadPool;
 use crate::checkpoint::Keeper;
 use crate::data::Data;
 use crate::errors_table::AFTER_WARM_UP;
-use crate::messages::{Usage, note, summarised, warning};
+use crate::messages::{note, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
 use crate::{errors_table, files, interrupt, understanding};
