@@ -237,6 +237,7 @@ fn the_slope_of_every_law_is_that_of_its_output() {
 fn the_friction_of_a_joint_is_found_again() {
     let law = Lugre {
         offset: 0.0,
+        spring: 1.5,
         sliding: 2.0,
         presliding: 0.05,
         stribeck: 0.6,
@@ -257,10 +258,15 @@ fn the_friction_of_a_joint_is_found_again() {
     let found = Lugre::fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap();
     let close = |found: f64, true_value: f64| (found - true_value).abs() < 1e-3 * true_value;
     assert!(found.train_nrmse_percent < 1e-3, "{found:?}");
-    let Lugre { sliding, presliding, stribeck, stribeck_velocity, viscous, .. } = found.law;
-    for (found, true_value) in
-        [(sliding, 2.0), (presliding, 0.05), (stribeck, 0.6), (stribeck_velocity, 0.2), (viscous, 0.4)]
-    {
+    let Lugre { spring, sliding, presliding, stribeck, stribeck_velocity, viscous, .. } = found.law;
+    for (found, true_value) in [
+        (spring, 1.5),
+        (sliding, 2.0),
+        (presliding, 0.05),
+        (stribeck, 0.6),
+        (stribeck_velocity, 0.2),
+        (viscous, 0.4),
+    ] {
         assert!(close(found, true_value), "{found} for {true_value}");
     }
 }

@@ -1,8 +1,9 @@
-//! LuGre: friction of a contact whose bristles bend before they slip, as in bearings, gears, guides and tyres.
+//! LuGre: friction of a contact whose bristles bend before they slip, as in bearings, gears, guides and tyres; with a
+//! spring beside it if there is one.
 //!
 //! ```text
 //! dz/dt = v - σ0 |v| z / g(v),    g(v) = F_C + (F_S - F_C) exp(-(v/v_s)²)          theory.md (8.26)
-//! y     = c0 + σ0 z + σ1 dz/dt + σ2 v                                              theory.md (8.27)
+//! y     = c0 + k x + σ0 z + σ1 dz/dt + σ2 v                                        theory.md (8.27)
 //! ```
 //!
 //! `x` is the displacement, `v` its rate and `y` the force. At a small rate the contact is a spring of stiffness `σ0`
@@ -38,6 +39,8 @@ pub const STRIBECK_BOUNDS: (f64, f64) = (0.0, 10.0);
 pub struct Lugre {
     /// `c0`, in the unit of the output.
     pub offset: f64,
+    /// `k`: stiffness of the spring, in the unit of the output for that of the input.
+    pub spring: f64,
     /// `F_C`: sliding friction at a high rate, in the unit of the output.
     pub sliding: f64,
     /// `x_s = F_C/σ0 > 0`: presliding displacement, in the unit of the input.
@@ -57,6 +60,7 @@ impl Default for Lugre {
     fn default() -> Self {
         Self {
             offset: 0.0,
+            spring: 0.0,
             sliding: 1.0,
             presliding: 1.0,
             stribeck: 0.0,
@@ -131,7 +135,7 @@ impl Law for Lugre {
         let bristles = self.advance(state, sample);
         let damping = self.bristle_damping * bristles.rate;
         let force = self.sliding * bristles.deflection + damping + self.viscous * sample.rate;
-        (self.offset + force).clamp(-f64::MAX, f64::MAX)
+        (self.offset + self.spring * sample.x + force).clamp(-f64::MAX, f64::MAX)
     }
 
     fn parameters(&self) -> Vec<Parameter> {
@@ -142,6 +146,7 @@ impl Law for Lugre {
         let impulse = Dimension { input: 0, output: 1, time: 1 };
         vec![
             Parameter::new("c0", "output at rest", self.offset, any, Dimension::OUTPUT),
+            Parameter::new("k", "stiffness of the spring", self.spring, any, Dimension::SLOPE),
             Parameter::new("F_C", "sliding friction", self.sliding, any, Dimension::OUTPUT),
             Parameter::new("x_s", "presliding displacement", self.presliding, positive, Dimension::INPUT),
             Parameter::new(
@@ -174,13 +179,14 @@ impl Law for Lugre {
         [Some((Property::Deterioration, false)), odd].into_iter().flatten().collect()
     }
 
-    fn output_bound(&self, _: Interval, rate: Interval) -> Interval {
+    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
         let largest = 1.0 + self.stribeck;
         // The bristles lag: their rate is at most twice that of the input, for a deflection of up to the largest share.
         let bristles = rate.times((1.0 + largest) / self.presliding).with_its_negative();
         Interval::about(self.offset, (self.sliding * largest).abs())
             .plus(bristles.times(self.bristle_damping))
             .plus(rate.times(self.viscous))
+            .plus(x.times(self.spring))
     }
 }
 
@@ -192,6 +198,7 @@ mod tests {
     fn joint() -> Lugre {
         Lugre {
             offset: 0.3,
+            spring: 0.0,
             sliding: 2.0,
             presliding: 0.05,
             stribeck: 0.6,

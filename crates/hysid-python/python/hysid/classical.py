@@ -442,6 +442,7 @@ def lugre(
     stribeck_velocity: float = 1.0,
     bristle_damping: float = 0.0,
     viscous: float = 0.0,
+    spring: float = 0.0,
     offset: float = 0.0,
 ) -> np.ndarray:
     """Run a LuGre law: friction of a contact whose bristles bend before they slip.
@@ -464,6 +465,8 @@ def lugre(
         Damping of the bristles, in the unit of the output multiplied by that of time.
     viscous : float
         Viscous friction, output for rate.
+    spring : float
+        Stiffness of a spring beside the contact, output for input.
     offset : float
         In the unit of the output.
 
@@ -480,6 +483,7 @@ def lugre(
     """
     parts = {
         "offset": offset,
+        "spring": spring,
         "sliding": sliding,
         "presliding": presliding,
         "stribeck": stribeck,

@@ -1,5 +1,5 @@
-//! Identification of a LuGre law: presliding displacement, Stribeck effect and velocity are searched; the friction, the
-//! damping and the offset follow.
+//! Identification of a LuGre law: presliding displacement, Stribeck effect and velocity are searched; the spring, the
+//! friction, the damping and the offset follow.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -38,8 +38,9 @@ impl Identify for Lugre {
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);
-        (law.offset, law.sliding, law.bristle_damping, law.viscous) =
-            (found.weights[0], found.weights[1], found.weights[2], found.weights[3]);
+        (law.offset, law.spring) = (found.weights[0], found.weights[1]);
+        (law.sliding, law.bristle_damping, law.viscous) =
+            (found.weights[2], found.weights[3], found.weights[4]);
         Ok(found.identified(law.validated()?))
     }
 }
@@ -76,7 +77,7 @@ impl Family for Contacts {
     }
 
     fn non_negative(&self) -> &[bool] {
-        &[false; 4]
+        &[false; 5]
     }
 
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
@@ -88,7 +89,7 @@ impl Family for Contacts {
             }
             let bristles = law.advance(&mut state, *sample);
             if !y.is_nan() {
-                columns.push(&[1.0, bristles.deflection, bristles.rate, sample.rate]);
+                columns.push(&[1.0, sample.x, bristles.deflection, bristles.rate, sample.rate]);
             }
         }
     }
