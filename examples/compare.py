@@ -10,7 +10,7 @@ def report() -> str:
         train.y,
         train.time,
         records=train.records,
-        test=(test.x, test.y, test.time, test.records),
+        test={"x": test.x, "y": test.y, "time": test.time, "records": test.records},
         models=["masing", "prandtl-ishlinskii", "modified-prandtl-ishlinskii"],
         seed=1,
     )

@@ -27,7 +27,8 @@ Usage: cargo xtask COMMAND
 
 Commands:
   check          formatting, lints, documentation, licences of dependencies, tidiness
-  test           every test of the workspace, and of the Python package in an environment of its own
+  test [--quick] every test of the workspace, and of the Python package in an environment of its own. With --quick,
+                 only the tests inside the crates, for after a small change
   python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
@@ -83,6 +84,7 @@ fn main() -> ExitCode {
     let outcome = match arguments.as_slice() {
         ["check"] => check::run(),
         ["test"] => test::run(),
+        ["test", "--quick"] => test::quick(),
         ["python"] => python::test(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),

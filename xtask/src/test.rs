@@ -11,6 +11,24 @@ pub fn run() -> Result<()> {
     python::test()
 }
 
+/// The tests inside the crates, without those that run programs or fit many models: for after a small change.
+pub fn quick() -> Result<()> {
+    cargo(
+        &[
+            "test",
+            "--workspace",
+            "--exclude",
+            "hysid-python",
+            "--exclude",
+            "hysid-fuzz",
+            "--locked",
+            "--lib",
+            "--bins",
+        ],
+        &[],
+    )
+}
+
 /// Unit, integration and documentation tests. They need nothing beyond cargo. The Python package has its own.
 fn rust() -> Result<()> {
     cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &[])

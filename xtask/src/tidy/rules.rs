@@ -33,9 +33,12 @@ const NOT_IN_LIBRARY: [(&str, &str); 10] = [
     ("dbg!", "the library prints nothing"),
     ("std::fs", "the library reads and writes no files"),
     ("fs::", "the library reads and writes no files"),
-    ("Instant", "the library asks no clock"),
-    ("SystemTime", "the library asks no clock"),
+    ("Instant", "the library reads no clock"),
+    ("SystemTime", "the library reads no clock"),
 ];
+
+/// The one file of the library that does: the time limit of a fit is there.
+const READS_A_CLOCK: &str = "crates/hysid/src/builder.rs";
 
 /// Written in two parts, or this file would break its own rule.
 const LEFT_TO_DO: [&str; 3] = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
@@ -126,7 +129,7 @@ pub fn pure_library(path: &str, text: &str) -> Vec<Violation> {
     let mut found = Vec::new();
     for (number, line) in numbered(&code_only(text)) {
         for (pattern, reason) in NOT_IN_LIBRARY {
-            if contains_word(line, pattern) {
+            if contains_word(line, pattern) && !(path == READS_A_CLOCK && pattern == "Instant") {
                 found.push(violation(path, number, format!("`{pattern}`: {reason}")));
             }
         }
