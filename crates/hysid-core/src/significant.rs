@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers rounded to significant digits.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
-//! The model file: JSON that a person can read, with a version and a checksum.
+//! The model file: readable JSON with a version and a checksum.
 //!
-//! Everything a later version needs to simulate the model stands in it. Every released version is
-//! read by all later ones: when the layout changes, [`FORMAT_VERSION`] rises and the older reader
-//! stays.
+//! It contains everything needed to simulate the model. Every later version of Hysid reads the files of all
+//! released versions: when the layout changes, [`FORMAT_VERSION`] increases and the reader of the earlier
+//! layout is kept.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
-//! A model on its way over a record, some rows at a time: what every free run of a model goes through.
+//! Run of a model over a record in chunks of rows: the common path of all simulations.
 //!
-//! Rows are taken in chunks, with the rates of their first input and the time steps before them. However a record is
-//! cut, the outputs are the same to the last bit, since each row's rate and step follow from the rows around it.
+//! Each chunk has the rates of its first input and the time steps. They follow from the neighbouring rows, so
+//! the outputs are the same to the last bit for any division of a record.
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;

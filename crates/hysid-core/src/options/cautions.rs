@@ -1,4 +1,4 @@
-//! What to be aware of before a fit: data that the model is not made for.
+//! Cautions before a fit: data that do not suit the model.
 
 use crate::data::record::Dataset;
 use crate::data::warning::Warning;
@@ -10,7 +10,7 @@ use crate::significant::Significant;
 const FAR: f64 = 2.0;
 
 impl FitSpec {
-    /// What to be aware of when this is fitted to these data, in sentences.
+    /// Cautions for a fit of this model to these data, in sentences.
     pub fn cautions(&self, data: &Dataset) -> Vec<String> {
         let model = self.model();
         let mut cautions = Vec::new();
