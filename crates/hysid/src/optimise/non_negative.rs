@@ -1,9 +1,11 @@
-//! Convex quadratic functions, and where they are lowest when some of the variables have a sign: non-negative least
-//! squares on the normal equations.
+//! Convex quadratic functions and their minima with sign constraints: non-negative least squares on the
+//! normal equations.
 //!
 //! ```text
 //! w = argmin ½ wᵀMw - bᵀw,   w_i ≥ 0 for some i                        theory.md (7.1)
 //! ```
+//!
+//! `M = A + λP` is positive semi-definite.
 
 use std::ops::Range;
 

@@ -1,4 +1,9 @@
-//! How well a candidate predicts data held out, and what it weighs for it: theory.md (11.5) and (11.6).
+//! Scores of candidates on held-out data, and the weights that follow.
+//!
+//! ```text
+//! S = mean over the folds f of ln(rmse_f / σ_f)                            theory.md (11.5)
+//! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
+//! ```
 
 use crate::fit::auto::trial::HeldOut;
 use crate::model::Weights;

@@ -1,5 +1,5 @@
-//! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are searched, the stiffnesses,
-//! the offset and the damping follow.
+//! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are found by search, and for each of
+//! their values stiffnesses, offset and damping by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;

@@ -1,9 +1,9 @@
-//! Identification of a generalized Prandtl-Ishlinskii model: envelopes and thresholds are searched, the
-//! weights and the level of the output follow.
+//! Identification of a generalized Prandtl-Ishlinskii model: envelopes and thresholds are found by search,
+//! and for each of their values weights and offset by least squares.
 //!
-//! The law is not changed when both envelopes and the thresholds are scaled by one factor and the
-//! weights by its inverse, nor when both envelopes are raised and `c` lowered. The search fixes both:
-//! `γ_l` goes from 0 to 1 over the range of the input.
+//! The law does not change if both envelopes and the thresholds are multiplied by one factor and the weights
+//! divided by it, or if both envelopes are raised and `c` is lowered. The search therefore fixes `γ_l` at 0
+//! and 1 at the ends of the input range.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;

@@ -1,5 +1,5 @@
-//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s` and `c` are searched, the saturation, the
-//! offset and the share of the field follow.
+//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s` and `c` are found by search, and for each of
+//! their values saturation, offset and the share of the field by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;

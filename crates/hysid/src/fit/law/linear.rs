@@ -1,13 +1,16 @@
-//! What all models that are linear in their weights share: sums over rows of features, least squares
-//! with penalties, and the choice of a penalty by cross-validation.
+//! Identification of models that are linear in their weights: least squares with a penalty, chosen by
+//! cross-validation.
 //!
 //! ```text
-//! w = argmin ½ wᵀ(A + P) w - bᵀw,    A = ΦᵀΦ/N,  b = Φᵀy/N           theory.md (7.1)
+//! w = argmin ½ wᵀ(A + λP) w - bᵀw,    A = ΦᵀΦ/N,  b = Φᵀy/N          theory.md (7.1)
 //! ```
 //!
-//! Features are computed once over whole records, so that memory carries over from one block of rows
-//! to the next; each block's sums are kept apart, and what is trained on is the sum of all blocks less
-//! the one held out. A row with a blank output enters nowhere.
+//! `Φ` has one row of features for each of the `N` scored rows, and does not depend on the weights `w`; `y`
+//! is the measured output, `P` a penalty and `λ` its factor.
+//!
+//! Features are computed once over whole records, so that memory continues from one block of rows to the
+//! next. The sums of each block are separate; the training sum of a fold is the total minus the held-out
+//! block. Rows with a blank output are not used.
 
 use std::ops::Range;
 

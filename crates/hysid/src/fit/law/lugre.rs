@@ -1,5 +1,5 @@
-//! Identification of a LuGre law: presliding displacement, Stribeck effect and velocity are searched; the friction, the
-//! damping and the offset follow.
+//! Identification of a LuGre law: presliding displacement, Stribeck effect and Stribeck velocity are found by
+//! search, and for each of their values friction, damping and offset by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;

@@ -1,4 +1,4 @@
-//! Fitting a model by Masing's rule: linear least squares on each of several grids of thresholds.
+//! Identification of a model by Masing's rule: linear least squares on each of several grids of thresholds.
 
 use crate::data::record::Dataset;
 use crate::error::Result;

@@ -1,12 +1,13 @@
-//! Training of a neuro-Madelung model: from random networks, first with the measured output at every
-//! turning point (teacher forcing), then in free run, where the model's own errors at the turning points
-//! go on into the branches. A free run of data held out judges the starts, since a network that fits well
-//! may still let those errors grow; the best is trained on everything for a few epochs more.
+//! Identification of a neuro-Madelung model, from random networks: first with the measured output at every
+//! turning point (teacher forcing), then in free run, in which errors at turning points propagate into the
+//! branches. The error of a free run on held-out data selects the start, because a network with a small
+//! training error may amplify such errors. The best is trained on all data for a few further epochs.
 //!
 //! ```text
 //! dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ                 theory.md (8.21)
 //! ```
 //!
+//! `θ` are the parameters, `N` the network and `(x_t, y_t)` the turning point at which the branch began.
 //! `dy_t/dθ` is stored with each turning point, so the derivative of the free run is exact.
 
 use std::cmp::Ordering;

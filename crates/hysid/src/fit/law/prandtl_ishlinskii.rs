@@ -1,4 +1,4 @@
-//! Fitting a Prandtl-Ishlinskii model: linear least squares on each of several grids of thresholds.
+//! Identification of a Prandtl-Ishlinskii model: linear least squares on each of several grids of thresholds.
 
 use crate::data::record::Dataset;
 use crate::error::Result;

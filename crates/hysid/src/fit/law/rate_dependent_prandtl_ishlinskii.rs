@@ -1,5 +1,5 @@
-//! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are
-//! searched, the weights follow.
+//! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are found by
+//! search, and for each of their values the weights by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;

@@ -1,5 +1,9 @@
-//! Output weights by ridge least squares, from the Gram matrix of features, target and (maybe)
-//! Jacobian, theory.md (3.2) to (3.4).
+//! Output weights by ridge least squares, from the Gram matrix of features `Φ`, target and optionally
+//! Jacobian.
+//!
+//! ```text
+//! (ΦᵀΦ/N + λI) c = Φᵀy/N                                                   theory.md (3.2)
+//! ```
 
 use crate::linear_algebra::{Cholesky, Gram, Symmetric};
 use crate::optimise::ridge::factor_with_ridge;
