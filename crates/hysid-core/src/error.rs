@@ -81,7 +81,7 @@ pub enum Error {
     /// A probability that no band is calibrated for.
     #[error("a band of {probability}: choose a probability from {least} to {most}")]
     Probability {
-        /// What was asked for.
+        /// The requested value.
         probability: f64,
         /// The smallest that there is.
         least: f64,
@@ -193,13 +193,13 @@ pub enum DataProblem {
     /// A rate that overflows because a time step is too short.
     #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
-    /// A rate was asked for and there is no time.
+    /// A rate needs time stamps, and there are none.
     #[error("there is no time column to take the rate from")]
     NoTime,
     /// The model needs time and there is none.
     #[error("there is no time column, and the model needs one")]
     NoTimeForModel,
-    /// A rate was asked for from a column that is missing.
+    /// The given rate is missing.
     #[error("there is no given rate (the model was trained with one)")]
     NoGivenRate,
     /// The number of inputs is not what it must be.

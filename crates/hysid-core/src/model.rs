@@ -171,7 +171,7 @@ impl TrainedRanges {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// What was asked for.
+    /// The requested value.
     pub options: FitSpec,
     /// Rows with an output.
     pub samples: usize,
@@ -210,7 +210,7 @@ impl Provenance {
 /// How a model was fitted, before its errors on the data are known; with them it becomes the [`Provenance`].
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// What was asked for.
+    /// The requested value.
     pub options: FitSpec,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,

@@ -1,10 +1,11 @@
 //! Rate (time derivative) of an input, from its samples and time stamps.
 //!
 //! ```text
-//! central     x'_k = [h_-² x_{k+1} + (h_+² - h_-²) x_k - h_+² x_{k-1}] / (h_- h_+ (h_- + h_+))   theory.md (4.1)
-//! at the ends x'_0 = (x_1 - x_0)/(t_1 - t_0),  and likewise at the last row                      theory.md (4.2)
-//! backward    x'_k = (x_k - x_{k-1})/h_-,   x'_0 = 0                                             theory.md (4.3)
-//! Savitzky-Golay   x'_k = α_1  of the least  Σ_i (x_i - α_0 - α_1 (t_i - t_k) - α_2 (t_i - t_k)²)²   theory.md (4.4)
+//! central         x'_k = [h_-² x_{k+1} + (h_+² - h_-²) x_k - h_+² x_{k-1}]/(h_- h_+ (h_- + h_+))    theory.md (4.1)
+//! at the ends     x'_0 = (x_1 - x_0)/(t_1 - t_0),  and likewise at the last row                   theory.md (4.2)
+//! backward        x'_k = (x_k - x_{k-1})/h_-,   x'_0 = 0                                          theory.md (4.3)
+//! Savitzky-Golay  x'_k = α_1 of the least                                                         theory.md (4.4)
+//!                 Σ_i (x_i - α_0 - α_1 (t_i - t_k) - α_2 (t_i - t_k)²)²
 //! ```
 //!
 //! `x_k` is the input at the time `t_k`; the steps `h_- = t_k - t_{k-1}` and `h_+ = t_{k+1} - t_k` need not

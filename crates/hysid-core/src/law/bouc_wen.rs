@@ -92,7 +92,7 @@ pub struct BoucWenState {
     inner: Inner,
 }
 
-/// The hysteretic element: `z` in yield displacements, and the energy `e` that it has taken up.
+/// The hysteretic element: `z` in yield displacements, and its dissipated energy `e`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct Inner {
     z: f64,

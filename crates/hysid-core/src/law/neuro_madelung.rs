@@ -34,7 +34,7 @@ const BEYOND: f64 = 1.0;
 /// Scaled inputs of the network are limited to this: far outside of the data it is saturated anyway.
 const LARGEST_INPUT: f64 = 1e6;
 
-/// Most tanh neurons that can be asked for: the search takes the square of their number in memory.
+/// Largest number of tanh neurons: the memory of the search grows with its square.
 pub const MOST_HIDDEN: usize = 100;
 
 /// A neuro-Madelung model in the user's units: `y = y_t + (x - x_t) N(x, x_t, y_t[, x'])` (theory.md (8.19)).

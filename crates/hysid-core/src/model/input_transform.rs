@@ -124,7 +124,7 @@ fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
     Ok(if *rate > 0.0 { *rate } else { 1.0 })
 }
 
-/// Data as a model sees them, and how the rate is found there.
+/// Transformed data, and the method of their rate.
 pub struct Transformed<'d> {
     /// The input transform.
     pub preprocessing: InputTransform,
@@ -252,7 +252,7 @@ impl InputTransform {
         Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()? }))
     }
 
-    /// Data as the model sees them, and how the rate is found there.
+    /// Transformed data, and the method of their rate.
     ///
     /// # Errors
     /// A rate that cannot be computed.

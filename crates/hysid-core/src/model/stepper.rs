@@ -97,7 +97,7 @@ impl State {
         }
     }
 
-    /// Refuses a sample that cannot be taken, before anything is changed.
+    /// Rejects an invalid sample before the state changes.
     fn check(&self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<()> {
         let expected = model.inputs();
         if inputs.len() != expected {

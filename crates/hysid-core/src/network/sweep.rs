@@ -64,7 +64,7 @@ pub(crate) trait TakeBlock {
 }
 
 impl Walk<'_> {
-    /// Walks over every record from the virgin state; ends early once asked to stop.
+    /// Walks over every record from the virgin state; ends early once stopped.
     #[inline(always)]
     pub fn over<S: Simd>(
         &self,

@@ -24,7 +24,7 @@ impl FitSpec {
 }
 
 impl FitSpec {
-    /// A network with more parameters than rows with an output; of other models the fitted one tells.
+    /// A network with more parameters than rows with an output; of other models there is a note after the fit.
     fn larger_than(&self, data: &Dataset) -> Option<Warning> {
         let Self::Network(options) = self else { return None };
         // Sizes that no network can have are refused by the fit.

@@ -66,7 +66,7 @@ impl NamedOptions {
         Ok(options)
     }
 
-    /// Refuses more than the model that was named can have.
+    /// Rejects values beyond the limits of the named model.
     fn check(&self) -> Result<()> {
         let ModelName::Classical(rival) = self.model() else { return Ok(()) };
         for &(option, most) in rival.facts().limits {

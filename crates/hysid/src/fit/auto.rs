@@ -74,7 +74,7 @@ pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
 }
 
-/// The candidates: all that suit the data, or the one model that was asked for.
+/// The candidates: all that suit the data, or the one requested model.
 fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     match &options.only {
         Some(request) => vec![Candidate::alone(request)],
@@ -155,7 +155,7 @@ struct Chosen<'w, 'o, 'a> {
 }
 
 impl Chosen<'_, '_, '_> {
-    /// The ensemble, or the single model that was asked for; `alone` where nothing was tried in time.
+    /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fit> {
         let Bench { folds, work, .. } = self.bench;
         let fit = |model| Ok(Fit { model, evaluations: work.done() });

@@ -51,8 +51,8 @@ impl<S: Start> MultiStart<S> {
         Self { starts, given_up: 0 }
     }
 
-    /// Advances all starts in rounds, counted from 1, until all have ended or `tell`, which hears of every round, breaks
-    /// off.
+    /// Advances all starts in rounds, counted from 1, until all have ended or `tell`, which is called after every
+    /// round, returns `Break`.
     pub fn run(
         &mut self,
         plan: Plan,

@@ -16,7 +16,7 @@ use crate::law::{Dimension, Parameter};
 
 use super::Inner;
 
-/// Largest energy counted: what has taken up so much is long without strength.
+/// Largest energy; the element has no strength left far below it.
 const LARGEST_ENERGY: f64 = 1e9;
 
 /// An element so much quicker than when untouched follows its yield force, which sinks slowly, closely.
@@ -96,7 +96,7 @@ impl Degradation {
         Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda }
     }
 
-    /// The properties of an element that has taken up the energy `e`.
+    /// The properties of an element after the dissipated energy `e`.
     pub(super) fn at(&self, n: f64, e: f64) -> Properties {
         let e = limited(e);
         let nu = 1.0 + self.delta_nu * e;

@@ -1,6 +1,5 @@
-//! How candidates are combined: the weighted median of kinds, each the weighted median of its best candidates.
-//! The same tree of weights predicts what was held out and, with members in the place of candidates, becomes
-//! the ensemble.
+//! Combination of candidates: the weighted median of kinds, each the weighted median of its best candidates.
+//! The same tree of weights predicts held-out data and, with members instead of candidates, is the ensemble.
 
 use crate::data::metrics::Errors;
 use crate::error::Result;

@@ -27,13 +27,13 @@ use crate::law::generalized_prandtl_ishlinskii::{
 /// it would leap where the input leaves the range.
 const SMALLEST_SHARE: f64 = 0.1;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 10;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 32;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 60;
 
 impl Identify for GeneralizedPrandtlIshlinskii {
@@ -71,7 +71,7 @@ impl Identify for GeneralizedPrandtlIshlinskii {
     }
 }
 
-/// Generalized plays as the search sees them.
+/// Generalized plays, in the form of the search.
 struct Plays {
     low: f64,
     high: f64,

@@ -238,7 +238,7 @@ impl<'a> Gatherer<'a> {
         }
     }
 
-    /// Counts the operations of one more row; true once asked to stop.
+    /// Counts the operations of one more row; true once stopped.
     pub fn is_over(&mut self, operations: usize) -> bool {
         self.pace.is_over(operations)
     }

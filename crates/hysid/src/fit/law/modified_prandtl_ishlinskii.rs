@@ -29,10 +29,10 @@ use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 use rayon::prelude::*;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 20;
 
-/// Dead zones on each side unless the user says otherwise.
+/// Default number of dead zones on each side.
 const DEAD_ZONES: usize = 6;
 
 /// Most dead zones on each side.

@@ -39,13 +39,13 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
-/// Tanh neurons unless the user says otherwise.
+/// Default number of tanh neurons.
 const HIDDEN: usize = 8;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 16;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 60;
 
 impl Identify for NeuroMadelung {
@@ -136,7 +136,7 @@ impl<'a> Training<'a> {
         Ok(Identified { law, train_nrmse_percent, evaluations, termination })
     }
 
-    /// Half of the epochs teacher forced, then the others in free run; the observer hears of `rounds` in all.
+    /// Half of the epochs teacher forced, then the others in free run; the observer is called for `rounds` in all.
     fn epochs(
         &mut self,
         rounds: usize,
@@ -215,7 +215,7 @@ struct Reached {
     by_parameters: Vec<f64>,
 }
 
-/// Residuals, and the derivatives by each parameter if asked for.
+/// Residuals, and the derivatives by each parameter on request.
 struct Sweep {
     residual: Vec<f64>,
     jacobian: Vec<Vec<f64>>,
@@ -280,7 +280,7 @@ impl<'a> Task<'a> {
         measured.min_by(|a, b| a.0.x.abs().total_cmp(&b.0.x.abs())).map_or(0.0, |(_, y)| *y)
     }
 
-    /// Runs over all records, unless it is asked to stop; `forced` takes the measured output at turning points where there is one.
+    /// Runs over all records, unless stopped; `forced` takes the measured output at turning points where there is one.
     fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> Sweep {
         let law = self.law(parameters);
         let branch = law.branch();

@@ -15,7 +15,7 @@ use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 30;
 
 /// Linear least squares with a ridge penalty chosen by cross-validation.

@@ -23,7 +23,7 @@ use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
-/// Intervals of each axis unless the user says otherwise.
+/// Default number of intervals of each axis.
 const INTERVALS: usize = 30;
 
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.

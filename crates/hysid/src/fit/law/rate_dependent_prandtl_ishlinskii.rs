@@ -27,13 +27,13 @@ enum ThresholdForm {
     Logarithmic,
 }
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 10;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 16;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 40;
 
 impl Identify for RateDependentPrandtlIshlinskii {
@@ -68,7 +68,7 @@ impl Identify for RateDependentPrandtlIshlinskii {
     }
 }
 
-/// Rate-dependent plays as the search sees them.
+/// Rate-dependent plays, in the form of the search.
 struct Plays {
     /// Largest magnitudes of input and rate.
     input: f64,

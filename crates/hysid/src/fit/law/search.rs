@@ -93,7 +93,7 @@ impl Variable {
     }
 }
 
-/// A family of laws as the search sees it.
+/// A family of laws, in the form of the search.
 pub(crate) trait Family: Sync {
     /// The parameters that are searched.
     fn variables(&self) -> &[Variable];

@@ -40,7 +40,7 @@ impl Curvature {
     }
 
     /// The step to where gradient and curvature, with `damping` added to its diagonal, see the minimum; `None` if
-    /// it is not positive definite, or asked to stop.
+    /// it is not positive definite, or once stopped.
     pub fn step(&self, gradient: &[f64], damping: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         match self {
             Self::Matrix(matrix) => damped_step(matrix, gradient, damping, stop),

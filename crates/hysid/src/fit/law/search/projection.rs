@@ -22,7 +22,7 @@ impl<'a> Columns<'a> {
         Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
     }
 
-    /// Counts the operations of one more row; true once asked to stop, and the columns are of no use then.
+    /// Counts the operations of one more row; true once stopped, and the columns are of no use then.
     pub fn is_over(&mut self, operations: usize) -> bool {
         self.pace.is_over(operations)
     }
