@@ -57,8 +57,8 @@ impl ConcreteParameters {
         self.strength * eta * r / (r - 1.0 + eta.powf(r))
     }
 
-    /// Permanent strain `ε_p` in mm/m after unloading from a strain in mm/m on the envelope (theory.md
-    /// (6.25)).
+    /// Permanent strain `ε_p` in mm/m after unloading from a strain in mm/m on the envelope: `ε_c (0.145 η_u²
+    /// + 0.13 η_u)` for `η_u < 2`, else `ε_c (0.707 (η_u - 2) + 0.834)` (theory.md (6.25)).
     pub fn permanent_strain(&self, strain: f64) -> f64 {
         let eta = strain / self.strain_at_strength;
         let ratio = if eta < 2.0 { 0.145 * eta * eta + 0.13 * eta } else { 0.707 * (eta - 2.0) + 0.834 };
@@ -184,7 +184,8 @@ impl Concrete {
         self.now = Point { strain, stress: self.unloading(from, strain) };
     }
 
-    /// Stress on the way from a point down to the permanent strain: theory.md (6.26).
+    /// Stress on unloading from a point to the permanent strain, `σ_a [1 - x q/(q - 1 + x^q)]` (theory.md
+    /// (6.26)).
     fn unloading(&self, from: Point, strain: f64) -> f64 {
         if strain <= self.permanent || from.stress <= 0.0 {
             return 0.0;

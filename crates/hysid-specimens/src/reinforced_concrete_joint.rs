@@ -130,7 +130,8 @@ impl BoucWenBaberNoori {
         (self.a_0 / (self.nu_0 * (self.beta + self.gamma))).powf(1.0 / self.n)
     }
 
-    /// Derivatives of `z` and `e` by `ξ` while `ξ` moves in this direction: theory.md (6.5), (6.6).
+    /// Derivatives of `z` and `e` by `ξ` in this direction: `h/η [A - ν |z|^n (β sgn(z dξ) + γ)]` and `(1 -
+    /// α) κ z` (theory.md (6.5), (6.6)).
     fn slope(&self, Inner { z, e }: Inner, direction: f64) -> Inner {
         let a = (self.a_0 - self.delta_a * e).max(0.0);
         let nu = self.nu_0 + self.delta_nu * e;

@@ -23,10 +23,10 @@ pub enum RateMethod {
     /// The rate is a column of the record.
     Given,
     /// Central difference: the slope at `t_k` of the parabola through three samples (theory.md (4.1));
-    /// one-sided difference at the ends of a record (theory.md (4.2)).
+    /// one-sided difference `(x_1 - x_0)/(t_1 - t_0)` at the ends of a record (theory.md (4.2)).
     Central,
-    /// Backward difference, which needs no later sample and is therefore available in real time (theory.md
-    /// (4.3)).
+    /// Backward difference, `(x_k - x_{k-1})/(t_k - t_{k-1})`, which needs no later sample and is therefore
+    /// available in real time (theory.md (4.3)).
     Backward,
     /// Savitzky-Golay: slope of the least-squares parabola through the neighbours, which smooths noise
     /// (theory.md (4.4)).

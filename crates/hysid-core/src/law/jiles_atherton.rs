@@ -39,7 +39,7 @@ const SATURATED: f64 = 300.0;
 /// Least `k - α|M_an - M|` as a share of `k` (theory.md (8.25)).
 const LEAST_PINNING: f64 = 0.02;
 
-/// Largest `α N` (theory.md (8.25)).
+/// Largest `α N`; at 1 the susceptibility would be infinite (theory.md (8.25)).
 const LARGEST_FEEDBACK: f64 = 0.98;
 
 /// Bounds of `c`.

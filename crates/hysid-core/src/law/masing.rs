@@ -25,7 +25,8 @@ use crate::law::turning_point_stack::{Branch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// A model by Masing's rule, with an odd polygon as its virgin curve (theory.md (7.3)).
+/// A model by Masing's rule: `y = c + g(x)` on the virgin curve, `y = y* + 2 g((x - x*)/2)` from a turning
+/// point `(x*, y*)`, with an odd polygon `g` (theory.md (7.3)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MasingParts", into = "MasingParts")]
 pub struct Masing {

@@ -33,7 +33,8 @@ use plane::Plane;
 /// Most intervals of each axis.
 pub const MOST_INTERVALS: usize = 200;
 
-/// A Preisach model on a plane of cells (theory.md (7.8)).
+/// A Preisach model on a plane of cells: `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]` (theory.md
+/// (7.8)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PreisachWeights", into = "PreisachWeights")]
 pub struct Preisach {

@@ -109,7 +109,8 @@ impl Excursion {
         Self { range, farthest: 0.0 }
     }
 
-    /// Adds the next input and returns `o`: 0 if the record was always inside, 1 for fully outside (theory.md
+    /// Adds the next input and returns `o = min(1, e / 0.06 (u - l))`, where `e` is the largest distance so
+    /// far outside the range `l` to `u`: 0 if the record was always inside, 1 for fully outside (theory.md
     /// (11.4)).
     pub fn take(&mut self, x: f64) -> f64 {
         let (low, high) = self.range;
@@ -288,8 +289,8 @@ impl Group {
         (weights().map(|weights| weights.inside).sum(), weights().map(|weights| weights.outside).sum())
     }
 
-    /// The weights of a record that has been outside by this degree where (11.4) leaves none: theory.md
-    /// (11.9). A class without weights has those of the other.
+    /// The weights `(1-o) a_i/Σa + o b_i/Σb`, where the products `a_i^{1-o} b_i^o` are 0 for all nodes
+    /// (theory.md (11.9)). A class without weights takes those of the other.
     fn blended(&self, outside: f64) -> impl Iterator<Item = f64> {
         let (a, b) = self.sums();
         self.nodes.iter().map(move |Node { weights, .. }| {
@@ -299,7 +300,7 @@ impl Group {
         })
     }
 
-    /// Sum of the weights of (11.4).
+    /// Sum of the products `a_i^{1-o} b_i^o` (theory.md (11.4)).
     fn sum_at(&self, outside: f64) -> f64 {
         self.nodes.iter().map(|node| node.weights.at(outside)).sum()
     }

@@ -41,7 +41,8 @@ pub struct InputTransform {
     pub companding: Option<f64>,
     /// `s'` of `v = asinh(x' / s')`, in the unit of the rate; `None` for no companding (theory.md (11.1)).
     pub rate_companding: Option<f64>,
-    /// `X` and `P`, in the unit of the input; `None` for no history (theory.md (11.2)).
+    /// `X` and `P` of `m = max |x| so far / X` and `p = ln(1 + 10 path so far / P) / ln 11`, in the unit of
+    /// the input; `None` for no history (theory.md (11.2)).
     pub history: Option<(f64, f64)>,
 }
 
@@ -84,7 +85,7 @@ impl InputOptions {
 /// distance, as a share of the range, between the first values of records that begin at one point. Designed.
 const MARGIN: f64 = 0.05;
 
-/// `c` of theory.md (11.8), one for each input; none where all are 0.
+/// The origin `c` of each input (theory.md (11.8)); none if all are 0.
 fn origins(data: &Dataset) -> Vec<f64> {
     let origins: Vec<f64> = (0..data.names().inputs.len()).map(|input| origin(data, input)).collect();
     if origins.iter().all(|origin| *origin == 0.0) { Vec::new() } else { origins }

@@ -283,8 +283,8 @@ impl MemoryLayer {
         self.remember(state, u, rows);
     }
 
-    /// At the first row of a record the plays jump from virgin to where they are held; that jump is
-    /// no slip: theory.md (1.5).
+    /// Initializes the plays at the first row of a record; this movement is no slip, `s_0 = 0` (theory.md
+    /// (1.5)).
     #[inline(always)]
     fn begin<S: Simd>(&self, state: &mut MemoryState, u: &[Row]) {
         if state.started {
@@ -473,8 +473,8 @@ struct StopSlopes<'a> {
     ln_beta: &'a mut [Row],
 }
 
-/// Advances one group through a block with the sub-gradient of theory.md (2.9). At a kink the
-/// sample counts as sticking.
+/// Advances one group through a block with its sub-gradient `∂z/∂w = (1 - s/β) ∂ε/∂w - (ε/β) ∂s/∂w`
+/// (theory.md (2.9)). At a kink the sample counts as sticking.
 #[inline(always)]
 fn advance_with_slopes<S: Simd>(
     simd: S,

@@ -117,7 +117,8 @@ impl Readout {
 pub(crate) struct Backward {
     /// By the weighted sum of each tanh neuron: the weight times `c_i (1 - h_i²)`.
     pub by_sum: Vec<Row>,
-    /// By the output of each memory neuron: the weight times `q_j`, theory.md (2.11).
+    /// By the output of each memory neuron: the weight times `q_j = Σ_i c_i (1 - h_i²) U_ij + d_j` (theory.md
+    /// (2.11)).
     pub by_memory: Vec<Row>,
 }
 

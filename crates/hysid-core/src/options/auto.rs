@@ -50,10 +50,10 @@ pub struct AutoOptions {
     pub history: Option<bool>,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
     pub warm_up: Option<usize>,
-    /// λ, the penalty on the output weights of networks (theory.md (3.1)).
+    /// λ: penalty `½ λ ‖c‖²` on the output weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ridge: Option<f64>,
-    /// κ, the penalty on the other weights of networks (theory.md (3.1)).
+    /// κ: penalty `½ κ ‖θ‖²` on the other weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decay: Option<f64>,
     /// Seed of all random numbers.

@@ -20,7 +20,8 @@ pub struct InputOptions {
     /// below; `None` for none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate_companding: Option<f64>,
-    /// True if running peak and travelled path of the first input are inputs too (theory.md (11.2)).
+    /// True if running peak and travelled path of the first input, `max |x| so far` and `ln(1 + 10 path so
+    /// far / P)`, are inputs too (theory.md (11.2)).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub history: bool,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.

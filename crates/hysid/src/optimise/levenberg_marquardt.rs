@@ -240,9 +240,9 @@ impl<V> LevenbergMarquardt<V> {
     }
 }
 
-/// μ and D of theory.md (3.5). D is the largest curvature seen lately in each direction (Moré), so that a
-/// parameter that matters little now is not thrown far away; it fades, because curvature seen far away
-/// would hold the parameter for ever.
+/// Damping `μ` and scaling `D` of the step `(B + μD) δ = -g` (theory.md (3.5)). `D` is the largest recent
+/// curvature in each direction (Moré), which limits the step in a parameter of little present influence. It
+/// decays, because curvature far away would limit the parameter without end.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Damping {
     mu: f64,

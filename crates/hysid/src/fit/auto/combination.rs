@@ -12,7 +12,8 @@ use crate::model::{
 };
 use crate::validation::PooledErrors;
 
-/// Power of theory.md (11.6) among candidates of a kind, and how many of them count.
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates of a kind (theory.md (11.6)), and the
+/// number of candidates with a weight.
 const POWER_IN_KIND: f64 = 8.0;
 const MOST_IN_KIND: usize = 3;
 

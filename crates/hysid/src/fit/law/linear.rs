@@ -86,7 +86,7 @@ impl Sums {
         sum.max(1e-14 * self.gram.at(n, n)) / self.rows.max(1) as f64
     }
 
-    /// The quadratic form of theory.md (7.1), without penalty.
+    /// The quadratic form `½ wᵀAw - bᵀw`, without penalty (theory.md (7.1)).
     pub fn quadratic(&self) -> Quadratic {
         let (n, rows) = (self.features, self.rows.max(1) as f64);
         Quadratic {

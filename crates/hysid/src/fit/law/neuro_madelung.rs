@@ -329,7 +329,8 @@ impl<'a> Task<'a> {
     }
 }
 
-/// The output and its derivatives, theory.md (8.21).
+/// The output and its derivatives, `dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ` (theory.md
+/// (8.21)).
 fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> Reached {
     let run = branch.run();
     let neurons = branch.output.len() - 1;

@@ -21,9 +21,9 @@ use crate::law::rate_dependent_prandtl_ishlinskii::{
 /// Which form the thresholds have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ThresholdForm {
-    /// theory.md (8.16).
+    /// `r_i = α i + β |x'|` (theory.md (8.16)).
     Linear,
-    /// theory.md (8.17).
+    /// `r_i = α i max(0, ln(β + λ |x'|^ε))` (theory.md (8.17)).
     Logarithmic,
 }
 

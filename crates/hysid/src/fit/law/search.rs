@@ -72,7 +72,7 @@ impl Variable {
         Self { low, high, logarithmic: true }
     }
 
-    /// theory.md (8.2).
+    /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
     fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
             self.low * (self.high / self.low).powf(u)

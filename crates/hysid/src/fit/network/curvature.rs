@@ -109,7 +109,7 @@ impl Rows {
         dot(column, column) + self.decay[parameter]
     }
 
-    /// Gradient of the objective, theory.md (3.3), with decay.
+    /// Gradient of the objective, `Jᵀr/N + κ θ_w` (theory.md (3.3)).
     pub fn gradient(&self) -> Vec<f64> {
         let of = |(index, pull): (usize, &f64)| dot(self.column(index), &self.residual) + pull;
         self.pull.iter().enumerate().map(of).collect()

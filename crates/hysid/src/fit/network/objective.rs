@@ -42,7 +42,7 @@ pub struct Objective<'a> {
 /// The objective at a point, with the output weights there.
 #[derive(Debug, Clone)]
 pub struct Value {
-    /// `F`, in scaled units (theory.md (3.1)).
+    /// The objective `F`, in scaled units.
     pub objective: f64,
     /// Mean square residual in scaled units; if all data are the training set, the square of NRMSE (of the
     /// standard deviation).
@@ -233,7 +233,7 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// Gradient of F, theory.md (3.3), and Gauss-Newton matrix with decay, (3.4).
+/// Gradient `g` of `F` and Gauss-Newton matrix `B` with decay, `B + κI` (theory.md (3.3), (3.4)).
 fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
     let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
     Slope { gradient, diagonal, curvature, evaluations: 1 }

@@ -1,4 +1,5 @@
-//! Weights of features by least squares, some of them not negative: theory.md (8.1).
+//! Weights of features by least squares, some of them not negative: `argmin_c Σ_k (Σ_i c_i φ_i,k - y_k)²`
+//! (theory.md (8.1)).
 
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::non_negative::Quadratic;
