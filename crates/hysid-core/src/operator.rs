@@ -1,4 +1,4 @@
-//! Operators with memory: the elements of which every hysteresis model of this crate consists.
+//! Operators with memory: the elements of the networks and of many classical laws.
 //!
 //! The output of a function depends on the present value of its input. The output of an *operator with
 //! memory* depends on the past of its input too, through a state of one or two numbers. A weighted sum of
