@@ -1,4 +1,4 @@
-//! Measured data: records and their columns, units, rates, errors, and what to know before they are used.
+//! Measured data: records and their columns, units, rates, error metrics, and checks before use.
 
 pub mod column;
 pub mod metrics;
@@ -9,5 +9,5 @@ pub mod turning_points;
 pub mod unit;
 pub mod warning;
 
-/// Fewest rows with an output that a model is identified from.
+/// Least number of rows with an output for an identification.
 pub const FEWEST_ROWS: usize = 10;

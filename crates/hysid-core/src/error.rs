@@ -1,4 +1,4 @@
-//! What can be wrong with what a caller hands in.
+//! Errors of the library.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -8,7 +8,7 @@ use crate::significant::Significant;
 /// Result of the library's fallible functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// An error of the library; its text says what is wrong and what helps.
+/// An error of the library. Its text states what is wrong and what helps.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -18,14 +18,14 @@ pub enum Error {
     /// An option of a fit that cannot be used.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// A name that there is not.
+    /// An unknown name.
     #[error("{what} `{}` is unknown: choose one of {}", one_line(.name), .known.join(", "))]
     UnknownName {
-        /// What it should name, such as "model".
+        /// What the name is of, such as "model".
         what: &'static str,
         /// The name.
         name: String,
-        /// The names that there are.
+        /// The known names.
         known: Vec<&'static str>,
     },
     /// A parameter of a law that is not finite or out of bounds.
@@ -81,7 +81,7 @@ pub enum Error {
     /// A probability that no band is calibrated for.
     #[error("a band of {probability}: choose a probability from {least} to {most}")]
     Probability {
-        /// What was asked for.
+        /// The requested value.
         probability: f64,
         /// The smallest that there is.
         least: f64,
@@ -94,7 +94,7 @@ pub enum Error {
     /// A checkpoint that cannot be used.
     #[error("{}", one_line(.0))]
     Checkpoint(String),
-    /// More memory than there is.
+    /// More memory than is available.
     #[error(
         "this needs about {:.1} GB of memory, most of it for {taken_by}, and {:.1} GB are available: {advice}",
         .needed / 1e9,
@@ -105,12 +105,12 @@ pub enum Error {
         needed: f64,
         /// Bytes available.
         available: f64,
-        /// What takes them.
+        /// What needs them.
         taken_by: String,
-        /// What lowers them.
+        /// What reduces them.
         advice: &'static str,
     },
-    /// The observer asked to stop before there was any model.
+    /// The observer stopped the fit before there was a model.
     #[error(
         "stopped before there was a first model: allow more time, or choose a smaller model or fewer rows"
     )]
@@ -180,7 +180,7 @@ pub enum DataProblem {
     /// A magnitude beyond [`LARGEST_VALUE`].
     #[error("{0:e} is too large: at most {LARGEST_VALUE:e} in magnitude (choose another unit)")]
     TooLarge(f64),
-    /// Time stands still or runs backwards.
+    /// Time does not increase.
     #[error(
         "time {now} does not come after {before} (sort the rows, or name the records in a column `record`)"
     )]
@@ -190,16 +190,16 @@ pub enum DataProblem {
         /// The offending time stamp.
         now: f64,
     },
-    /// A rate that overflows, from time steps next to nothing.
+    /// A rate that overflows because a time step is too short.
     #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
-    /// A rate was asked for and there is no time.
+    /// A rate needs time stamps, and there are none.
     #[error("there is no time column to take the rate from")]
     NoTime,
     /// The model needs time and there is none.
     #[error("there is no time column, and the model needs one")]
     NoTimeForModel,
-    /// A rate was asked for from a column that is missing.
+    /// The given rate is missing.
     #[error("there is no given rate (the model was trained with one)")]
     NoGivenRate,
     /// The number of inputs is not what it must be.
@@ -277,7 +277,7 @@ pub struct OptionError {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum OptionProblem {
-    /// There is no such option; these are the names that there are.
+    /// The option is unknown; these are the known names.
     Unknown(Vec<&'static str>),
     /// It cannot have this value.
     Value {
@@ -289,13 +289,13 @@ pub enum OptionProblem {
 }
 
 impl OptionError {
-    /// An option that cannot have this value.
+    /// An error for an option with an invalid value; `needed` states in words which values are valid.
     pub fn value(option: impl Into<String>, value: impl ToString, needed: impl Into<String>) -> Self {
         let problem = OptionProblem::Value { value: value.to_string(), needed: needed.into() };
         Self { option: option.into(), problem }
     }
 
-    /// A name that is none of the options.
+    /// An error for an unknown name of an option.
     pub fn unknown(option: impl Into<String>, known: Vec<&'static str>) -> Self {
         Self { option: option.into(), problem: OptionProblem::Unknown(known) }
     }

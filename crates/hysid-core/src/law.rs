@@ -1,8 +1,21 @@
-//! The classical models of hysteresis: those the paper describes, compares with or generates data from.
+//! Classical models of hysteresis: laws with a few parameters in the user's units.
 //!
-//! Each is a law with a few parameters in the user's units and the field's symbols, one a file, equation
-//! on top; its state is apart from it. They are fitted from the same records as the networks and run in
-//! the same ways.
+//! | law | equation | memory |
+//! |---|---|---|
+//! | [`Masing`] | `y = y* + 2 g((x - x*)/2)` from the turning point `(x*, y*)` | turning points |
+//! | [`PrandtlIshlinskii`] | `y = c + w_0 x + Σ_i w_i p_{r_i}[x]`, plays `p` | plays |
+//! | [`ModifiedPrandtlIshlinskii`] | `y = S(c + w_0 x + Σ_i w_i p_{r_i}[x])`, `S` a rising polygon | plays |
+//! | [`GeneralizedPrandtlIshlinskii`] | plays between two curved envelopes | plays |
+//! | [`RateDependentPrandtlIshlinskii`] | plays whose thresholds grow with the rate | plays |
+//! | [`Preisach`] | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
+//! | [`NeuroMadelung`] | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
+//! | [`BoucWen`] | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
+//! | [`JilesAtherton`] | differential equation of the magnetisation | magnetisation |
+//! | [`Lugre`] | friction of bristles that bend before they slip | deflection |
+//!
+//! Each module gives the equations, the source and the properties of its law. The parameters have the field's
+//! symbols. The state is separate from the law. Laws are fitted to the same records as networks, and
+//! [`Classical`] is any one of them.
 
 pub mod bouc_wen;
 pub mod facts;
@@ -29,47 +42,47 @@ use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::property::Property;
 
-/// What a law is told of one more sample.
+/// One sample of the input, as a law takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// The input.
+    /// The input, in its unit.
     pub x: f64,
-    /// Its rate; 0 for a law that does not ask for it.
+    /// The rate of the input, in its unit divided by that of time; 0 for a law that ignores it.
     pub rate: f64,
-    /// Time since the sample before; 0 at the first of a record.
+    /// Time since the previous sample, in the unit of time; 0 at the first of a record.
     pub step: f64,
 }
 
 impl Sample {
-    /// As a law takes it: values beyond [`LARGEST_VALUE`] are taken as that, so that nothing overflows.
+    /// The sample with values limited to the magnitude [`LARGEST_VALUE`], so that nothing overflows.
     pub(crate) fn limited(self) -> Self {
         let limited = |value: f64| value.clamp(-LARGEST_VALUE, LARGEST_VALUE);
         Self { x: limited(self.x), rate: limited(self.rate), step: limited(self.step) }
     }
 }
 
-/// A classical model, with all that is known of it: its equations, and what follows from them.
+/// A classical model: its equations and what follows from them.
 pub trait Law: Sized {
-    /// What it knows of the past.
+    /// The state: the memory of the law between two samples.
     type State: Clone + std::fmt::Debug;
 
-    /// What is true of it whatever its parameters.
+    /// What holds for the law with any parameters.
     const FACTS: Facts;
 
     /// The state before the first sample of a record.
     fn virgin(&self) -> Self::State;
 
-    /// Takes one more sample and gives the output.
+    /// Advances the state to the next sample and returns the output there, in its unit.
     fn step(&self, state: &mut Self::State, sample: Sample) -> f64;
 
-    /// Its parameters, in the field's symbols.
+    /// The parameters, with the field's symbols.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// The law itself if its parameters are what they may be. A law that can only be made of such parameters has
-    /// nothing to check.
+    /// The law itself, if its parameters are valid. A law whose constructor has checked them needs no further
+    /// check.
     ///
     /// # Errors
-    /// A parameter that is not finite or out of bounds, or parts that do not belong together.
+    /// A parameter that is not finite or out of bounds, or parts that cannot be used together.
     fn validated(self) -> Result<Self> {
         Ok(self)
     }
@@ -79,23 +92,30 @@ pub trait Law: Sized {
         false
     }
 
-    /// True if a move of the input in one direction gives the same in one sample as in many.
+    /// True if the output does not depend on the number of samples in which the input moves from one turning
+    /// point to the next.
     fn is_step_free(&self) -> bool {
         !self.sees_rate()
     }
 
-    /// Properties of its memory that the equations decide, whether it has each; where a property is about the output
-    /// turned about 0, only with an input that is measured from 0. A property of memory is that at a vanishing rate.
+    /// The properties that follow from the equations, each with whether the law has it, at a vanishing rate.
+    /// `about_origin` is true for an input that is measured from 0: properties of the output mirrored about 0
+    /// are included only then.
     fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)>;
 
-    /// Outputs that are possible from the virgin state on, for inputs and rates within these: theory.md (10.42).
+    /// An interval that contains every output from the virgin state on, for inputs and rates within these
+    /// intervals, in the unit of the output.
+    ///
+    /// It is a sum of intervals, one for each term of the law's equation; the end points of monotonic
+    /// functions are mapped (theory.md (10.42)).
     fn output_bound(&self, x: Interval, rate: Interval) -> Interval;
 
-    /// Slope `dy/dx` of the output where the input moves on from `state` at `x`, upwards for a positive direction
-    /// and downwards for a negative one; at a vanishing rate.
+    /// Slope `dy/dx` of the output where the input continues from `state` at `x`, upwards for a positive
+    /// `direction` and downwards for a negative one, at a vanishing rate. In the unit of the output divided
+    /// by that of the input.
     ///
-    /// By a difference over a millionth of the largest parameter that has the unit of the input: exact to rounding
-    /// for laws of pieces that are straight, but next to a kink.
+    /// It is a difference quotient over a millionth of the largest parameter with the unit of the input. For
+    /// piecewise linear laws it is exact to rounding, except next to a kink.
     fn tangent(&self, state: &Self::State, x: f64, direction: f64) -> f64 {
         let has_unit_of_input = |parameter: &Parameter| parameter.unit == Dimension::INPUT;
         let scales =
@@ -114,11 +134,11 @@ pub trait Law: Sized {
 pub struct Parameter {
     /// The field's symbol, such as `r_3`.
     pub symbol: String,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub meaning: &'static str,
     /// Its value, in the user's units.
     pub value: f64,
-    /// Smallest and largest value it may have.
+    /// Smallest and largest valid value.
     pub bounds: (f64, f64),
     /// Its unit.
     pub unit: Dimension,
@@ -136,7 +156,7 @@ impl Parameter {
         Self { symbol: symbol.into(), meaning, value, bounds, unit }
     }
 
-    /// Refuses a value that is not finite or out of bounds.
+    /// Rejects a value that is not finite or out of bounds.
     pub(crate) fn check(&self, law: &'static str) -> Result<()> {
         let (low, high) = self.bounds;
         if self.value >= low && self.value <= high {
@@ -147,7 +167,7 @@ impl Parameter {
     }
 }
 
-/// A unit as a product of powers of the data's units.
+/// A unit: the product of these powers of the units of the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Dimension {
     /// Power of the input's unit.
@@ -161,15 +181,15 @@ pub struct Dimension {
 impl Dimension {
     /// A pure number.
     pub const NONE: Self = Self { input: 0, output: 0, time: 0 };
-    /// As the input.
+    /// The unit of the input.
     pub const INPUT: Self = Self { input: 1, output: 0, time: 0 };
-    /// As the output.
+    /// The unit of the output.
     pub const OUTPUT: Self = Self { input: 0, output: 1, time: 0 };
-    /// Output for input, as a stiffness.
+    /// The unit of the output divided by that of the input, as of a stiffness.
     pub const SLOPE: Self = Self { input: -1, output: 1, time: 0 };
 
-    /// The unit in words, such as `kN/mm`, from those of the data; empty for a pure number, and where a
-    /// unit that it takes is not known.
+    /// The unit as text, such as `kN/mm`, from the units of the data. Empty for a pure number, and if a unit
+    /// that it contains is unknown.
     pub fn unit(self, input: Option<&str>, output: Option<&str>, time: Option<&str>) -> String {
         let powers = [(self.output, output), (self.input, input), (self.time, time)];
         if powers.iter().any(|(power, unit)| *power != 0 && unit.is_none()) {
@@ -215,21 +235,21 @@ macro_rules! each_law {
 /// Makes of the laws one type that is any of them.
 macro_rules! any_of {
     ($($law:ident),* $(,)?) => {
-        /// Any of the classical models.
+        /// Any one of the classical models.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum Classical {
             $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law),)*
         }
 
-        /// The state of any of them.
+        /// The state of any one of the classical models.
         #[derive(Debug, Clone)]
         pub enum ClassicalState {
             $(#[doc = concat!("Of [`", stringify!($law), "`].")] $law(<$law as Law>::State),)*
         }
 
         impl Classical {
-            /// What is true of the law whatever its parameters.
+            /// What holds for the law with any parameters.
             pub fn facts(&self) -> &'static Facts {
                 match self {
                     $(Self::$law(_) => &<$law as Law>::FACTS,)*
@@ -290,7 +310,7 @@ macro_rules! any_of {
         }
 
         impl Classical {
-            /// Free run from the virgin state.
+            /// The output of each sample in a free run from the virgin state.
             pub fn run(&self, samples: &[Sample]) -> Vec<f64> {
                 match self {
                     $(Self::$law(law) => series::run(law, samples),)*
@@ -299,7 +319,7 @@ macro_rules! any_of {
         }
 
         impl Classical {
-            /// Runs on from a state of this law.
+            /// Continues a free run from a state of this law.
             pub(crate) fn run_on(&self, state: &mut ClassicalState, samples: &[Sample], outputs: &mut [f64]) {
                 match (self, state) {
                     $((Self::$law(law), ClassicalState::$law(state)) => {

@@ -1,8 +1,15 @@
-//! Hysteresis models that run: measured records, the operators of hysteresis, the family of networks, the classical
-//! laws, and the model file. The crate `hysid` finds models; this one is what they need to simulate.
+//! Hysteresis models that run: measured records, the operators of hysteresis, the family of networks, the
+//! classical laws, and the model file.
 //!
-//! No input or output, no clock, no threads, no random numbers, no unsafe code. Each room uses only those before it:
-//! [`data`], [`operator`], [`network`], [`law`], [`options`], [`model`].
+//! The crate `hysid` fits models to data; this one simulates them. To run a model file, read it with
+//! [`Model::from_json`](model::Model::from_json) and simulate with [`Model::run`](model::Model::run) or
+//! [`Model::stepper`](model::Model::stepper).
+//!
+//! The crate has no input or output, no clock, no threads, no random numbers and no unsafe code. Each of
+//! these modules uses only those before it: [`data`], [`operator`], [`network`], [`law`], [`options`],
+//! [`model`].
+//!
+//! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
 pub mod data;
 pub mod error;

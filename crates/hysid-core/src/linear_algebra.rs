@@ -1,5 +1,5 @@
-//! Dense linear algebra of the training loop: the Gram matrix of many rows, and the Cholesky
-//! factor of a symmetric matrix.
+//! Dense linear algebra for training: the Gram matrix of many rows, and the Cholesky factor of a symmetric
+//! matrix.
 
 mod blocked_cholesky;
 
@@ -54,7 +54,7 @@ impl Batch {
     }
 }
 
-/// `AᵀA` of a tall matrix `A`, gathered batch by batch: its lower triangle.
+/// The lower triangle of the Gram matrix `AᵀA` of a tall matrix `A`, summed batch by batch.
 #[derive(Debug, Clone)]
 pub struct Gram {
     n: usize,
@@ -69,15 +69,14 @@ impl Gram {
         Self { n, stride, data: vec![0.0; stride * stride] }
     }
 
-    /// Scalar product of columns `row` and `column`.
-    /// An element.
+    /// The element at `row` and `column`: the scalar product of these columns of `A`.
     pub fn at(&self, row: usize, column: usize) -> f64 {
         let (row, column) = (row.max(column), row.min(column));
         debug_assert!(row < self.n);
         self.data[row * self.stride + column]
     }
 
-    /// Adds a batch's rows, and empties it, with the widest instruction set of this machine.
+    /// Adds the rows of a batch and empties it, with the widest instruction set of this machine.
     pub fn gather(&mut self, batch: &mut Batch, pace: &mut Pace<'_>) {
         simd::run(AddBatch { gram: self, batch, pace });
     }
@@ -89,7 +88,7 @@ impl Gram {
         self.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a += factor * b);
     }
 
-    /// Adds a batch's rows, and empties it; only in part once the pace is over.
+    /// Adds the rows of a batch and empties it; incomplete once the pace is over.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch, pace: &mut Pace<'_>) {
         debug_assert_eq!(batch.columns, self.n);
@@ -166,7 +165,7 @@ impl WithSimd for AddBatch<'_, '_> {
     }
 }
 
-/// A symmetric matrix by rows, of which the lower triangle counts.
+/// A symmetric matrix, stored by rows, of which only the lower triangle is used.
 #[derive(Debug, Clone)]
 pub struct Symmetric {
     n: usize,
@@ -174,7 +173,7 @@ pub struct Symmetric {
 }
 
 impl Symmetric {
-    /// An `n` by `n` matrix of the values at each row and column, of which the lower triangle is asked for.
+    /// An `n` by `n` matrix from a function of row and column, which is called for the lower triangle.
     pub fn from_fn(n: usize, mut value: impl FnMut(usize, usize) -> f64) -> Self {
         let mut data = vec![0.0; n * n];
         for i in 0..n {
@@ -230,8 +229,8 @@ impl Symmetric {
         self.data[i * self.n + i] += value;
     }
 
-    /// `self -= W Wᵀ` for a matrix with one row of `columns` numbers for each row of `self`; only in part once
-    /// asked to stop.
+    /// Subtracts `W Wᵀ`, where `W` has one row of `columns` numbers for each row of `self`; incomplete once
+    /// stopped.
     pub fn subtract_product(&mut self, w: &[f64], columns: usize, stop: StopCheck<'_>) {
         let mut pace = Pace::new(stop);
         for i in 0..self.n {
@@ -245,8 +244,8 @@ impl Symmetric {
         }
     }
 
-    /// Cholesky factor `L` with `self = L Lᵀ`; `None` unless positive definite to rounding, and once asked to
-    /// stop.
+    /// Cholesky factor `L` with `self = L Lᵀ`; `None` if the matrix is not positive definite to rounding, or
+    /// once stopped.
     pub fn cholesky(mut self, stop: StopCheck<'_>) -> Option<Cholesky> {
         let n = self.n;
         if n >= blocked_cholesky::WORTH_BLOCKS {
@@ -270,7 +269,7 @@ impl Symmetric {
     }
 }
 
-/// A lower triangular factor.
+/// A Cholesky factor: a lower triangular matrix `L`.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     n: usize,
@@ -283,7 +282,7 @@ impl Cholesky {
         Self { n: 0, data: Vec::new() }
     }
 
-    /// `L⁻¹ b`, in place.
+    /// Replaces `b` by `L⁻¹ b`.
     pub fn solve_lower(&self, b: &mut [f64]) {
         for i in 0..self.n {
             let row = &self.data[i * self.n..i * self.n + i];
@@ -291,7 +290,7 @@ impl Cholesky {
         }
     }
 
-    /// `(L Lᵀ)⁻¹ b`, in place.
+    /// Replaces `b` by `(L Lᵀ)⁻¹ b`.
     pub fn solve(&self, b: &mut [f64]) {
         self.solve_lower(b);
         for i in (0..self.n).rev() {

@@ -1,5 +1,14 @@
-//! A fitted model: a network with its scaling, a classical law, or an ensemble of both; what it was trained
-//! on and how. It simulates in the user's units.
+//! A fitted model: a network with its scaling, a classical law, or an ensemble of both, with the ranges of
+//! its training data and how it was fitted. It simulates in the user's units.
+//!
+//! | to | use |
+//! |---|---|
+//! | read and write a model file | [`Model::from_json`], [`Model::to_json`] |
+//! | simulate a whole input | [`Model::run`], [`Model::simulate`] |
+//! | simulate sample by sample | [`Model::stepper`] |
+//! | simulate long records in blocks | [`Model::simulation`] |
+//! | compare with measurements | [`Model::evaluate`] |
+//! | get a prediction band | [`Model::predict`] |
 
 mod band;
 mod ensemble;
@@ -43,7 +52,7 @@ use runner::{Runner, Spread};
 pub use simulation::Simulation;
 pub use stepper::Stepper;
 
-/// A fitted model.
+/// A fitted model, which simulates in the user's units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     body: Predictor,
@@ -58,7 +67,7 @@ pub struct Model {
 /// What simulates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Predictor {
-    /// A network in scaled units, and the factors to the user's.
+    /// A network in scaled units, with its scale factors.
     Network {
         /// The network.
         network: Network,
@@ -67,12 +76,12 @@ pub enum Predictor {
     },
     /// A classical law in the user's units.
     Law(Classical),
-    /// Several models that answer together.
+    /// Several models whose outputs are combined by weighted medians.
     Ensemble(Ensemble),
 }
 
 impl Predictor {
-    /// Parameters that were found from the data.
+    /// Number of parameters that were determined from the data.
     fn parameters(&self) -> usize {
         match self {
             Self::Network { network, .. } => network.architecture().parameters(),
@@ -81,7 +90,7 @@ impl Predictor {
         }
     }
 
-    /// True if it needs the time between samples, apart from any rate.
+    /// True if it needs the time between samples, other than for a rate.
     fn needs_steps(&self) -> bool {
         match self {
             Self::Network { network, .. } => network.architecture().relaxation > 0,
@@ -109,7 +118,7 @@ fn remembered(data: &Dataset) -> Vec<String> {
     data.records().iter().filter_map(|record| record.fingerprint().text()).collect()
 }
 
-/// Rows at the beginning of each record that a body was not trained on.
+/// Rows at the beginning of each record that were not used in training.
 fn warm_up(body: &Predictor, options: &FitSpec) -> usize {
     match (options, body) {
         (FitSpec::Network(options), _) => options.shaping.warm_up,
@@ -121,13 +130,14 @@ fn warm_up(body: &Predictor, options: &FitSpec) -> usize {
     }
 }
 
-/// The rows behind so many of each record; `None` for no rows, and where none with an output is left.
+/// The data without outputs in the first rows of each record; `None` for no such rows, and if no row with an
+/// output is left.
 fn behind(data: &Dataset, rows: usize) -> Option<Dataset> {
     let behind = (rows > 0).then(|| data.clone().warmed_up(rows))?;
     (behind.scored() > 0).then_some(behind)
 }
 
-/// Smallest and largest values seen in training, in the user's units.
+/// Smallest and largest values in training, in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedRanges {
@@ -137,15 +147,15 @@ pub struct TrainedRanges {
     pub rate: Option<(f64, f64)>,
     /// Of the output.
     pub output: (f64, f64),
-    /// The records by their [`Fingerprint`]s, of at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
+    /// The records, by their [`Fingerprint`]s, at most [`MOST_REMEMBERED`]; empty in a member of an ensemble.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<String>,
 }
 
-/// Of more records than this a model does not remember which they were.
+/// Largest number of records whose fingerprints a model stores.
 pub const MOST_REMEMBERED: usize = 1000;
 impl TrainedRanges {
-    /// Refuses ranges of a file that are none.
+    /// Rejects invalid ranges of a file.
     fn check(&self) -> Result<()> {
         let is_range =
             |&(low, high): &(f64, f64), most: f64| low <= high && low.abs().max(high.abs()) <= most;
@@ -157,11 +167,11 @@ impl TrainedRanges {
     }
 }
 
-/// How a model came about.
+/// How a model was fitted: options, errors, training runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// What was asked for.
+    /// The requested value.
     pub options: FitSpec,
     /// Rows with an output.
     pub samples: usize,
@@ -171,21 +181,21 @@ pub struct Provenance {
     pub chosen_start: usize,
     /// Why the last training run ended.
     pub termination: Termination,
-    /// Errors of the model on all data it was trained on: what [`Model::evaluate`] gives for them. The rows of
-    /// a warm-up count here.
+    /// Errors of the model on all its training data, as [`Model::evaluate`] gives them. The rows of a warm-up
+    /// are included.
     pub train: Errors,
-    /// The same without the rows of the warm-up, which the model was not trained on; `None` without a warm-up.
+    /// The same without the rows of the warm-up, which were not used in training; `None` without a warm-up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub train_after_warm_up: Option<Errors>,
-    /// Errors on data held out, of models that were identified in the same way without them; `None` if none
-    /// were held out.
+    /// Errors on held-out data, of models that were fitted in the same way without them; `None` if none were
+    /// held out.
     pub validation: Option<Errors>,
     /// Penalties that a network was trained with; `None` for other models and in files of before version 4.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalties: Option<Regularisation>,
     /// Every training run.
     pub runs: Vec<Run>,
-    /// How the candidates did that it was chosen from; `None` where there was no choice.
+    /// The candidates and their errors, if the model was chosen among several; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<Selection>,
 }
@@ -197,10 +207,10 @@ impl Provenance {
     }
 }
 
-/// How a model was found; what its data add to it makes the [`Provenance`].
+/// How a model was fitted, before its errors on the data are known; with them it becomes the [`Provenance`].
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// What was asked for.
+    /// The requested value.
     pub options: FitSpec,
     /// The start that became the model, counted from 0.
     pub chosen_start: usize,
@@ -217,7 +227,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// What the data add.
+    /// The provenance, with the errors on the data.
     fn on(self, data: &Dataset, train: Errors, train_after_warm_up: Option<Errors>) -> Provenance {
         let Self { options, chosen_start, termination, validation, penalties, runs, selection } = self;
         Provenance {
@@ -245,7 +255,7 @@ impl From<Provenance> for Found {
 }
 
 impl Model {
-    /// A model of these data, whose body was trained on them after the preprocessing.
+    /// A model with this part that simulates, which was trained on these data after the input transform.
     pub fn new(
         body: Predictor,
         preprocessing: InputTransform,
@@ -293,10 +303,10 @@ impl Model {
         Ok(model)
     }
 
-    /// Reads a model file's text.
+    /// Reads the text of a model file.
     ///
     /// # Errors
-    /// Text that is cut off, damaged, edited, of a later version, or no model at all.
+    /// Text that is truncated, damaged, edited, of a later version, or no model.
     pub fn from_json(text: &str) -> Result<Self> {
         file::read(text)
     }
@@ -306,7 +316,7 @@ impl Model {
         file::write(self)
     }
 
-    /// Which model it is.
+    /// The name of the model, such as `xpnn+`.
     pub fn name(&self) -> ModelName {
         self.provenance.options.model()
     }
@@ -340,7 +350,7 @@ impl Model {
         }
     }
 
-    /// How the model sees its input.
+    /// The transform of its input.
     pub fn input_transform(&self) -> &InputTransform {
         &self.preprocessing
     }
@@ -354,7 +364,7 @@ impl Model {
         }
     }
 
-    /// Factors between the user's units and the network's; `None` for all that is no network.
+    /// Scale factors between the user's units and the network's; `None` for a model that is not a network.
     pub fn scaling(&self) -> Option<&Scaling> {
         match &self.body {
             Predictor::Network { scaling, .. } => Some(scaling),
@@ -362,7 +372,7 @@ impl Model {
         }
     }
 
-    /// Number of parameters that were found from the data.
+    /// Number of parameters that were determined from the data.
     pub fn parameters(&self) -> usize {
         match (&self.body, self.name()) {
             // All others are random.
@@ -388,7 +398,7 @@ impl Model {
         &self.trained
     }
 
-    /// How it came about.
+    /// How it was fitted.
     pub fn provenance(&self) -> &Provenance {
         &self.provenance
     }
@@ -398,17 +408,18 @@ impl Model {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
-    /// Free run over one input from the virgin state: the output, sample by sample, in the unit of the training.
+    /// Simulates from the virgin state: the output at each sample of the input `x`, both in the units of the
+    /// training data.
     ///
     /// # Errors
-    /// A model of several inputs, or one that needs time stamps or a rate ([`Model::response`] takes them); an input
-    /// that is empty, not finite or too large.
+    /// A model of several inputs, or one that needs time stamps or a rate ([`Model::response`] takes them);
+    /// an input that is empty, not finite or too large.
     pub fn run(&self, x: &[f64]) -> Result<Vec<f64>> {
         self.response(&Excitation::new("data", vec![x])?)
     }
 
-    /// Free run over a record from the virgin state: the output of each row, in the user's unit. The
-    /// record's own output is not looked at.
+    /// Simulates a record from the virgin state: the output of each row, in the user's unit. The measured
+    /// output of the record is not used.
     ///
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
@@ -416,7 +427,7 @@ impl Model {
         self.response(&record.excitation())
     }
 
-    /// As [`Model::simulate`], of an excitation that is read where it lies.
+    /// As [`Model::simulate`], from borrowed columns.
     ///
     /// # Errors
     /// As [`Model::simulate`].
@@ -425,12 +436,12 @@ impl Model {
         Runner::of_model(self).record(excitation)
     }
 
-    /// A free run over records that come block by block.
+    /// A simulation of records that are processed in blocks.
     pub fn simulation(&self) -> Simulation<'_> {
         Simulation::new(self, None)
     }
 
-    /// The same with a band of this probability.
+    /// The same with a prediction band of this probability.
     ///
     /// # Errors
     /// As [`Model::predict`]: a probability outside its bounds, and a model without a band.
@@ -438,8 +449,8 @@ impl Model {
         Ok(Simulation::new(self, Some((self.checked_band(probability)?, probability))))
     }
 
-    /// Free run over a record with a band that holds the measured output with this probability, 0.5 to 0.99,
-    /// as far as new data are like those held out in training.
+    /// Simulates a record from the virgin state, with a band that contains the measured output with this
+    /// probability, 0.5 to 0.99, if new data resemble those held out in training.
     ///
     /// # Errors
     /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
@@ -462,25 +473,25 @@ impl Model {
         self.band.as_ref()
     }
 
-    /// The same with another account of how it came about.
+    /// The same model with another [`Provenance`].
     pub fn with_provenance(mut self, provenance: Provenance) -> Self {
         self.provenance = provenance;
         self
     }
 
-    /// With the ranges of these data, where it was trained on more than them.
+    /// The same model with the ranges of these data, if it was trained on more than them.
     pub fn trained_on(self, data: &Dataset) -> Result<Self> {
         let Self { body, preprocessing, rate, band, provenance, .. } = self;
         Ok(Self::new(body, preprocessing, rate, data, provenance.into())?.with_band(band))
     }
 
-    /// The same with this band, or without one.
+    /// The same model with this band, or without one.
     pub fn with_band(mut self, band: Option<Band>) -> Self {
         self.band = band;
         self
     }
 
-    /// Errors of free runs over all records.
+    /// Errors of simulations of all records, each from the virgin state, against their measured outputs.
     ///
     /// # Errors
     /// As [`Model::simulate`], and data without any output.
@@ -489,13 +500,14 @@ impl Model {
         errors(Runner::of_model(self), data)
     }
 
-    /// Rows at the beginning of each record that drove the memory in training and were not trained on.
+    /// Rows at the beginning of each record that advanced the memory in training and were not scored
+    /// (warm-up).
     pub fn warm_up(&self) -> usize {
         warm_up(&self.body, &self.provenance.options)
     }
 
-    /// As [`Model::evaluate`], of the rows behind the warm-up alone; `None` for a model without a warm-up, and
-    /// where no row with an output is left.
+    /// As [`Model::evaluate`], of the rows after the warm-up only; `None` for a model without a warm-up, and
+    /// if no row with an output is left.
     ///
     /// # Errors
     /// As [`Model::evaluate`].
@@ -510,12 +522,12 @@ impl Model {
         Ok(())
     }
 
-    /// Sample-by-sample simulation from the virgin state, for control loops and structural analyses.
+    /// A sample-by-sample simulation from the virgin state, for control loops and structural analyses.
     pub fn stepper(&self) -> Stepper<'_> {
         Stepper::new(Cow::Borrowed(self))
     }
 
-    /// As [`Model::stepper`], of a model that it keeps.
+    /// As [`Model::stepper`]; the stepper owns the model.
     pub fn into_stepper(self) -> Stepper<'static> {
         Stepper::new(Cow::Owned(self))
     }
@@ -524,12 +536,12 @@ impl Model {
         self.trained.records.clear();
     }
 
-    /// True if a record with this fingerprint was trained on, as far as the model remembers.
+    /// True if the model stores this fingerprint among those of its training records.
     pub fn was_trained_on(&self, record: &Fingerprint) -> bool {
         record.text().is_some_and(|text| self.trained.records.contains(&text))
     }
 
-    /// Warns of records that the model was trained on, to the last bit.
+    /// Warnings of records that are equal to training records of the model.
     pub fn known_records(&self, data: &Dataset) -> Vec<Warning> {
         let known = data.records().iter().filter(|record| self.was_trained_on(&record.fingerprint()));
         let warning =
@@ -537,7 +549,7 @@ impl Model {
         known.map(warning).collect()
     }
 
-    /// Warns of inputs and rates beyond what the model was trained on.
+    /// Warnings of inputs and rates outside the range of the training data.
     ///
     /// # Errors
     /// A rate that cannot be computed.

@@ -1,10 +1,48 @@
-//! The family of neural networks: `pnn`, `gpnn`, `preisach-nn`, `xpnn` and `xpnn+` are one network
-//! with parts switched off (`docs/theory.md` section 2).
+//! The family of neural networks: `pnn`, `gpnn`, `preisach-nn`, `xpnn` and `xpnn+` are one network, of which
+//! each uses some parts (theory.md, section 2).
 //!
-//! A [`Network`] is its parameters; what it knows of the past is a [`MemoryState`], kept apart. A
-//! [`Simulator`] holds one of each and runs them, sample by sample or by the million.
+#![doc = "<figure>"]
+#![doc = include_str!("network/network.svg")]
+#![doc = "</figure>"]
 //!
-//! Everything here is in scaled units; [`crate::model::Model`] knows the user's.
+//! ```text
+//! u   = [x/X, x'/X', further inputs]                                       theory.md (2.1)
+//!
+//! v = w·u,   p = min(v + 1, max(v - 1, p before)),   ε = v - p             theory.md (2.2)
+//! s = s before + |p - p before|,   z_j = ε max(0, 1 - s/β)
+//! z_0 = a·u                                                                theory.md (2.3)
+//! z'  = u_c' - z/τ                                                         theory.md (2.4)
+//!
+//! h_i = tanh(b_i + U_i0 z_0 + Σ_j U_ij z_j)                                theory.md (2.5)
+//! y   = c_0 + Σ_i c_i h_i + Σ_j d_j z_j                                    theory.md (2.6)
+//! ```
+//!
+//! - `u`: the inputs of the network, without unit. `x` is the first input, `x'` its rate; `X` and `X'` are
+//!   their largest magnitudes in training ([`scaling::Scaling`]).
+//! - `z_j`: stop neuron `j`, a [deteriorating stop](crate::operator::deteriorating_stop) of threshold 1 with
+//!   the weights `w`, the play `p`, the slip `s` and the capacity `β`, driven by `v`. The index `j` is
+//!   omitted in its equations.
+//! - `z_0`: the linear neuron, with the weights `a`.
+//! - `z` in (2.4): a relaxation neuron with the time constant `τ`, driven by one input `u_c`. Relaxation
+//!   neurons are numbered behind the stops.
+//! - `h_i`: tanh neuron `i`, with the bias `b_i` and the weights `U_ij`.
+//! - `y`: the output, with mean 0 and standard deviation 1 in training. `c_0`, `c_i` and `d_j` are the output
+//!   weights, found by least squares; all other parameters are found by search.
+//!
+//! | name | memory layer | readout |
+//! |---|---|---|
+//! | `pnn` | stops of `x` | linear |
+//! | `gpnn` | deteriorating stops of `x` | linear |
+//! | `preisach-nn` | linear neuron, stops of `x` | tanh layer |
+//! | `xpnn` | linear neuron, deteriorating stops of `x` and `x'` | tanh layer |
+//! | `xpnn+` | as `xpnn`, with relaxation neurons and further inputs | tanh layer and direct path `d_j` |
+//!
+//! A [`Network`] holds the parameters. Its memory, the plays, slips and relaxation states, is a
+//! [`MemoryState`]. A [`Simulator`] holds both and runs the network, one sample or a whole record at a time.
+//!
+//! All inputs and outputs of this module are in scaled units, except those of [`free_run`];
+//! [`crate::model::Model`] takes the user's units. Source: arXiv 2001.01559; the relaxation neurons, the
+//! direct path and the constant are ours.
 
 mod architecture;
 pub mod free_run;
@@ -37,7 +75,7 @@ use readout::Readout;
 /// Largest magnitude of an output weight, which keeps a free run finite.
 const LARGEST_OUTPUT_WEIGHT: f64 = 1e50;
 
-/// A network with its weights.
+/// A network: its architecture, its parameters found by search, and its output weights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Network {
     architecture: Architecture,
@@ -46,12 +84,15 @@ pub struct Network {
 }
 
 impl Network {
-    /// A network from its parameters, flat in the order of [`Layout`], and its output weights:
-    /// constant, tanh neurons, direct path.
+    /// A network from its parts.
+    ///
+    /// `parameters` are those found by search, in the order of [`Layout`]. `output` are the output weights,
+    /// in the order constant `c_0`, tanh neurons `c_i`, direct path `d_j`; parts that the architecture lacks
+    /// are left out. Both are in scaled units.
     ///
     /// # Errors
-    /// A length that does not fit the architecture, a parameter outside its bounds, an output weight
-    /// that is not finite or beyond 1e50.
+    /// A length that does not fit the architecture, a parameter outside its bounds ([`Layout::bounds`]), an
+    /// output weight that is not finite or beyond 1e50.
     pub fn new(architecture: Architecture, parameters: Vec<f64>, output: Vec<f64>) -> Result<Self> {
         Layout::new(architecture).check(&parameters)?;
         if output.len() != architecture.output_weights() {
@@ -67,17 +108,17 @@ impl Network {
         }
     }
 
-    /// Its parts.
+    /// The architecture: which parts the network has.
     pub fn architecture(&self) -> &Architecture {
         &self.architecture
     }
 
-    /// The parameters found by search, flat.
+    /// The parameters found by search, in the order of [`Layout`].
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// The output weights.
+    /// The output weights: constant, tanh neurons, direct path.
     pub fn output(&self) -> &[f64] {
         &self.output
     }
@@ -97,9 +138,9 @@ impl Network {
     }
 }
 
-/// A network with a state: runs any number of samples at a time, and allocates nothing.
+/// A network with its memory, which runs any number of samples at a time and allocates nothing.
 ///
-/// However a signal is cut into runs, the outputs are the same to the last bit.
+/// The outputs do not depend, to the last bit, on how a signal is divided into runs.
 #[derive(Debug, Clone)]
 pub struct Simulator {
     memory: MemoryLayer,
@@ -112,24 +153,27 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// The memory.
+    /// The present memory.
     pub fn state(&self) -> &MemoryState {
         &self.state
     }
 
-    /// Puts a memory in place, one taken from a simulator of the same network.
+    /// Replaces the memory by one taken from a simulator of the same network.
     pub fn set_state(&mut self, state: MemoryState) {
         self.state = state;
     }
 
-    /// Back to the virgin state.
+    /// Returns to the virgin state.
     pub fn reset(&mut self) {
         self.state = self.memory.virgin();
     }
 
-    /// Runs on from the present state: `u` has one slice for each channel (first input, its rate if
-    /// the network has one, further inputs; all scaled), `steps` the time step before each row (may
-    /// be empty for a network without relaxation neurons), `y` takes the scaled output.
+    /// Simulates the next rows, from the present memory on. All values are scaled.
+    ///
+    /// `u` has one slice for each channel (first input, its rate if the network has one, further inputs),
+    /// each with one value a row. `steps` are the time steps before each row, in the unit of time of `τ`, 0
+    /// at the first row of a record; it may be empty for a network without relaxation neurons. `y` receives
+    /// the output of each row.
     ///
     /// # Panics
     /// If the lengths differ.
@@ -140,7 +184,7 @@ impl Simulator {
         simd::run(Run { simulator: self, u, steps, y });
     }
 
-    /// One sample: [`Simulator::run`] with one row.
+    /// Simulates one sample and returns its scaled output: [`Simulator::run`] with one row.
     pub fn step(&mut self, u: &[f64], step: f64) -> f64 {
         let mut y = [0.0];
         assert_eq!(u.len(), self.u.len(), "one value for each channel");
@@ -156,7 +200,7 @@ impl Simulator {
     }
 }
 
-/// A scaled input as the network takes it.
+/// A scaled input, limited to the largest magnitude that the network accepts.
 #[inline(always)]
 fn limited(u: f64) -> f64 {
     let low = if u > -LARGEST_SCALED { u } else { -LARGEST_SCALED };

@@ -1,33 +1,34 @@
-//! Operators with memory: the elements every hysteresis model here is built from.
+//! Operators with memory: the elements of the networks and of many classical laws.
 //!
-//! A function answers to the present input. An *operator with memory* answers to the present input
-//! and to what it has seen before, kept in a state of one or two numbers. Put many of them side by
-//! side, with different thresholds, add up their outputs, and loops within loops appear.
+//! The output of a function depends on the present value of its input. The output of an *operator with
+//! memory* depends on the past of its input too, through a state of one or two numbers. A weighted sum of
+//! operators with different thresholds gives loops within loops.
 //!
-//! | operator | picture | state | equation | remembers |
+//! | operator | device | output | state | memory of |
 //! |---|---|---|---|---|
-//! | [`Relay`] | switch with two thresholds | output, -1 or +1 | theory.md (1.1) | the last threshold crossed |
-//! | [`Play`] | slider in a slot, backlash of gears | play `p` | theory.md (1.2) | turning points |
-//! | [`Stop`] | spring and slider in series | play `p` | theory.md (1.3) | turning points |
-//! | [`DeterioratingStop`] | a stop that wears out by sliding | play `p`, slip `s` | theory.md (1.6) | turning points and the way slid |
-//! | [`Relaxation`] | spring and dashpot in series | stress `σ`, last input | theory.md (1.10) | time |
+//! | [`Relay`] | switch with two thresholds | -1 or +1 | its output | the threshold crossed last |
+//! | [`Play`] | slider in a slot, backlash of gears | `p = min(x + r, max(x - r, p before))` | play `p` | turning points |
+//! | [`Stop`] | spring and slider in series | `ε = x - p` | play `p` | turning points |
+//! | [`DeterioratingStop`] | a stop that loses strength with its slip `s` | `ε max(0, 1 - s/(r β))` | play `p`, slip `s` | turning points and slip |
+//! | [`Relaxation`] | spring and dashpot in series | stress `σ`, with `σ' = x' - σ/τ` | stress `σ`, last input | time |
 //!
-//! The first four are *rate independent*: only the sequence of turning points of the input counts,
-//! not how fast it is passed through. They implement [`Operator`]. The last one lives in time and
+//! The first four are *rate-independent*: the output depends on the sequence of turning points of the input,
+//! not on the speed. They implement [`Operator`]. The output of the relaxation element depends on time, so it
 //! has methods of its own.
 //!
-//! Each file has the pure formula as free functions (branch-free, for loops over many neurons that
-//! the compiler vectorises), which the struct of that file uses too: a formula is written once.
+//! Each module has its equation as free functions without branches, which the struct and the networks both
+//! use.
 //!
 //! # Virgin state
 //!
-//! All operators start virgin (demagnetised): as if the input had rested at 0 for ever and the
-//! first sample were a jump from there (which slips nothing). [`Operator::reset`] returns to it.
+//! All operators start virgin (demagnetised): as if the input had always been 0 and then moved monotonically
+//! to the first sample. This first movement counts as no slip. [`Operator::reset`] returns to the virgin
+//! state.
 //!
 //! # Input that is not finite
 //!
-//! Inputs must be finite. Debug builds panic otherwise. In release builds such a sample gives NaN
-//! and leaves the memory exactly as it was, so one bad sample does not poison those that follow.
+//! Inputs must be finite. Debug builds panic otherwise. In release builds such a sample gives NaN and leaves
+//! the memory unchanged, so that later samples are not affected.
 
 pub mod deteriorating_stop;
 pub mod play;
@@ -41,7 +42,7 @@ pub use relaxation::Relaxation;
 pub use relay::Relay;
 pub use stop::Stop;
 
-/// A rate-independent operator with memory, fed one sample at a time.
+/// A rate-independent operator with memory, run one sample at a time.
 ///
 /// ```
 /// use hysid_core::operator::{Operator, Play, Stop};
@@ -54,43 +55,43 @@ pub use stop::Stop;
 /// # }
 /// ```
 pub trait Operator {
-    /// Back to the virgin (demagnetised) state, as if no input had been seen.
+    /// Returns to the virgin (demagnetised) state.
     fn reset(&mut self);
 
-    /// Takes the next input sample and returns the output there. `x` must be finite (see the
+    /// Advances to the next sample of the input and returns the output there. `x` must be finite (see the
     /// [module](self)).
     fn step(&mut self, x: f64) -> f64;
 
-    /// The outputs at all samples of a whole signal from the virgin state: resets first, and leaves
-    /// the operator in the state after the last sample.
+    /// Runs over a whole signal from the virgin state and returns the output at each sample. The operator is
+    /// then in the state after the last sample.
     fn run(&mut self, x: &[f64]) -> Vec<f64> {
         self.reset();
         x.iter().map(|&x| self.step(x)).collect()
     }
 }
 
-/// Why an operator cannot be made with these parameters, or cannot be run over these times.
+/// Parameters with which no operator can be made, or times over which none can be run.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidOperator {
-    /// Threshold of a relay, a stop or a deteriorating stop.
+    /// The threshold of a relay, a stop or a deteriorating stop is not finite or not greater than 0.
     #[error("threshold r = {0}: it must be finite and greater than 0")]
     Threshold(f64),
-    /// Threshold of a play.
+    /// The threshold of a play is not finite or negative.
     #[error(
         "threshold r = {0} of a play: it must be finite and at least 0 (with 0 the play is the identity)"
     )]
     PlayThreshold(f64),
-    /// Centre of a relay.
+    /// The centre of a relay is not finite.
     #[error("centre s = {0}: it must be finite")]
     Centre(f64),
-    /// Capacity of a deteriorating stop.
+    /// The capacity of a deteriorating stop is not greater than 0.
     #[error("capacity beta = {0}: it must be greater than 0 (infinity: never deteriorates)")]
     Capacity(f64),
-    /// Relaxation time.
+    /// The relaxation time is not greater than 0.
     #[error("relaxation time tau = {0}: it must be greater than 0 (infinity: a spring that never relaxes)")]
     RelaxationTime(f64),
-    /// A time that lies before the one of the previous row. Rows count from 0.
+    /// A time is smaller than that of the previous row.
     #[error("row {row}: time {time} follows {previous}: times must not decrease")]
     TimeDecreases {
         /// Index of the row, counted from 0.
@@ -100,7 +101,7 @@ pub enum InvalidOperator {
         /// Time of this row.
         time: f64,
     },
-    /// A time that is NaN or infinite. Rows count from 0.
+    /// A time is NaN or infinite.
     #[error("row {row}: time {time}: times must be finite")]
     TimeNotFinite {
         /// Index of the row, counted from 0.
@@ -108,7 +109,7 @@ pub enum InvalidOperator {
         /// Time of this row.
         time: f64,
     },
-    /// Different numbers of times and inputs.
+    /// The numbers of times and inputs differ.
     #[error("{times} times for {inputs} inputs: there must be one time for each input")]
     Lengths {
         /// Number of times.

@@ -1,5 +1,4 @@
-//! What can be asked for: models by their names, and the options of each. A model file keeps what its model was
-//! identified with.
+//! Options of a fit: models by their names, and the options of each. A model file contains those of its fit.
 
 pub mod auto;
 mod cautions;

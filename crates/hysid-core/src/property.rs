@@ -1,4 +1,4 @@
-//! The properties of hysteresis that a test, or the equations of a model, can decide: theory.md section 10.
+//! Properties of hysteresis that a test, or the equations of a model, can decide.
 
 use std::fmt;
 
@@ -8,13 +8,13 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Property {
-    /// There is a loop however slowly the input goes.
+    /// There is a loop at any speed of the input, however low.
     StaticHysteresis,
-    /// Loops are passed clockwise, `∮ y dx > 0`, as those of friction are.
+    /// Loops are clockwise, `∮ y dx > 0`, as those of friction are.
     Orientation,
-    /// The speed of the input matters.
+    /// The output depends on the speed of the input.
     RateDependence,
-    /// A closed excursion of the input leaves no trace (return-point memory).
+    /// A closed excursion of the input has no effect on the later output (return-point memory).
     WipingOut,
     /// Minor loops between the same inputs have the same shape.
     Congruency,
@@ -22,11 +22,11 @@ pub enum Property {
     Masing,
     /// A branch turned by half a turn is the opposite branch.
     OddSymmetry,
-    /// The output hardly grows at the ends of the input.
+    /// The slope of the output is small at the ends of the input range.
     Saturation,
     /// Loops shrink when they are repeated.
     Deterioration,
-    /// A period of the input brings the output back to where it was.
+    /// After a period of the input the output has its earlier value.
     LoopClosure,
 }
 

@@ -1,4 +1,4 @@
-//! Numbers without pattern that depend on nothing but what they are made from.
+//! Reproducible pseudo-random numbers.
 
 /// A fixed hash (splitmix) in which every bit depends on every bit.
 pub fn mix(value: u64) -> u64 {

@@ -1,8 +1,8 @@
-//! Numbers as people read them.
+//! Numbers rounded to significant digits.
 
 use std::fmt;
 
-/// A number with as many significant digits as the precision asked for, without trailing zeros.
+/// A number with as many significant digits as the format precision, without trailing zeros.
 pub struct Significant(pub f64);
 
 impl fmt::Display for Significant {

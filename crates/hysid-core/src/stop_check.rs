@@ -1,27 +1,27 @@
-//! A request to stop, heard in the midst of long work.
+//! Requests to stop long computations.
 //!
-//! Loops that may run for more than some hundredths of a second count their work with a [`Pace`] and end when
-//! it says so. What they have computed then is incomplete and must be thrown away: whoever began the work asks
-//! [`StopCheck::is_asked`] before using a result.
+//! Loops that may run for more than some hundredths of a second count their operations with a [`Pace`] and
+//! end when it is over. Their results are then incomplete and must be discarded: the caller checks
+//! [`StopCheck::is_asked`] before it uses them.
 
 use std::fmt;
 
-/// Asked in the midst of long work: true once it should end. After one `true` it only says `true`.
+/// A check whether a computation is to stop. Once it has returned true it always returns true.
 #[derive(Clone, Copy)]
 pub struct StopCheck<'a>(&'a (dyn Fn() -> bool + Sync + 'a));
 
 impl<'a> StopCheck<'a> {
-    /// Asks this function, which may be called from any thread and takes no more than microseconds.
+    /// A check by this function, which may be called from any thread and takes no more than microseconds.
     pub fn new(ask: &'a (dyn Fn() -> bool + Sync + 'a)) -> Self {
         Self(ask)
     }
 
-    /// Work that nobody stops.
+    /// A check that never stops.
     pub fn never() -> StopCheck<'static> {
         StopCheck(&|| false)
     }
 
-    /// True once the work should end.
+    /// True once the computation is to stop.
     pub fn is_asked(self) -> bool {
         (self.0)()
     }
@@ -36,7 +36,7 @@ impl fmt::Debug for StopCheck<'_> {
 /// Elementary operations between two questions, about a millisecond.
 const BETWEEN: usize = 2_000_000;
 
-/// Counts the operations of a loop, and asks now and then whether to stop.
+/// Counts the operations of a loop and checks at intervals whether to stop.
 #[derive(Debug, Clone)]
 pub struct Pace<'a> {
     stop: StopCheck<'a>,
@@ -51,7 +51,7 @@ impl<'a> Pace<'a> {
         Self { stop, left: BETWEEN, is_over: false }
     }
 
-    /// Counts so many more operations; true once the work is to end.
+    /// Adds operations to the count; true once the computation is to stop.
     #[inline(always)]
     pub fn is_over(&mut self, operations: usize) -> bool {
         if operations < self.left {

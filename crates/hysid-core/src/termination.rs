@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Why a training run ended. Not converging is an answer, not an error.
+/// Why a training run ended. A run that did not converge is a result, not an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Termination {
@@ -16,12 +16,12 @@ pub enum Termination {
     Stalled,
     /// All iterations were used.
     EpochsUsed,
-    /// The observer said stop: Ctrl-C or a time limit.
+    /// The observer stopped it: Ctrl-C or a time limit.
     Stopped,
 }
 
 impl Termination {
-    /// True if more iterations would not have helped.
+    /// True if further iterations would bring no improvement.
     pub fn is_converged(self) -> bool {
         matches!(self, Self::Converged | Self::GradientVanished | Self::NoFurtherImprovement)
     }

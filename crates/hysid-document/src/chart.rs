@@ -10,38 +10,38 @@ pub use axis::Axis;
 pub use svg::STYLE;
 use thin::Point;
 
-/// What a curve stands for, which gives its colour.
+/// What a curve shows, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Colour {
-    /// What was measured.
+    /// A measurement.
     Measured,
-    /// What the model says.
+    /// The output of a model.
     Simulated,
     /// The input.
     Input,
-    /// Their difference.
+    /// The error of a model.
     Error,
-    /// What is there for comparison only.
+    /// A curve for comparison only.
     Faint,
-    /// Where the measurement is to be expected: an area, which the points of its curve go round.
+    /// A prediction band: an area, whose outline is the points of its curve.
     Band,
-    /// One of several things of the same kind, counted from 0; colours repeat after [`SERIES`].
+    /// One of several curves of the same kind, counted from 0; colours repeat after [`SERIES`].
     Series(usize),
 }
 
-/// Colours of [`Colour::Series`].
+/// Number of different colours of [`Colour::Series`].
 pub const SERIES: usize = 6;
 
 /// A line, or dots where a point has no neighbours; of [`Colour::Band`], an area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Its points; one that is not finite leaves a gap.
+    /// Its points, in the units of the axes; one that is not finite leaves a gap.
     #[serde(with = "points")]
     pub points: Vec<Point>,
     /// Its colour.
     pub colour: Colour,
-    /// Width of the line in pixels.
+    /// Width of the line, or radius of the dots, in pixels.
     pub width: f64,
 }
 
@@ -50,18 +50,18 @@ pub struct Curve {
 pub struct Label {
     /// The point.
     pub point: Point,
-    /// How far above the point it stands, in pixels.
+    /// Height of the text above the point, in pixels.
     pub rise: f64,
-    /// What is written.
+    /// The text.
     pub text: String,
 }
 
 /// A chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Chart {
-    /// What it shows, in words, for those who do not see it.
+    /// Description for readers who cannot see it.
     pub description: String,
-    /// Written above it; may be empty.
+    /// Title above it; may be empty.
     pub title: String,
     /// Width and height in pixels.
     pub size: (f64, f64),
@@ -69,11 +69,11 @@ pub struct Chart {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// What is drawn, from the back to the front.
+    /// Curves, from the back to the front.
     pub curves: Vec<Curve>,
     /// Text beside points.
     pub labels: Vec<Label>,
-    /// What the colours mean.
+    /// Legend: colours and names.
     pub legend: Vec<(Colour, String)>,
 }
 
@@ -101,7 +101,8 @@ impl Curve {
 }
 
 impl Chart {
-    /// A wide chart with linear axes over all points of the curves, and nothing else.
+    /// A wide chart with linear axes over all points of the curves, without title and legend. `x` and `y` are
+    /// the labels of the axes.
     pub fn new(description: impl Into<String>, x: &str, y: &str, curves: Vec<Curve>) -> Self {
         let points = || curves.iter().flat_map(|curve| &curve.points);
         let x = Axis::linear(x, points().map(|point| point.0));
@@ -109,39 +110,39 @@ impl Chart {
         Self::on_axes(description, x, y, curves)
     }
 
-    /// The same with these axes.
+    /// As [`Chart::new`], with these axes.
     pub fn on_axes(description: impl Into<String>, x: Axis, y: Axis, curves: Vec<Curve>) -> Self {
         let (description, title) = (description.into(), String::new());
         Self { description, title, size: WIDE, x, y, curves, labels: Vec::new(), legend: Vec::new() }
     }
 
-    /// The chart in this size.
+    /// The chart in this size, in pixels.
     pub fn sized(self, width: f64, height: f64) -> Self {
         Self { size: (width, height), ..self }
     }
 
-    /// The chart in this height.
+    /// The chart in this height, in pixels.
     pub fn with_height(self, height: f64) -> Self {
         Self { size: (self.size.0, height), ..self }
     }
 
-    /// One of several small charts, with a title.
+    /// The chart in the size of one of several small charts, with a title.
     pub fn small(self, title: impl Into<String>) -> Self {
         Self { size: SMALL, title: title.into(), ..self }
     }
 
-    /// True for one over the width of the page.
+    /// True for a chart that takes the width of the page.
     pub fn is_wide(&self) -> bool {
         self.size.0 >= WIDE.0
     }
 
-    /// The chart with what its colours mean.
+    /// The chart with a legend.
     pub fn with_legend<N: Into<String>>(self, entries: impl IntoIterator<Item = (Colour, N)>) -> Self {
         let legend = entries.into_iter().map(|(colour, name)| (colour, name.into())).collect();
         Self { legend, ..self }
     }
 
-    /// True if it can be drawn: one that was read from a file may have been changed there.
+    /// True if it can be drawn. A chart that was read from a file may be invalid.
     pub fn is_sound(&self) -> bool {
         let (width, height) = self.size;
         let is_side = |side: f64| (100.0..LARGEST).contains(&side);
@@ -150,12 +151,12 @@ impl Chart {
         is_side(width) && is_side(height) && are_sound && self.x.is_sound() && self.y.is_sound()
     }
 
-    /// The drawing, an `svg` element of class `plot` without a size of its own.
+    /// The drawing: an `svg` element of class `plot`, without a size of its own.
     pub fn svg(&self) -> String {
         svg::drawn(self)
     }
 
-    /// The drawing as a file of its own, with its size and its style in it. `generator` tells what made it.
+    /// The drawing as a file, with size and style. `generator` names the program that made it.
     pub fn file(&self, generator: &str) -> String {
         svg::file(self, generator)
     }

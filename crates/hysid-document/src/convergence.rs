@@ -1,4 +1,4 @@
-//! The chart of how a training converged.
+//! Chart of the convergence of a training.
 
 use hysid_core::model::history::{HistoryPoint, Phase, Run};
 use hysid_core::options::network::Method;
@@ -12,8 +12,8 @@ const POINTS: usize = 1000;
 /// Lowest error on the logarithmic axis, in percent.
 const LOWEST_PERCENT: f64 = 1e-6;
 
-/// Error against epoch of the start that became the model, and of those on the folds; `None` without runs, as of a model
-/// that was not searched for.
+/// Error against epoch of the start that became the model, and of the runs on folds; `None` without runs, as
+/// for a model that was not found by a search.
 pub fn chart(runs: &[Run]) -> Option<Chart> {
     if runs.is_empty() {
         return None;

@@ -1,6 +1,6 @@
 //! The one place that escapes text for HTML and SVG.
 
-/// Text as it may stand in HTML and SVG, in attributes too.
+/// Text escaped for HTML and SVG, in attributes too.
 pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

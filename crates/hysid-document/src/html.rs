@@ -1,4 +1,4 @@
-//! Documents as pages of HTML that need nothing but themselves.
+//! Documents as self-contained HTML pages.
 
 use crate::chart::{self, Chart};
 use crate::escape::escape;
@@ -8,10 +8,11 @@ use crate::text::{Badge, Piece, Text};
 
 const STYLE: &str = include_str!("html/style.css");
 
-/// How a page begins that no program needs to know as its own.
+/// Beginning of a page without a mark of the program that wrote it.
 pub const BEGINNING: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">";
 
-/// The whole page. `beginning` is its HTML up to the inside of the head, by which a program may know its own files.
+/// The whole page. `beginning` is its HTML up to the inside of the head; it may contain a mark by which a
+/// program recognizes its own files.
 pub fn page(page: &Page, beginning: &str) -> String {
     let title = escape(&page.title);
     format!(

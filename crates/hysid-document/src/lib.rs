@@ -1,8 +1,9 @@
-//! Documents made of typed parts, and one renderer of each kind: [`html`], [`markdown`] and [`plain`] text.
+//! Documents made of typed parts, and one renderer for each format: [`html`], [`markdown`] and [`plain`]
+//! text.
 //!
-//! A [`Page`] is a title and its [`Part`]s: headings, paragraphs of [`Text`], lists, [`Table`]s of typed [`Cell`]s, and
-//! [`Chart`]s, which are data until a renderer draws them. Parts hold plain text: what a format needs escaped, its renderer
-//! escapes, and nobody else does.
+//! A [`Page`] is a title and its [`Part`]s: headings, paragraphs of [`Text`], lists, [`Table`]s of typed
+//! [`Cell`]s, and [`Chart`]s, which are data until a renderer draws them. Parts contain plain text; each
+//! renderer escapes what its format requires.
 //!
 //! ```
 //! use hysid_document::{Page, Part, Table, html, plain};

@@ -1,8 +1,8 @@
-//! Numbers as pages show them, and how many there are of something.
+//! Numbers and counts as text.
 
 use hysid_core::significant::Significant;
 
-/// A number with so many significant digits, with a true minus sign.
+/// A number with this number of significant digits and a minus sign `−`.
 pub fn number(value: f64, digits: usize) -> String {
     format!("{:.*}", digits, Significant(value)).replace('-', "−")
 }

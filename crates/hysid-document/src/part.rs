@@ -1,4 +1,4 @@
-//! Pages and what they are made of.
+//! Pages and their parts.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::text::Text;
 pub struct Page {
     /// Its headline.
     pub title: String,
-    /// What follows.
+    /// Its parts, in order.
     pub parts: Vec<Part>,
 }
 
@@ -19,9 +19,9 @@ pub struct Page {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
-    /// The sentence that a reader should take away.
+    /// The main message, in one sentence.
     Lead(Text),
-    /// A section with its heading; nothing is shown of one without parts.
+    /// A section with its heading; a section without parts is not shown.
     Section(String, Vec<Part>),
     /// A heading within a section.
     Heading(Text),
@@ -33,9 +33,9 @@ pub enum Part {
     Command(String),
     /// A list.
     List(Vec<Item>),
-    /// Results at a glance, each a badge, a link and a sentence.
+    /// A list of results, each a badge, a link and a sentence.
     Verdicts(Vec<Text>),
-    /// Names and what they are.
+    /// Names and their definitions.
     Definitions(Vec<(String, String)>),
     /// A table.
     Table(Table),
@@ -45,27 +45,27 @@ pub enum Part {
     Charts(Vec<Chart>),
     /// Cards side by side.
     Cards(Vec<Card>),
-    /// What is shown when it is asked for, below a summary that always is.
+    /// Parts that are hidden until the reader opens them, below a summary.
     Folded(String, Vec<Part>),
 }
 
 /// An item of a list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Item {
-    /// What it says.
+    /// Its text.
     pub text: Text,
-    /// It is shown as a warning.
+    /// True for an item that is shown as a warning.
     pub is_warning: bool,
 }
 
-/// Parts in a frame that links can lead to.
+/// Parts in a frame, which can be the target of links.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Card {
-    /// The name that links call it by.
+    /// Name of the card as the target of links.
     pub anchor: String,
     /// Its heading.
     pub heading: Text,
-    /// What it shows.
+    /// Its parts.
     pub parts: Vec<Part>,
 }
 

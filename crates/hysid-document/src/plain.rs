@@ -4,13 +4,13 @@ use crate::part::{Card, Part};
 use crate::table::{Cell, Table};
 use crate::visible::{clipped, visible};
 
-/// Letters in a line.
+/// Number of characters in a line.
 pub const WIDTH: usize = 80;
 
 /// A longer word is the name of a column or a record: it is cut.
 const LONGEST_WORD: usize = 300;
 
-/// The parts one below the other, with an empty line between them.
+/// The parts as text, separated by empty lines.
 pub fn rendered(parts: &[Part]) -> String {
     blocks(parts).join("\n\n") + "\n"
 }
@@ -54,13 +54,14 @@ fn table(table: &Table) -> String {
     heading.into_iter().chain(columns(table, Cell::shown)).collect::<Vec<String>>().join("\n")
 }
 
-/// The lines of a table without its heading, each cell shown in this way.
+/// The lines of a table without its heading; `shown` gives the text of a cell.
 pub fn columns(table: &Table, shown: impl Fn(&Cell) -> String) -> Vec<String> {
     let rows = table.rows.iter().map(|row| row.iter().map(&shown).collect());
     aligned(&std::iter::once(table.columns.clone()).chain(rows).collect::<Vec<_>>())
 }
 
-/// The words in lines of at most `width` letters; a longer word has a line of its own. Control characters are shown.
+/// The words of a text in lines of at most `width` characters; a longer word has a line of its own. Control
+/// characters are made visible.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -78,13 +79,14 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The words in lines of [`WIDTH`] letters, of which the first `indent` are blank, the first line's too.
+/// The words of a text in lines of [`WIDTH`] characters, of which the first `indent` are blank, also in the
+/// first line.
 pub fn indented(text: &str, indent: usize) -> String {
     wrapped(text, WIDTH - indent).iter().map(|line| format!("{:indent$}{line}\n", "")).collect()
 }
 
-/// Rows of a table, the columns as wide as their longest cell: the first to the left, the others to the right.
-/// Control characters are shown.
+/// Rows of a table as lines: columns as wide as their longest cell, the first aligned left, the others right.
+/// Control characters are made visible.
 pub fn aligned(rows: &[Vec<String>]) -> Vec<String> {
     let visible_cells = |row: &Vec<String>| row.iter().map(|cell| visible(cell).into_owned()).collect();
     let rows: Vec<Vec<String>> = rows.iter().map(visible_cells).collect();

@@ -7,11 +7,11 @@ use crate::number::number;
 /// Significant digits of a number for which none are named.
 const DIGITS: u8 = 3;
 
-/// A table. The first cell of each row is the row's heading; in a row with fewer cells than columns, the last one goes over
-/// all columns that are left.
+/// A table. The first cell of each row is the row's heading. In a row with fewer cells than columns, the last
+/// cell spans all remaining columns.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// What the table shows, without a full stop; may be empty.
+    /// Heading without a full stop; may be empty.
     pub heading: String,
     /// Headings of the columns.
     pub columns: Vec<String>,
@@ -23,13 +23,13 @@ pub struct Table {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cell {
-    /// A finite number, and how many significant digits of it are shown.
+    /// A finite number and its number of significant digits.
     Number(f64, u8),
-    /// The same with a percent sign behind it.
+    /// A number with a percent sign, and its number of significant digits.
     Percent(f64, u8),
-    /// Words.
+    /// Text.
     Text(String),
-    /// A number that there is not.
+    /// A missing number.
     Missing,
 }
 
@@ -54,14 +54,15 @@ impl Table {
         self.rows.push(row.into_iter().collect());
     }
 
-    /// True if every row has a cell for every column, and there is a column.
+    /// True if there is a column, and every row has a cell for every column.
     pub fn is_complete(&self) -> bool {
         !self.columns.is_empty() && self.rows.iter().all(|row| row.len() == self.columns.len())
     }
 }
 
 impl Cell {
-    /// A number with so many significant digits; missing if there is none, or none that is finite.
+    /// A number with `digits` significant digits; [`Cell::Missing`] for `None` and for a number that is not
+    /// finite.
     pub fn number(value: impl Into<Option<f64>>, digits: u8) -> Self {
         match value.into() {
             Some(value) if value.is_finite() => Cell::Number(value, digits),
@@ -69,7 +70,7 @@ impl Cell {
         }
     }
 
-    /// As a page shows it.
+    /// The text of the cell on a page.
     pub fn shown(&self) -> String {
         match self {
             Cell::Number(value, digits) => number(*value, (*digits).into()),
@@ -79,7 +80,7 @@ impl Cell {
         }
     }
 
-    /// As a terminal shows it beside other numbers, which are in ASCII there.
+    /// The text of the cell on a terminal, in ASCII.
     pub fn ascii(&self) -> String {
         match self {
             Cell::Text(text) => text.clone(),

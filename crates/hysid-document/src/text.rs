@@ -7,17 +7,17 @@ use serde::{Deserialize, Serialize};
 #[serde(transparent)]
 pub struct Text(pub Vec<Piece>);
 
-/// A stretch of text in one style.
+/// A piece of text in one style.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Piece {
-    /// Without any style.
+    /// Plain text.
     Plain(String),
-    /// What is typed or stands in a file.
+    /// Code: input or content of a file.
     Code(String),
-    /// Emphasised.
+    /// Emphasized text.
     Strong(String),
-    /// Less important than what it stands beside.
+    /// Text of less importance.
     Aside(String),
     /// A link to a [`Card`](crate::Card) of the same page.
     Link {
@@ -26,30 +26,30 @@ pub enum Piece {
         /// What is shown.
         text: String,
     },
-    /// A word that is to be seen at a glance.
+    /// A word in a coloured frame.
     Badge(Badge, String),
 }
 
-/// How a badge looks.
+/// Meaning of a badge, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Badge {
-    /// For a yes.
+    /// Yes.
     Yes,
-    /// For a no.
+    /// No.
     No,
-    /// For what is not known.
+    /// Unknown.
     Unknown,
 }
 
 impl Text {
-    /// The text with a piece directly behind it.
+    /// The text with a piece appended.
     pub fn with(mut self, piece: Piece) -> Self {
         self.0.push(piece);
         self
     }
 
-    /// The text with a piece behind it as the next word.
+    /// The text with a piece appended as the next word.
     pub fn and(self, piece: Piece) -> Self {
         self.with(Piece::Plain(" ".into())).with(piece)
     }

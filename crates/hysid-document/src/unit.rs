@@ -1,4 +1,4 @@
-//! Units, as column names tell them: `force_kN`, `t [s]`, `H_A_per_m`.
+//! Units in column names: `force_kN`, `t [s]`, `H_A_per_m`.
 
 /// The quantity and its unit, if the column name ends with one, as a page shows it.
 pub fn split(column: &str) -> (String, Option<String>) {
@@ -34,7 +34,7 @@ pub fn label(column: &str) -> String {
     }
 }
 
-/// The unit, or ` (unit of …)` for a column that does not tell it.
+/// The unit, or ` (unit of …)` for a column without a unit in its name.
 pub fn of(column: &str) -> String {
     match split(column) {
         (_, Some(unit)) => unit,
@@ -42,7 +42,7 @@ pub fn of(column: &str) -> String {
     }
 }
 
-/// A quantity with its unit; without one if the column does not tell it.
+/// A value with the unit of the column; without a unit if the name has none.
 pub fn with(value: &str, column: &str) -> String {
     match split(column).1 {
         Some(unit) => format!("{value} {unit}"),

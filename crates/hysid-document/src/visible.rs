@@ -1,26 +1,26 @@
-//! Text of files and arguments as a terminal shows it: nothing in it moves the cursor, and no name is endless.
+//! Text of files and arguments made safe for a terminal: no control characters, and a bounded length.
 
 use std::borrow::Cow;
 
 use hysid_core::error::escaped;
 
-/// Letters of a name or a cell that are shown.
+/// Largest number of characters of a name or a cell.
 const MOST_LETTERS: usize = 60;
 
-/// True for what a terminal obeys instead of showing it: control characters, and those that turn the direction of the
-/// text or take no room.
+/// True for characters that a terminal does not display as such: control characters, and those that change
+/// the direction of text or have no width.
 pub fn is_hidden(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{ad}' | '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}')
         || matches!(letter, '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
-/// The text with visible signs in the place of control characters, such as `\n` and `\x1b`: always one line.
+/// The text with visible symbols instead of control characters, such as `\n` and `\x1b`: always one line.
 pub fn visible(text: &str) -> Cow<'_, str> {
     escaped(text, is_hidden)
 }
 
-/// A name or a cell of a file: visible, and cut where it is long.
+/// A name or a cell with visible symbols, truncated if it is long.
 pub fn clipped(text: &str) -> Cow<'_, str> {
     let Some((end, _)) = text.char_indices().nth(MOST_LETTERS) else { return visible(text) };
     let letters = text[end..].chars().count() + MOST_LETTERS;

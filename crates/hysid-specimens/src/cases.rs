@@ -1,10 +1,10 @@
-//! Generated identification cases: a law with parameters of its own, driven the way engineers measure,
-//! with noise, and divided into what is trained on and what is tested.
+//! Generated identification cases: a law with random parameters under a typical experiment, with noise,
+//! divided into training and test data.
 //!
-//! They guard against tuning to the measured cases: a change that helps those alone is seen here. Every
-//! case is made of a plan (a law, a design of the experiment, columns) and of what chance adds to it:
-//! each value of the law times `e^{0.2 N(0, 1)}` where that is physically sound, amplitudes, cycles, amount
-//! of data, noise. All plans and values are *designed*; where the laws come from stands with them.
+//! They guard against tuning to the measured cases. Each case follows a plan (a law, a design of the
+//! experiment, columns) with random variations: most values of the law are multiplied by `e^{0.2 N(0, 1)}`,
+//! with a standard normal number `N(0, 1)`; amplitudes, cycles, amount of data and noise vary. All plans and
+//! values are *designed*; the sources of the laws are given with them.
 
 mod devices;
 mod draw;
@@ -33,14 +33,14 @@ pub struct Case {
     pub law: &'static str,
     /// The design of the experiment, in a few words.
     pub design: &'static str,
-    /// What is trained on.
+    /// Training data.
     pub train: Dataset,
-    /// What is tested. Where it continues a record of training, the record begins with that part, its
-    /// outputs blank.
+    /// Test data. A record that continues a training record begins with the training input, its outputs
+    /// blank.
     pub test: Dataset,
 }
 
-/// Number of plans: so many cases are all of different kinds.
+/// Number of plans, that is, of different kinds of cases.
 pub const KINDS: usize = PLANS.len();
 
 /// The records of a case before noise.
@@ -49,8 +49,8 @@ struct Parts {
     test: Vec<Record>,
 }
 
-/// The first `count` cases of a seed. A case depends on the seed and its own number alone. Beyond [`KINDS`]
-/// the plans come round again, with other parameters.
+/// The first `count` cases of a seed. A case depends on the seed and its own number only. After [`KINDS`]
+/// cases the plans repeat with other parameters.
 ///
 /// ```
 /// let cases = hysid_specimens::cases::generated(2, 1)?;
@@ -60,7 +60,7 @@ struct Parts {
 /// ```
 ///
 /// # Errors
-/// A law drew values that give no finite output; none is known to.
+/// A law whose random values give no finite output; none is known.
 pub fn generated(count: usize, seed: u64) -> Result<Vec<Case>> {
     (0..count).map(|index| case(index, seed)).collect()
 }

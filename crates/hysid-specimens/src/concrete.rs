@@ -1,21 +1,23 @@
-//! Concrete in cyclic compression: Popovics' envelope, Karsan and Jirsa's permanent strain, curved
-//! unloading and straight reloading that has lost stress.
+//! Concrete in cyclic compression: Popovics' envelope, the permanent strain of Karsan and Jirsa, curved
+//! unloading, and straight reloading with a loss of stress.
 //!
 //! ```text
 //! σ = f_c η r/(r - 1 + η^r),   η = ε/ε_c,   r = E_c/(E_c - f_c/ε_c)                    theory.md (6.24)
 //! ε_p/ε_c = 0.145 η_u² + 0.13 η_u if η_u < 2, else 0.707 (η_u - 2) + 0.834             theory.md (6.25)
-//! σ = σ_a [1 - x q/(q - 1 + x^q)],   x = (ε_a - ε)/(ε_a - ε_p)                         theory.md (6.26)
+//! σ = σ_a [1 - x q/(q - 1 + x^q)],   x = (ε_a - ε)/(ε_a - ε_p),   q = E_u/(E_u - E_s)  theory.md (6.26)
 //! σ = min(envelope, σ_b + E_r (ε - ε_b)),   E_r = (0.92 (σ_u - σ_b))/(ε_u - ε_b)       theory.md (6.27)
 //! ```
 //!
-//! `ε` is the compressive strain in mm/m, `σ` the compressive stress in MPa. `u` is the point where
-//! unloading last began at the largest strain, `a` where it began now, `b` where reloading began.
+//! `ε` is the compressive strain in mm/m, `σ` the compressive stress in MPa. `f_c` is the strength, `ε_c` the
+//! strain there and `E_c` the initial modulus. The point `u` is where unloading last began at the largest
+//! strain, `a` where it began now, `b` where reloading began; `η_u = ε_u/ε_c`, and `ε_p` is the permanent
+//! strain. `E_u = E_c min(1, √(ε_c/ε_u))` is the initial slope of unloading and `E_s = σ_a/(ε_a - ε_p)` that
+//! of its chord.
 //!
-//! *Published*: (6.24) and (6.25), Popovics and Karsan-Jirsa, in the form of Concrete04 of OpenSees; the
-//! shape of unloading and the loss of stress by 8 % at the strain `ε_u` after Mander, Priestley and
-//! Park. *Designed*: that reloading goes on straight to the envelope (as Sinha, Gerstle and Tulin
-//! drew it), that partial unloading keeps the permanent strain, the values of the concrete (typical
-//! ones) and the strain history.
+//! *Published*: the envelope and the permanent strain, in the form of Concrete04 of OpenSees; the shape of
+//! unloading and the loss of stress by 8 % at the strain `ε_u` after Mander, Priestley and Park. *Designed*:
+//! that reloading continues straight to the envelope (as Sinha, Gerstle and Tulin drew it), that partial
+//! unloading keeps the permanent strain, the values of the concrete (typical ones) and the strain history.
 
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
@@ -26,14 +28,14 @@ use super::specimen::{Columns, Specimen};
 /// Share of the unloaded stress that is back when reloading reaches the strain of unloading.
 const RECOVERED: f64 = 0.92;
 
-/// Values of a concrete. Compression is positive.
+/// Parameters of a concrete. Compression is positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConcreteParameters {
     /// `f_c`: strength in MPa.
     pub strength: f64,
     /// `ε_c`: strain at the strength, in mm/m.
     pub strain_at_strength: f64,
-    /// Strain in mm/m beyond which it is crushed and bears nothing.
+    /// Strain in mm/m beyond which it is crushed and has no stress.
     pub crushing_strain: f64,
     /// `E_c`: initial modulus in MPa per mm/m (that is, GPa); above `f_c/ε_c`.
     pub modulus: f64,
@@ -45,7 +47,7 @@ impl ConcreteParameters {
         Self { strength: 27.6, strain_at_strength: 2.0, crushing_strain: 6.0, modulus: 24.9 }
     }
 
-    /// Stress in MPa on the envelope at a strain in mm/m: theory.md (6.24).
+    /// Stress in MPa on the envelope, `f_c η r/(r - 1 + η^r)`, at a strain in mm/m (theory.md (6.24)).
     pub fn envelope(&self, strain: f64) -> f64 {
         if strain <= 0.0 || strain > self.crushing_strain {
             return 0.0;
@@ -55,7 +57,8 @@ impl ConcreteParameters {
         self.strength * eta * r / (r - 1.0 + eta.powf(r))
     }
 
-    /// Permanent strain in mm/m after unloading from a strain on the envelope: theory.md (6.25).
+    /// Permanent strain `ε_p` in mm/m after unloading from a strain in mm/m on the envelope: `ε_c (0.145 η_u²
+    /// + 0.13 η_u)` for `η_u < 2`, else `ε_c (0.707 (η_u - 2) + 0.834)` (theory.md (6.25)).
     pub fn permanent_strain(&self, strain: f64) -> f64 {
         let eta = strain / self.strain_at_strength;
         let ratio = if eta < 2.0 { 0.145 * eta * eta + 0.13 * eta } else { 0.707 * (eta - 2.0) + 0.834 };
@@ -80,7 +83,7 @@ enum Branch {
     Reloading(Point),
 }
 
-/// Concrete with its memory, untouched at first.
+/// Concrete with its memory, initially undamaged.
 ///
 /// ```
 /// use hysid_specimens::{Concrete, ConcreteParameters};
@@ -92,7 +95,7 @@ enum Branch {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Concrete {
-    /// Values of the concrete.
+    /// Parameters of the concrete.
     pub parameters: ConcreteParameters,
     branch: Branch,
     now: Point,
@@ -102,20 +105,20 @@ pub struct Concrete {
 }
 
 impl Concrete {
-    /// Untouched concrete.
+    /// Undamaged concrete.
     pub fn new(parameters: ConcreteParameters) -> Self {
         let origin = Point::default();
         Self { parameters, branch: Branch::Envelope, now: origin, unloaded: origin, permanent: 0.0 }
     }
 
-    /// Back to the untouched concrete.
+    /// Returns to the undamaged concrete.
     pub fn reset(&mut self) {
         *self = Self::new(self.parameters);
     }
 
-    /// The compressive stress in MPa at the next compressive strain in mm/m; how many steps lead there
-    /// does not matter. Tension, a negative strain, opens a crack and has no stress. A strain that is not
-    /// finite gives NaN and leaves the memory as it was.
+    /// The compressive stress in MPa at the next compressive strain in mm/m, for any number of steps on the
+    /// way. Tension, a negative strain, opens a crack and has no stress. A strain that is not finite gives
+    /// NaN and leaves the memory unchanged.
     pub fn step(&mut self, strain: f64) -> f64 {
         if !strain.is_finite() {
             return f64::NAN;
@@ -129,13 +132,13 @@ impl Concrete {
         self.now.stress
     }
 
-    /// The stresses at all strains, from the untouched concrete.
+    /// The stresses in MPa at all strains in mm/m, from the undamaged concrete.
     pub fn run(&mut self, strain: &[f64]) -> Vec<f64> {
         self.reset();
         strain.iter().map(|&strain| self.step(strain)).collect()
     }
 
-    /// The strain in mm/m at which the stress would vanish on unloading, as of the last unloading.
+    /// The permanent strain in mm/m of the last unloading.
     pub fn permanent_strain(&self) -> f64 {
         self.permanent
     }
@@ -181,7 +184,8 @@ impl Concrete {
         self.now = Point { strain, stress: self.unloading(from, strain) };
     }
 
-    /// Stress on the way from a point down to the permanent strain: theory.md (6.26).
+    /// Stress on unloading from a point to the permanent strain, `σ_a [1 - x q/(q - 1 + x^q)]` (theory.md
+    /// (6.26)).
     fn unloading(&self, from: Point, strain: f64) -> f64 {
         if strain <= self.permanent || from.stress <= 0.0 {
             return 0.0;

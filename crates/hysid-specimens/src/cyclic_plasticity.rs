@@ -1,14 +1,15 @@
-//! Cyclic plasticity of a metal in one dimension: isotropic hardening after Voce, kinematic hardening
-//! after Armstrong and Frederick with several backstresses after Chaboche.
+//! Cyclic plasticity of a metal in one dimension: isotropic hardening after Voce, kinematic hardening after
+//! Armstrong and Frederick with several backstresses after Chaboche.
 //!
 //! ```text
 //! σ = E (ε - ε_p),   |σ - Σ α_k| <= σ_y + Q (1 - e^{-b p}),   p' = |ε_p'|   theory.md (6.33)
 //! α_k' = C_k ε_p' - γ_k α_k p'                                              theory.md (6.34)
 //! ```
 //!
-//! `ε` is the strain in mm/m, `σ` the stress in MPa. `Q < 0` softens. Published: the equations; a
-//! structural steel has `E` = 200 GPa, and `σ_y`, `Q`, `C`, `γ` of the order used here (Voce-Chaboche
-//! sets of RESSPyLab).
+//! `ε` is the strain in mm/m, `ε_p` its plastic part, `p` the accumulated plastic strain, `σ` the stress and
+//! `α_k` the backstresses in MPa; `E`, `σ_y`, `Q`, `b`, `C_k` and `γ_k` are parameters. `Q < 0` is softening.
+//! Published: the equations; a structural steel has `E` = 200 GPa, and `σ_y`, `Q`, `C`, `γ` of the order used
+//! here (Voce-Chaboche sets of RESSPyLab).
 
 /// Longest part of the strain moved at once, as a share of the yield strain.
 const LONGEST_PART: f64 = 0.02;

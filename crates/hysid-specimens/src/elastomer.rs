@@ -5,9 +5,9 @@
 //! F = F_s ± |x - x_s|/{x_2 (1 ∓ μ) + |x - x_s|} (F_f ∓ F_s),   μ = F_s/F_f  theory.md (6.38)
 //! ```
 //!
-//! The upper signs hold on the way up. `x_s`, `F_s` are where the direction changed last; from there the
-//! friction force `F` nears `±F_f`, half of it within `x_2` from rest. `x` is in mm, `f` in N. Source: Berg
-//! (1998). *Designed*: the values.
+//! `x` is the displacement in mm, `f` the force in N, `F` its friction part and `σ_i` the states of the
+//! Maxwell elements. The upper signs hold upwards. `(x_s, F_s)` is the last turning point; from there `F`
+//! approaches `±F_f`, half of it within `x_2` from rest. Source: Berg (1998). *Designed*: the values.
 
 use hysid_core::operator::relaxation;
 

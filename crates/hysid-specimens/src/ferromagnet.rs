@@ -1,21 +1,21 @@
 //! Ferromagnetic sheet: the Preisach model with an analytic Everett function.
 //!
 //! ```text
-//! G(h)   = M r (2/π atan(q h) + 1) + 2 M (1 - r) / (1 + (e^{-p1 h} + e^{-p2 h}) / 2)
-//! E(a,b) = G(-b - Hc) G(a - Hc) - G(-a - Hc) G(b - Hc)       a >= b, both within ±Hsat
-//! J      = ± E(|h_0|, -|h_0|) / 2 + Σ_k ± E(max(h_k, h_{k-1}), min(h_k, h_{k-1}))
+//! G(h)   = M r (2/π atan(q h) + 1) + 2 M (1 - r) / (1 + (e^{-p1 h} + e^{-p2 h}) / 2)    theory.md (6.1)
+//! E(a,b) = G(-b - Hc) G(a - Hc) - G(-a - Hc) G(b - Hc)       a >= b, both within ±Hsat  theory.md (6.2)
+//! J      = ± E(|h_0|, -|h_0|) / 2 + Σ_k ± E(max(h_k, h_{k-1}), min(h_k, h_{k-1}))       theory.md (6.3)
 //! B      = J + K μ0 H
 //! ```
 //!
-//! `h_0, h_1, ...` are the dominant extrema of the field since demagnetisation, each smaller swing
-//! nested in the one before, the present field last; a swing counts positive upwards. `H` is in A/m,
-//! `J` and `B` in tesla.
+//! `H` is the field in A/m, `J` the polarisation and `B` the flux density in T, `μ0` the permeability of
+//! vacuum. `h_0, h_1, ...` are the dominant extrema of the field since demagnetisation, each smaller swing
+//! nested in the one before, the present field last. The sign of a term is `+` for a rising swing.
 //!
-//! The field's memory is a stack: a swing that grows beyond an earlier one wipes it out.
+//! The memory is a stack of these extrema: a swing beyond an earlier one deletes it.
 //!
-//! Parameters: *published*, the records of `Magnetic.FluxTubes.Material.HysteresisEverettParameter`
-//! in the Modelica Standard Library, as documented by Wolfram System Modeler; the equations are
-//! those of its `everett` function and `GenericHystPreisachEverett` component.
+//! Parameters: *published*, the records of `Magnetic.FluxTubes.Material.HysteresisEverettParameter` in the
+//! Modelica Standard Library, as documented by Wolfram System Modeler; the equations are those of its
+//! `everett` function and `GenericHystPreisachEverett` component.
 
 use std::f64::consts::FRAC_2_PI;
 
@@ -33,7 +33,7 @@ const MU_0: f64 = 4e-7 * std::f64::consts::PI;
 pub struct Everett {
     /// `Hsat`: the polarisation does not change beyond this field, in A/m.
     pub h_sat: f64,
-    /// `M`: scale of the polarisation, in the root of a tesla.
+    /// `M`: scale of the polarisation, in the square root of T.
     pub m: f64,
     /// `r`: share of the arctangent.
     pub r: f64,
@@ -43,9 +43,9 @@ pub struct Everett {
     pub p1: f64,
     /// `p2`: steepness of the second exponential, in m/A.
     pub p2: f64,
-    /// `Hc`: shift of the function in A/m. It is near the coercivity, but is not it.
+    /// `Hc`: shift of the function in A/m, close to the coercivity but not equal to it.
     pub hc: f64,
-    /// `K`: slope of B beyond saturation, in units of μ0.
+    /// `K`: slope of `B` beyond saturation, in units of `μ0`.
     pub k: f64,
 }
 
@@ -56,8 +56,8 @@ impl Everett {
         self.m * self.r * arctangent + 2.0 * self.m * (1.0 - self.r) / step
     }
 
-    /// The Everett function: what J falls by from `a` down to `b`, in tesla, for fields within
-    /// ±`h_sat`.
+    /// The Everett function `E(a, b)`: the decrease of `J` in T when the field falls from `a` to `b`, both
+    /// within ±`h_sat`, in A/m.
     pub fn value(&self, a: f64, b: f64) -> f64 {
         self.g(-b - self.hc) * self.g(a - self.hc) - self.g(-a - self.hc) * self.g(b - self.hc)
     }
@@ -68,7 +68,7 @@ impl Everett {
     }
 }
 
-/// A ferromagnetic material with its memory, demagnetised at first.
+/// A ferromagnetic material with its memory, initially demagnetised.
 ///
 /// ```
 /// use hysid_specimens::Ferromagnet;
@@ -166,13 +166,13 @@ impl Ferromagnet {
         })
     }
 
-    /// Back to the demagnetised state, at field 0.
+    /// Returns to the demagnetised state, at field 0.
     pub fn reset(&mut self) {
         self.extrema.clear();
     }
 
-    /// The flux density B in tesla at the next field `h` in A/m. A field that is not finite gives NaN
-    /// and leaves the memory as it was.
+    /// The flux density `B` in T at the next field `h` in A/m. A field that is not finite gives NaN and
+    /// leaves the memory unchanged.
     pub fn step(&mut self, h: f64) -> f64 {
         if !h.is_finite() {
             return f64::NAN;
@@ -181,7 +181,7 @@ impl Ferromagnet {
         self.polarisation() + self.everett.k * MU_0 * h
     }
 
-    /// The flux densities at all fields, from the demagnetised state.
+    /// The flux densities in T at all fields in A/m, from the demagnetised state.
     pub fn run(&mut self, h: &[f64]) -> Vec<f64> {
         self.reset();
         h.iter().map(|&h| self.step(h)).collect()

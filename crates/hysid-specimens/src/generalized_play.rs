@@ -1,19 +1,29 @@
 //! Generalized plays with their memory: the law of
-//! [`generalized_prandtl_ishlinskii`](hysid_core::law::generalized_prandtl_ishlinskii), theory.md (6.13) to (6.15).
+//! [`generalized_prandtl_ishlinskii`](hysid_core::law::generalized_prandtl_ishlinskii).
 //!
-//! Source of the values: the programs of Al Janaideh (IEEE Control Systems Magazine lecture, 2022) and of Basaeri.
+//! ```text
+//! S_k  = max(γ_l(v_k) - r, min(γ_r(v_k) + r, S_{k-1}))                      theory.md (6.13)
+//! γ(v) = a0 tanh(a1 v + a2) + a3                                            theory.md (6.14)
+//! y    = c + Σ_j p_j S_j,    r_j = α j,    p_j = ρ e^{-τ r_j}               theory.md (6.15)
+//! ```
+//!
+//! `v_k` is sample `k` of the input, `S_j` the play with the threshold `r_j`, `γ_l` and `γ_r` are the
+//! envelopes, `p_j` the weights and `y` the output.
+//!
+//! Source of the values: the programs of Al Janaideh (IEEE Control Systems Magazine lecture, 2022) and of
+//! Basaeri.
 
 pub use hysid_core::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights,
 };
 use hysid_core::law::{Law, Sample};
 
-/// Where the plays are at the first sample.
+/// Initial state of the plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
-    /// As near to 0 as the envelopes allow: the virgin state of a play.
+    /// As close to 0 as the envelopes allow: the virgin state of a play.
     Virgin,
-    /// On `γ_r + r`, as after a large input that has been lowered.
+    /// On `γ_r + r`, as after a large input.
     Lowered,
 }
 
@@ -61,13 +71,12 @@ impl GeneralizedPlays {
         PlayWeights::Free((0..count).map(|j| rho * (-tau * (alpha * j as f64)).exp()).collect())
     }
 
-    /// Back to before the first sample.
+    /// Returns to the initial state.
     pub fn reset(&mut self) {
         self.state = self.law.virgin();
     }
 
-    /// The output at the next input. An input that is not finite gives NaN and leaves the memory as it
-    /// was.
+    /// The output at the next input. An input that is not finite gives NaN and leaves the memory unchanged.
     pub fn step(&mut self, v: f64) -> f64 {
         if !v.is_finite() {
             return f64::NAN;
@@ -75,7 +84,7 @@ impl GeneralizedPlays {
         self.law.step(&mut self.state, Sample { x: v, rate: 0.0, step: 0.0 })
     }
 
-    /// The outputs at all inputs, from before the first sample.
+    /// The outputs at all inputs, from the initial state.
     pub fn run(&mut self, v: &[f64]) -> Vec<f64> {
         self.reset();
         v.iter().map(|&v| self.step(v)).collect()

@@ -1,8 +1,11 @@
-//! Synthetic specimens: materials and devices with hysteresis whose laws are known, to generate
-//! records from and to test identification against.
+//! Synthetic specimens: materials and devices with hysteresis whose laws are known, as sources of records for
+//! tests of identification.
 //!
-//! Every law and parameter set says where it comes from: *published*, with its source, or *designed*,
-//! chosen by us so that the specimen shows what it is meant to show. [`Specimen`] is the catalogue.
+//! Each law and each set of parameters states its source: *published*, with a reference, or *designed*,
+//! chosen in this project. [`Specimen::all`] is the catalogue; [`cases::generated`] generates further
+//! identification cases.
+//!
+//! `theory.md (6.1)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
 pub mod cases;
 mod catalogue;

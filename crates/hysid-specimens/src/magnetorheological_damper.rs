@@ -1,13 +1,14 @@
-//! Magnetorheological damper: friction that yields, a viscous force that saturates, and the
-//! compressibility of the fluid before it.
+//! Magnetorheological damper: friction that yields and a viscous force that saturates, with a lag for the
+//! compressibility of the fluid.
 //!
 //! ```text
 //! f = k x + f_0 + F_y z + c v + F_v tanh(v/v_0),   τ v' = x' - v            theory.md (6.39)
 //! ```
 //!
-//! `z`, from -1 to 1, is a Bouc-Wen element, theory.md (8.5). `x` is in mm, `f` in N. Source: the Bouc-Wen
-//! damper of Spencer, Dyke, Sain and Carlson; the hyperbolic tangent of the speed of Kwok and co-workers.
-//! *Designed*: that both are added behind a lag, and the values.
+//! `x` is the displacement in mm, `f` the force in N, `v` the lagged speed in mm/s, and `z`, from -1 to 1, a
+//! [Bouc-Wen element](hysid_core::law::bouc_wen). Source: the Bouc-Wen damper of Spencer, Dyke, Sain and
+//! Carlson; the hyperbolic tangent of the speed of Kwok and co-workers. *Designed*: the lag before both, and
+//! the values.
 
 use hysid_core::law::bouc_wen::{BoucWen, BoucWenState};
 use hysid_core::law::{Law, Sample};

@@ -1,5 +1,5 @@
-//! Magnetostrictive actuator from 10 to 300 Hz: hysteresis between a lag (eddy currents) and the
-//! resonance of the moving mass.
+//! Magnetostrictive actuator from 10 to 300 Hz: hysteresis between a lag (eddy currents) and the resonance of
+//! the moving mass.
 //!
 //! ```text
 //! τ i' = I - i                                                             theory.md (6.20)
@@ -7,14 +7,14 @@
 //! y'' + 2 ξ ω0 y' + ω0² y = ω0² w                                          theory.md (6.21)
 //! ```
 //!
-//! `I` is the current in A, `i` what of it magnetises the rod, `y` the displacement in µm. `Γ` is the
-//! law of the [`terfenol_actuator`]. Both linear equations are stepped exactly for a current, and a `w`,
-//! that run straight from step to step: theory.md (6.22), (6.23).
+//! `I` is the current in A, `i` the part of it that magnetises the rod, `w` the drive and `y` the
+//! displacement in µm. `Γ` is the law of the [`terfenol_actuator`]. Both linear equations are solved exactly
+//! for a current, and a `w`, that are linear between steps (theory.md (6.22), (6.23)).
 //!
-//! *Published*: that a hysteresis operator is coupled with the dynamics of the thin rod and of a mass
-//! on a spring (Tan and Baras), and the current of 0.1 A ± 0.8 A at eight frequencies from 10 to 300 Hz
-//! (the paper). *Designed*: our simple coupling in place of theirs, all values, and the frequencies;
-//! their constants are not published.
+//! *Published*: that a hysteresis operator is coupled with the dynamics of the thin rod and of a mass on a
+//! spring (Tan and Baras), and the current of 0.1 A ± 0.8 A at eight frequencies from 10 to 300 Hz (the
+//! paper). *Designed*: our simple coupling instead of theirs, all values, and the frequencies; their
+//! constants are not published.
 
 use std::f64::consts::TAU;
 
@@ -25,7 +25,7 @@ use super::generalized_play::GeneralizedPlays;
 use super::specimen::{Columns, Specimen};
 use super::terfenol_actuator;
 
-/// An actuator with its memory, at rest at first.
+/// An actuator with its memory, initially at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MagnetostrictiveActuator {
     /// `τ`: time constant of the lag in s.
@@ -43,8 +43,8 @@ pub struct MagnetostrictiveActuator {
 }
 
 impl MagnetostrictiveActuator {
-    /// An actuator that has come to rest under a steady current in A, with the lag in s, the resonance
-    /// in rad/s and the damping ratio.
+    /// An actuator at rest under a steady current in A, with the lag in s, the resonance in rad/s and the
+    /// damping ratio.
     pub fn at_rest(
         mut hysteresis: GeneralizedPlays,
         lag: f64,
@@ -73,10 +73,9 @@ impl MagnetostrictiveActuator {
         Self::at_rest(terfenol_actuator::law(), 1.5e-4, TAU * 1500.0, 0.1, current)
     }
 
-    /// The displacement in µm after `duration` seconds, in which the current goes straight to
-    /// `current` in A. The drive `w` is taken to go straight as well, so steps must be short where it
-    /// bends. What is not finite, and a duration that is not positive, gives NaN and leaves the memory
-    /// as it was.
+    /// The displacement in µm after `duration` seconds, in which the current changes linearly to `current` in
+    /// A. The drive `w` is assumed to be linear as well, so steps must be short where it bends. A value that
+    /// is not finite, or a duration that is not positive, gives NaN and leaves the memory unchanged.
     pub fn step(&mut self, current: f64, duration: f64) -> f64 {
         if !(current.is_finite() && duration.is_finite() && duration > 0.0) {
             return f64::NAN;

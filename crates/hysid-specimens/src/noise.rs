@@ -6,12 +6,14 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::{OptionError, Result};
 
-/// The data with Gaussian noise on the output. Its deviation is `percent` of the population standard
-/// deviation of all scored outputs together. The same data, `percent` and `seed` give the same noise;
-/// training and test data need different seeds, or they get the same. Blanks stay blank.
+/// The data with Gaussian noise on the output. The standard deviation of the noise is `percent` of the
+/// population standard deviation of all outputs together. Blanks stay blank.
+///
+/// The same data, `percent` and `seed` give the same noise; training and test data therefore need different
+/// seeds.
 ///
 /// # Errors
-/// `percent` is negative or not finite, or so large that an output leaves the range of a record.
+/// `percent` is negative or not finite, or so large that an output is beyond the largest value of a record.
 pub fn with_noise(data: &Dataset, percent: f64, seed: u64) -> Result<Dataset> {
     if !(percent >= 0.0 && percent.is_finite()) {
         return Err(OptionError::value("noise", percent, "a number of percent, 0 or more, is needed").into());

@@ -1,19 +1,20 @@
-//! Peak-oriented law of a reinforced-concrete member: reloading aims at the largest displacement so far
-//! on that side, along a line that is broken where the member pinches; strength falls with the work done.
+//! Peak-oriented law of a reinforced-concrete member: reloading leads to the largest displacement so far on
+//! that side, along a line that is broken where the member pinches; strength decreases with work.
 //!
 //! ```text
 //! f = φ min{K x, f_y + K_h (x - x_y), max[f_y - K_s (x - x_c), 0.1 f_y if x > x_c]}      theory.md (6.30)
 //! unloading:  slope K (x_y/x_m)^u                                                        theory.md (6.31)
 //! reloading:  from (x_0, 0) through x_0 + d (x_p - x_0), where f = g d f_p, to (x_p, f_p)
-//! φ = e^{-w/(W f_y x_y)},   w = ∫ f dx, taken where f passes 0;   x_y = f_y/K             theory.md (6.32)
+//! φ = e^{-w/(W f_y x_y)},   w = ∫ f dx, updated where f passes 0;   x_y = f_y/K           theory.md (6.32)
 //! ```
 //!
-//! `x_p` is the largest displacement so far on the side that is loaded, `f_p` the envelope there, `x_m`
-//! the larger of both sides. With `g = 1` nothing pinches.
+//! `x` is the displacement in mm, `f` the force in kN, `w` the work and `φ` the strength. `x_p` is the
+//! largest displacement so far on the loaded side, `f_p` the envelope there, `x_m` the larger of both sides.
+//! With `g = 1` there is no pinching.
 //!
-//! Source: Clough and Johnston (peak orientation), Takeda (slope of unloading), Ibarra, Medina and
-//! Krawinkler (pinching by a broken line, strength that falls with energy). *Designed*: that the strength
-//! falls exponentially, for both sides alike.
+//! Source: Clough and Johnston (peak orientation), Takeda (slope of unloading), Ibarra, Medina and Krawinkler
+//! (pinching by a broken line, strength that decreases with energy). *Designed*: that the strength decreases
+//! exponentially, equally for both sides.
 
 /// Strength that is left at last, as a share of the yield force.
 const RESIDUAL: f64 = 0.1;

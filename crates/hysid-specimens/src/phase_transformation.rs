@@ -6,9 +6,9 @@
 //! y = Y (1 - ξ) + θ T                                                       theory.md (6.36)
 //! ```
 //!
-//! `ξ` is the share of martensite, 1 when cold; `T` the temperature in °C, `y` the stroke in mm. `ξ_h` and
-//! `ξ_c` are such that a branch begins where the last one ended. All between the transformations
-//! rests. Source: Liang and Rogers (1990), without stress. *Designed*: the values, and the stroke.
+//! `ξ` is the fraction of martensite, 1 when cold; `T` the temperature in °C, `y` the stroke in mm. `ξ_h` and
+//! `ξ_c` are such that a branch begins where the last one ended. `ξ` is constant between the transformations.
+//! Source: Liang and Rogers (1990), without stress. *Designed*: the values, and the stroke.
 
 use std::f64::consts::PI;
 

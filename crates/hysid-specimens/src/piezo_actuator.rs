@@ -43,7 +43,7 @@ impl PiezoActuator {
         VOLTAGE + VOLTAGE * (TAU * self.frequency * time).sin()
     }
 
-    /// The displacement in µm at a time in s: theory.md (6.18).
+    /// The displacement in µm at a time in s: `6 + Y sin(ωt - φ)` (theory.md (6.18)).
     pub fn displacement(&self, time: f64) -> f64 {
         DISPLACEMENT + self.amplitude() * (TAU * self.frequency * time - self.lag()).sin()
     }
@@ -58,7 +58,8 @@ impl PiezoActuator {
         0.10 + 6e-4 * self.frequency
     }
 
-    /// Area of the loop of voltage and displacement in V µm: theory.md (6.19).
+    /// Area of the loop of voltage and displacement in V µm: `π U Y sin φ`, with the amplitude `U` of the
+    /// voltage (theory.md (6.19)).
     pub fn loop_area(&self) -> f64 {
         PI * VOLTAGE * self.amplitude() * self.lag().sin()
     }

@@ -1,16 +1,16 @@
-//! Rate-dependent actuator: the Prandtl-Ishlinskii law whose thresholds grow with the rate of the
-//! input, so that its loops grow wider and flatter with speed.
+//! Rate-dependent actuator: the Prandtl-Ishlinskii law whose thresholds grow with the rate of the input, so
+//! that its loops widen and flatten with increasing speed.
 //!
 //! ```text
 //! r_i = α i + β |v'|,   p_i,k = max(v_k - r_i, min(v_k + r_i, p_i,k-1))    theory.md (6.16)
 //! y   = a0 v + Σ_i a_i p_i,   a_i = ρ e^{-τ α i},   i = 1 ... n            theory.md (6.17)
 //! ```
 //!
-//! `v` is the voltage in V, `v'` its rate in V/s, `y` the displacement in µm. Source: Al Janaideh,
-//! Rakheja and Su.
+//! `v` is the voltage in V, `v'` its rate in V/s, `y` the displacement in µm, `p_i` play `i` with the
+//! threshold `r_i`. Source: Al Janaideh, Rakheja and Su.
 //!
-//! *Published*: the law. *Designed*: all values; those that the paper identified for its example 6, and
-//! its inputs, are not published.
+//! *Published*: the law. *Designed*: all values; those that the paper identified for its example 6, and its
+//! inputs, are not published.
 
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
@@ -18,10 +18,10 @@ use hysid_core::error::Result;
 use super::specimen::{Columns, Specimen};
 use super::tones::{self, Tone};
 
-/// A rate-dependent actuator with its memory, virgin at first.
+/// A rate-dependent actuator with its memory, initially virgin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateDependentActuator {
-    /// `a0`: share of the output without memory, in µm/V.
+    /// `a0`: weight of the voltage, in µm/V.
     pub spring: f64,
     /// `a_1, a_2, ...`: weights of the plays in µm/V.
     pub weights: Vec<f64>,
@@ -45,14 +45,14 @@ impl RateDependentActuator {
         Self::new(0.5, (1..=10).map(|i| 0.4 * (-0.12 * f64::from(i)).exp()).collect(), 0.6, 2e-3)
     }
 
-    /// Back to the virgin state.
+    /// Returns to the virgin state.
     pub fn reset(&mut self) {
         self.plays.fill(0.0);
     }
 
-    /// The displacement in µm at the next voltage in V, which changes at `rate` in V/s. Between two
-    /// samples nothing is known of the rate, so steps must be small where it changes. What is not
-    /// finite gives NaN and leaves the memory as it was.
+    /// The displacement in µm at the next voltage in V, which changes at `rate` in V/s. The rate between two
+    /// samples is not known, so steps must be small where it changes. A value that is not finite gives NaN
+    /// and leaves the memory unchanged.
     pub fn step(&mut self, voltage: f64, rate: f64) -> f64 {
         if !(voltage.is_finite() && rate.is_finite()) {
             return f64::NAN;

@@ -1,23 +1,23 @@
-//! Reinforced-concrete beam-column joint: a Bouc-Wen-Baber-Noori element, which loses strength and
-//! stiffness and pinches as it dissipates energy, in a slow cyclic test with growing amplitude.
+//! Reinforced-concrete beam-column joint: a Bouc-Wen-Baber-Noori element, which loses strength and stiffness
+//! and pinches as it dissipates energy, in a slow cyclic test with growing amplitude.
 //!
 //! ```text
 //! f      = S (α ξ + (1 - α) z),   ξ = x/X                                  theory.md (6.4)
 //! dz/dξ  = h/η [A - ν |z|^n (β sgn(z dξ) + γ)]                             theory.md (6.5)
 //! de/dξ  = (1 - α) κ z                                                     theory.md (6.6)
-//! A = A0 - δA e,   ν = ν0 + δν e,   η = η0 + δη e                          theory.md (6.7)
+//! A = max(0, A0 - δA e),   ν = ν0 + δν e,   η = η0 + δη e                  theory.md (6.7)
 //! h      = 1 - ζ1 exp(-(z sgn dξ - q z_u)²/ζ2²)                            theory.md (6.8)
 //! z_u    = (ν (β + γ))^{-1/n},   ζ1 = ζs (1 - e^{-pe}),   ζ2 = (ψ0 + δψ e)(λ + ζ1)   theory.md (6.9)
 //! ```
 //!
-//! `x` is the displacement in mm, `f` the force in kN, `z` the hysteretic part of the displacement
-//! and `e` the energy dissipated so far. The displacement is prescribed, so there are no inertia and
-//! no viscous damping, and time does not matter.
+//! `x` is the displacement in mm, `f` the force in kN, `z` the hysteretic part of the displacement and `e`
+//! the energy dissipated so far. The displacement is prescribed, so there are no inertia and no viscous
+//! damping, and the output does not depend on time.
 //!
-//! *Published*: the equations, and for [`BoucWenBaberNoori::demonstration`] all values, as in the
-//! example of BWBN_TMCMC (Ortiz, Alvarez; after Foliente 1995). *Designed*: in
-//! [`BoucWenBaberNoori::joint`] the scales of force, displacement and energy, α and the pinching but
-//! for p; the rest of it is that published set. The drift history is designed as well.
+//! *Published*: the equations, and for [`BoucWenBaberNoori::demonstration`] all values, as in the example of
+//! BWBN_TMCMC (Ortiz, Alvarez; after Foliente 1995). *Designed*: in [`BoucWenBaberNoori::joint`] the scales
+//! of force, displacement and energy, α and the pinching except p; its other values are published. The drift
+//! history is designed as well.
 
 use hysid_core::data::record::Record;
 use hysid_core::error::Result;
@@ -44,7 +44,7 @@ pub struct BoucWenBaberNoori {
     pub force_scale: f64,
     /// `X` in mm: the displacement whose units `ξ` and `z` are in.
     pub displacement_scale: f64,
-    /// `κ`: the energy `e` in its own unit for a unit of `z ξ`. 0 is neither degradation nor pinching.
+    /// `κ`: energy `e`, in its own unit, per unit of `z ξ`. With 0 there is neither degradation nor pinching.
     pub energy_scale: f64,
     /// `α`: share of the elastic spring beside the hysteretic element.
     pub alpha: f64,
@@ -66,9 +66,9 @@ pub struct BoucWenBaberNoori {
     pub eta_0: f64,
     /// `δη`: its growth with `e`, which is loss of stiffness.
     pub delta_eta: f64,
-    /// `p`: how fast pinching begins with `e`.
+    /// `p`: rate at which pinching develops with `e`.
     pub p: f64,
-    /// `ζs`: pinching in the end, from 0 (none) to below 1 (no stiffness at its centre), or 1.
+    /// `ζs`: final pinching, from 0 (none) to below 1 (no stiffness at its centre), or 1.
     pub zeta_s: f64,
     /// `ψ0`: width of the pinched range.
     pub psi_0: f64,
@@ -125,12 +125,13 @@ impl BoucWenBaberNoori {
         }
     }
 
-    /// What `|z|` never exceeds: theory.md (6.10).
+    /// Upper bound of `|z|`: `(A0/(ν0 (β + γ)))^{1/n}` (theory.md (6.10)).
     pub fn ultimate(&self) -> f64 {
         (self.a_0 / (self.nu_0 * (self.beta + self.gamma))).powf(1.0 / self.n)
     }
 
-    /// Derivatives of `z` and `e` by `ξ` while `ξ` moves in this direction: theory.md (6.5), (6.6).
+    /// Derivatives of `z` and `e` by `ξ` in this direction: `h/η [A - ν |z|^n (β sgn(z dξ) + γ)]` and `(1 -
+    /// α) κ z` (theory.md (6.5), (6.6)).
     fn slope(&self, Inner { z, e }: Inner, direction: f64) -> Inner {
         let a = (self.a_0 - self.delta_a * e).max(0.0);
         let nu = self.nu_0 + self.delta_nu * e;
@@ -191,7 +192,7 @@ impl Inner {
     }
 }
 
-/// A joint with its memory, unloaded and undamaged at first.
+/// A joint with its memory, initially unloaded and undamaged.
 ///
 /// ```
 /// use hysid_specimens::{BoucWenBaberNoori, ReinforcedConcreteJoint};
@@ -214,14 +215,13 @@ impl ReinforcedConcreteJoint {
         Self { parameters, xi: 0.0, inner: Inner::default() }
     }
 
-    /// Back to the undamaged joint, at displacement 0.
+    /// Returns to the undamaged joint, at displacement 0.
     pub fn reset(&mut self) {
         *self = Self::new(self.parameters);
     }
 
-    /// The force in kN at the next displacement in mm; how many steps lead there does not matter. A
-    /// displacement that is not finite or beyond a thousand displacement scales gives NaN and leaves
-    /// the memory as it was.
+    /// The force in kN at the next displacement in mm, for any number of steps on the way. A displacement
+    /// that is not finite or beyond a thousand displacement scales gives NaN and leaves the memory unchanged.
     pub fn step(&mut self, displacement: f64) -> f64 {
         let parameters = &self.parameters;
         let xi = displacement / parameters.displacement_scale;
@@ -233,7 +233,7 @@ impl ReinforcedConcreteJoint {
         parameters.force_scale * (parameters.alpha * xi + (1.0 - parameters.alpha) * self.inner.z)
     }
 
-    /// The forces at all displacements, from the undamaged joint.
+    /// The forces in kN at all displacements in mm, from the undamaged joint.
     pub fn run(&mut self, displacement: &[f64]) -> Vec<f64> {
         self.reset();
         displacement.iter().map(|&x| self.step(x)).collect()
@@ -244,7 +244,7 @@ impl ReinforcedConcreteJoint {
         self.inner.z
     }
 
-    /// The energy `e` so far, in its own unit: theory.md (6.6).
+    /// The dissipated energy `e = ∫ (1 - α) κ z dξ`, in its own unit (theory.md (6.6)).
     pub fn energy(&self) -> f64 {
         self.inner.e
     }

@@ -1,12 +1,12 @@
-//! A specimen: what is known about it and how it is tested.
+//! A specimen: the source of its law, and its training and test records.
 
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
 use hysid_core::error::Result;
 
-/// A synthetic specimen: where its law comes from, and records to train and to test on.
+/// A synthetic specimen: the source of its law, and training and test records.
 ///
-/// The test data are never trained on. Where they begin with blank outputs, the input of those rows
-/// only brings the memory to where the test begins.
+/// Test data are not part of the training data. If they begin with blank outputs, these rows only bring the
+/// memory to the beginning of the test.
 ///
 /// ```
 /// use hysid_specimens::Specimen;
@@ -17,19 +17,19 @@ use hysid_core::error::Result;
 /// ```
 #[derive(Debug)]
 pub struct Specimen {
-    /// Name as typed on a command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// The example of the paper that it stands for.
+    /// The example of the paper that it replaces.
     pub example: &'static str,
-    /// What it is, in one line.
+    /// Description in one line.
     pub summary: &'static str,
-    /// Which laws and values are published, and where.
+    /// Published laws and values, with their sources.
     pub published: &'static str,
-    /// Which laws and values are ours, chosen so that the specimen shows what it is meant to show.
+    /// Designed laws and values.
     pub designed: &'static str,
-    /// How the training data are made.
+    /// Generation of the training data.
     pub training: &'static str,
-    /// How the test data are made.
+    /// Generation of the test data.
     pub testing: &'static str,
     pub(super) columns: Columns,
     pub(super) train: fn() -> Result<Vec<Record>>,
@@ -55,12 +55,12 @@ impl Specimen {
         }
     }
 
-    /// The records to train on, without noise.
+    /// The training records, without noise.
     pub fn train(&self) -> Dataset {
         self.dataset((self.train)())
     }
 
-    /// The records to test on, without noise.
+    /// The test records, without noise.
     pub fn test(&self) -> Dataset {
         self.dataset((self.test)())
     }

@@ -1,4 +1,4 @@
-//! Terfenol-D actuator at low speed: a generalized Prandtl-Ishlinskii law that stands in for the
+//! Terfenol-D actuator at low speed: a generalized Prandtl-Ishlinskii law that replaces the
 //! paper's example 3, whose identified parameters are not published.
 //!
 //! ```text

@@ -1,6 +1,6 @@
-//! Terfenol-D rod under a magnetic bias: the strain goes with the square of a magnetisation that follows
-//! the Preisach model. It stands beside the [`terfenol_actuator`], which a generalized Prandtl-Ishlinskii
-//! model can fit to the last digit; this one is outside that model, as a real rod is.
+//! Terfenol-D rod under a magnetic bias: the strain is proportional to the square of a magnetisation that
+//! follows the Preisach model. Unlike the [`terfenol_actuator`], which a generalized Prandtl-Ishlinskii model
+//! can represent exactly, this specimen is outside that model, as a real rod is.
 //!
 //! ```text
 //! H = 250 + 450 I,   J = Preisach[H],   y = 26 J²                          theory.md (6.28)

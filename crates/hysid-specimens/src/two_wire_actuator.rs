@@ -1,21 +1,20 @@
-//! Rotary actuator of two shape-memory wires that pull against each other: a current heats the one wire,
-//! a current of the other sign the other wire. It stands beside the [`shape_memory_actuator`], which a
-//! generalized Prandtl-Ishlinskii model can fit to the last digit; this one is outside that model, as a
-//! real actuator is.
+//! Rotary actuator of two shape-memory wires that pull against each other: a positive current heats one wire,
+//! a negative current the other. Unlike the [`shape_memory_actuator`], which a generalized Prandtl-Ishlinskii
+//! model can represent exactly, this specimen is outside that model, as a real actuator is.
 //!
 //! ```text
 //! H_a = 1000 max(I, 0) - 500,   H_b = 1000 max(-I, 0) - 500
 //! y   = 40 c_a - 28 c_b,   c = (1 + J[H]/1.5)/2                            theory.md (6.29)
 //! ```
 //!
-//! `I` is the current in A, `c` how much of a wire has contracted, `y` the angle in degrees. A wire
-//! contracts when hot, and keeps that until it is much cooler: the loop of [`Ferromagnet`], with the
-//! temperature in the place of the field.
+//! `I` is the current in A, `c` the contraction of a wire from 0 to 1, `y` the angle in degrees. A wire
+//! contracts when hot, and stays contracted until it is much cooler: this is the loop of [`Ferromagnet`],
+//! with the temperature instead of the field.
 //!
 //! *Published*: two wires against each other, heated by currents of either sign between -1 and 1 A (Gorbet,
-//! as the paper tells). *Designed*: the law of a wire, for which the Everett function of
-//! [`Ferromagnet::vacoflux17`] is borrowed, and all factors; one wire is weaker than the other, so that the
-//! loops are not symmetric.
+//! as cited in the paper). *Designed*: the law of a wire, which takes the Everett function of
+//! [`Ferromagnet::vacoflux17`], and all factors; one wire is weaker than the other, so that the loops are not
+//! symmetric.
 //!
 //! [`shape_memory_actuator`]: super::shape_memory_actuator
 

@@ -1,4 +1,4 @@
-//! How a model is fitted, validated and compared: the options, the rate, a time limit and an observer, each with its
+//! Fits, validations and comparisons of models: options, rate, time limit and observer, each with its
 //! default.
 
 use std::ops::ControlFlow;
@@ -17,11 +17,11 @@ use crate::options::chosen::{NamedOptions, RateChoice};
 use crate::options::{FitSpec, ModelName};
 use crate::validation::CrossValidation;
 
-/// Records are divided into at most so many folds.
+/// Largest number of folds.
 const FOLDS: usize = 5;
 
 /// A fit with its options. Options have the names and ranges of the table in
-/// [`options::table`](crate::options::table), which are those of the command line and of Python.
+/// [`options::table`](crate::options::table), as on the command line and in Python.
 ///
 /// ```
 /// use hysid::{Dataset, Fit};
@@ -49,48 +49,48 @@ impl<'a> Fit<'a> {
         Self::default()
     }
 
-    /// The model by its name, such as `xpnn` or `bouc-wen`.
+    /// Sets the model by its name, such as `xpnn` or `bouc-wen`.
     pub fn model(self, name: &str) -> Self {
         self.option("model", name)
     }
 
-    /// The seed of all random numbers.
+    /// Sets the seed of all random numbers.
     pub fn seed(self, seed: u64) -> Self {
         self.option("seed", seed)
     }
 
-    /// Any option by its name in the table of options. A name or a value that there is not is an error of
-    /// [`Fit::run`].
+    /// Sets any option by its name in the table of options. [`Fit::run`] reports an unknown name or an
+    /// invalid value.
     pub fn option(mut self, name: &str, value: impl Into<Value>) -> Self {
         self.options.insert(name.into(), value.into());
         self
     }
 
-    /// How the rate of the first input is found. By default, a model that uses it gets central differences where there
-    /// are time stamps.
+    /// Sets the method of the rate of the first input; `None` for no rate. By default, a model that uses a
+    /// rate takes central differences if there are time stamps.
     pub fn rate(mut self, method: Option<RateMethod>) -> Self {
         self.rate = method.map_or(RateChoice::None, RateChoice::Method);
         self
     }
 
-    /// Ends the fit after this time with the best model so far. This is the only thing in the library that reads a
-    /// clock; a result that a limit has cut short depends on the machine.
+    /// Ends the fit after this time with the best model so far. Only this option reads a clock; the result of
+    /// a fit that it has ended depends on the speed of the machine.
     pub fn time_limit(mut self, limit: Duration) -> Self {
         self.time_limit = Some(limit);
         self
     }
 
-    /// Calls `observer` after every epoch, and in the midst of long ones; a fit ends with its best model so far if it
-    /// returns [`ControlFlow::Break`].
+    /// Calls `observer` after every epoch, and during long ones. If it returns [`ControlFlow::Break`], the
+    /// fit ends with its best model so far.
     pub fn observer(mut self, observer: impl FnMut(&Progress) -> ControlFlow<()> + Send + 'a) -> Self {
         self.observer = Some(Box::new(observer));
         self
     }
 
-    /// Options that the model ignores.
+    /// The options that are set and that the model ignores.
     ///
     /// # Errors
-    /// An option, or a value of one, that there is not.
+    /// An unknown option, or an invalid value.
     pub fn ignored(&self) -> Result<Vec<&'static str>> {
         Ok(self.chosen()?.ignored().into_iter().map(|ignored| ignored.option).collect())
     }
@@ -98,18 +98,19 @@ impl<'a> Fit<'a> {
     /// Fits the model to data.
     ///
     /// # Errors
-    /// An option, or a value of one, that there is not; data that nothing can be identified from or that the model
-    /// cannot be fitted to; a stop before there was any model.
+    /// An unknown option, or an invalid value; data from which no model, or not this model, can be
+    /// identified; a stop before there was a model.
     pub fn run(mut self, data: &Dataset) -> Result<Model> {
         let request = self.request(data)?;
         Ok(identify(data, &request, &mut self.watched())?.model)
     }
 
-    /// Cross-validates the model: fits it without one fold of the data, simulates that fold, and so on with every fold.
-    /// A single record is cut in time into five folds; several records are divided into at most five.
+    /// Cross-validates the model: fits it without one fold of the data, simulates that fold, and repeats this
+    /// for every fold. A single record is divided in time into five folds; several records are divided into
+    /// at most five.
     ///
     /// # Errors
-    /// As [`Fit::run`], and data too few for two folds.
+    /// As [`Fit::run`], and too few data for two folds.
     pub fn validate(mut self, data: &Dataset) -> Result<CrossValidation> {
         let request = self.request(data)?;
         cross_validate(data, &request, FOLDS, &mut self.watched())
@@ -138,21 +139,21 @@ impl<'a> Fit<'a> {
     }
 }
 
-/// A model of a comparison.
+/// Result of one model in a comparison.
 #[derive(Debug, Clone)]
 pub struct Compared {
-    /// The model that was asked for, and its variant if it has more than one.
+    /// Name of the model, with its variant if it has more than one.
     pub label: String,
-    /// The model with its errors on the test data, or why there is none.
+    /// The model with its errors on the test data, or the error of its fit.
     pub outcome: Result<(Model, Errors)>,
 }
 
-/// Fits models, each in all its variants, to the same data and evaluates them on data that none has seen; the lowest
-/// error comes first. Without names, all models but `auto`, which is [`fit`](crate::fit()); models that cannot be
-/// fitted to data like these are left out then.
+/// Fits models, each in all its variants, to `train` and evaluates them on `test`; the lowest error comes
+/// first. If `models` is empty, all models except `auto` are fitted ([`fit`](crate::fit()) is `auto`),
+/// without those that cannot be fitted to such data.
 ///
 /// # Errors
-/// A name that is no model's.
+/// An unknown name of a model.
 pub fn compare(train: &Dataset, test: &Dataset, models: &[&str], seed: u64) -> Result<Vec<Compared>> {
     let models: Vec<ModelName> = match models {
         [] => ModelName::all().collect(),

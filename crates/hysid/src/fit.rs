@@ -1,4 +1,4 @@
-//! Identification of any model by its name: a network of the family, or one of its rivals.
+//! Identification of any model by its name: a network, a classical model, or `auto`.
 
 pub mod auto;
 pub mod law;
@@ -24,11 +24,11 @@ use crate::termination::Termination;
 pub use memory_need::{MemoryNeed, memory_need};
 pub use validate::cross_validate;
 
-/// Identifies a model. The observer is as in [`network::fit`]; of a classical model it hears after every
-/// round of its search, or now and then if there is none, and there is no checkpoint.
+/// Identifies a model. The observer is as in [`network::fit`]; it is called after every round of the search
+/// of a classical model, or at intervals if there is no search, and then without a checkpoint.
 ///
 /// # Errors
-/// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
+/// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fit> {
     match request {
         FitSpec::Network(options) => network::fit(data, options, observer),

@@ -1,4 +1,4 @@
-//! Identification of hysteresis: from measured input and output to a small, stable model that simulates it.
+//! Identification of hysteresis: fits a small, stable simulation model to measured input and output.
 //!
 //! ```
 //! use hysid::{Dataset, Fit, Model};
@@ -23,15 +23,18 @@
 //! ```
 //!
 //! [`fit`](fit()) takes the defaults: it cross-validates networks and classical models and combines the best.
-//! [`Fit`] chooses a model, options, a time limit and an observer; [`validate`] estimates the error on new data;
-//! [`compare`] fits every model; [`diagnose`] tells what kind of hysteresis the data show. [`Model::stepper`] runs a
-//! model sample by sample, as a controller does.
+//! [`Fit`] chooses a model, options, a time limit and an observer; [`validate`] estimates the error on new
+//! data; [`compare`] fits every model; [`diagnose`] determines the properties of the hysteresis in the data.
+//! [`Model::stepper`] runs a model sample by sample, as a controller does.
 //!
-//! The library does no input or output, keeps no global state and has no unsafe code; only [`Fit::time_limit`] reads a
-//! clock. Its rooms, each using only those before it: [`data`] holds measured records, [`operator`] the elements of
-//! memory, [`network`] the family of networks, [`law`] the classical models, [`options`] what can be asked for,
-//! [`model`] the result, [`validation`] the folds, [`mod@fit`] the identification; [`diagnosis`] tells what kind of
-//! hysteresis it is, and [`specimens`] makes data.
+//! The library does no input or output, keeps no global state and has no unsafe code; only
+//! [`Fit::time_limit`] reads a clock. Each of these modules uses only those before it: [`data`] holds
+//! measured records, [`operator`] the operators with memory, [`network`] the family of networks, [`law`] the
+//! classical models, [`options`] the options of a fit, [`model`] the fitted model, [`validation`] the folds,
+//! [`mod@fit`] the identification. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
+//! synthetic data.
+//!
+//! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
 mod builder;
 pub mod fit;
@@ -54,10 +57,11 @@ pub use hysid_diagnosis::Diagnosis;
 pub use hysid_specimens as specimens;
 pub use validation::CrossValidation;
 
-/// Fits a model to data with the defaults: cross-validates networks and classical models and combines the best.
+/// Fits a model to data with the defaults: cross-validates networks and classical models and combines the
+/// best.
 ///
 /// # Errors
-/// Data that nothing can be identified from.
+/// Data from which no model can be identified, such as a constant input or output.
 pub fn fit(data: &Dataset) -> Result<Model> {
     Fit::new().run(data)
 }
@@ -70,10 +74,10 @@ pub fn validate(data: &Dataset) -> Result<CrossValidation> {
     Fit::new().validate(data)
 }
 
-/// Tells what kind of hysteresis the data show, each property with its evidence.
+/// Diagnoses the hysteresis in the data: ten properties, each with a verdict and its evidence.
 ///
 /// # Errors
-/// Data that nothing can be said about: a constant input or output, or hardly any rows.
+/// A constant input or output, or too few rows.
 pub fn diagnose(data: &Dataset) -> Result<Diagnosis> {
     Diagnosis::of(data, &diagnosis::DiagnosisOptions::default())
 }

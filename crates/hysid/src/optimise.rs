@@ -1,4 +1,4 @@
-//! Optimisers, one of each kind, that know nothing of hysteresis: what identification and validation are built on.
+//! Optimisers, one of each kind, which are independent of hysteresis models.
 
 pub mod genetic;
 pub mod levenberg_marquardt;

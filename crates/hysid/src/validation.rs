@@ -1,10 +1,9 @@
-//! Honest validation: a model is fitted to a part of the data and judged, in free run, on the rest.
+//! Cross-validation: a model is fitted to a part of the data and evaluated on the rest, in free run.
 //!
-//! From several records, some are held out in turn; records that are one measurement, given twice or cut out of a longer
-//! one, stay together, since a copy of what is trained on is not unseen. A single record is cut in time: the model sees its
-//! beginning and foretells what follows, with the memory carried over, because that is what it will be used
-//! for; blocks from its beginning and middle are held out too, which tell a model that merely follows this
-//! one path from one that knows the material.
+//! Of several records, some are held out in turn. Records that are one measurement, given twice or cut out of
+//! a longer one, stay in one fold, since a copy of training data is not unseen. A single record is divided in
+//! time: a model is fitted to its beginning and predicts the following rows, with its memory continued.
+//! Blocks from the beginning and middle are held out too.
 
 mod pooled;
 mod row_folds;
@@ -19,20 +18,20 @@ use crate::model::Model;
 pub(crate) use pooled::PooledErrors;
 pub(crate) use row_folds::RowFolds;
 
-/// A part to fit to and a part to judge on.
+/// A fold: training data and held-out data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fold {
-    /// What is held out, in words.
+    /// Name of the held-out data.
     pub name: String,
-    /// What is fitted to.
+    /// The training data.
     pub train: Dataset,
-    /// What is judged on; of a single record, the whole of it with blanks where it is not judged, so that
-    /// the memory is carried over.
+    /// The held-out data. For a single record it is the whole record with the outputs of all other rows
+    /// blanked, so that the memory begins correctly.
     pub held_out: Dataset,
 }
 
 impl Fold {
-    /// What a model predicts of each row that is judged, in a free run.
+    /// The predictions of a model for the held-out rows with an output, in free run.
     ///
     /// # Errors
     /// As [`Model::simulate`].
@@ -52,8 +51,7 @@ const FORECASTS: [(f64, f64); 3] = [(0.5, 0.25), (0.6, 0.3), (0.7, 0.3)];
 /// Shares of a single record between which a block is held out from the rest.
 const BLOCKS: [(f64, f64); 2] = [(0.0, 0.35), (0.35, 0.65)];
 
-/// The folds of a data set: of several records at most `most`, of a single one always five. None if the
-/// data are too few.
+/// The folds of a data set: at most `most` of several records, five of a single one; none for too few data.
 pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
     cuts(data, most).iter().map(|cut| cut.fold(data)).collect()
 }
@@ -159,31 +157,32 @@ fn of_record(place: usize, record: &Record) -> Vec<Cut> {
     FORECASTS.iter().map(forecast).chain(BLOCKS.iter().map(block)).collect()
 }
 
-/// What came of a fold.
+/// Errors on a fold.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FoldErrors {
-    /// What was held out, in words.
+    /// Name of the held-out data.
     pub held_out: String,
-    /// Errors on what was fitted to.
+    /// Errors on the training data.
     pub train: Errors,
-    /// Errors on what was held out.
+    /// Errors on the held-out data.
     pub unseen: Errors,
 }
 
-/// What came of all folds.
+/// Result of a cross-validation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CrossValidation {
-    /// Fold by fold; those that were not reached before the observer said stop are missing.
+    /// Errors on each fold, without those that were not reached before the observer stopped.
     pub folds: Vec<FoldErrors>,
-    /// Errors over all rows held out together; a row that was in several folds counts once, with the mean of
-    /// its squared errors.
+    /// Errors over all held-out rows together. A row of several folds counts once, with the mean of its
+    /// squared errors.
     pub unseen: Errors,
-    /// Geometric mean over the folds of the error on what was held out, in percent of the standard
-    /// deviation there: one fold that goes far beyond the others does not decide it.
+    /// Geometric mean over the folds of the error on the held-out data, in percent of their standard
+    /// deviation. One fold with a large error does not dominate it.
     pub unseen_nrmse_std_percent: Option<f64>,
 }
 
-/// A cross-validation on its way, for those who fit the folds themselves: with a time limit each, say.
+/// A cross-validation in progress, for callers that fit the folds themselves, for instance with a time limit
+/// for each.
 #[derive(Debug, Clone)]
 pub struct CrossValidator<'d> {
     data: &'d Dataset,
@@ -194,10 +193,10 @@ pub struct CrossValidator<'d> {
 }
 
 impl<'d> CrossValidator<'d> {
-    /// Cuts the data into folds, as [`folds`].
+    /// Divides the data into folds, as [`folds`] does.
     ///
     /// # Errors
-    /// Data too few for two folds.
+    /// Too few data for two folds.
     pub fn new(data: &'d Dataset, most_folds: usize) -> Result<Self> {
         let cuts = cuts(data, most_folds);
         if cuts.len() < 2 {
@@ -212,7 +211,7 @@ impl<'d> CrossValidator<'d> {
         self.cuts.len()
     }
 
-    /// A fold, counted from 0: a copy of the data.
+    /// A fold, counted from 0, which is a copy of the data.
     ///
     /// # Panics
     /// If there are not so many folds.
@@ -220,7 +219,7 @@ impl<'d> CrossValidator<'d> {
         self.cuts[place].fold(self.data)
     }
 
-    /// Judges a model that was fitted to a fold's training part on what was held out.
+    /// Evaluates a model, which was fitted to the training data of a fold, on its held-out data.
     ///
     /// # Errors
     /// As [`Model::simulate`].
@@ -233,7 +232,7 @@ impl<'d> CrossValidator<'d> {
         Ok(errors)
     }
 
-    /// What came of the folds that were judged; `None` if none was.
+    /// The result over the evaluated folds; `None` if there are none.
     pub fn result(self) -> Option<CrossValidation> {
         let unseen = self.pooled.errors(&self.output)?;
         let logarithms: Option<Vec<f64>> =

@@ -1,32 +1,32 @@
-//! What the values and the name of a column tell about its meaning: a counter or time is no input, two columns may
-//! be one signal, and a force is mostly the output.
+//! Meaning of a column from its values and its name: a counter or time is no input, two columns may be one
+//! signal, and a force is usually the output.
 
 use crate::data::unit;
 
-/// A column with fewer values than this tells nothing.
+/// Least number of values from which a course is found.
 const FEWEST: usize = 10;
 
 /// Columns whose correlation is at least this in magnitude are one signal: one deviates from a multiple of the other
 /// by a tenth of its standard deviation at most.
 const ONE_SIGNAL: f64 = 0.995;
 
-/// How the values of a column go on from row to row.
+/// How the values of a column change from row to row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Course {
     /// Whole numbers, each one more than that before.
     Counts,
-    /// It grows from every row to the next.
+    /// Every value is larger than the one before.
     Grows,
     /// Whole numbers that stay for some rows, and then grow by one.
     CountsInSteps,
     /// One value throughout.
     Constant,
-    /// It goes up and down, or there are too few values to tell.
+    /// Values rise and fall, or there are too few of them.
     Varies,
 }
 
 impl Course {
-    /// Of the values of each record.
+    /// The course of a column, from its values in each record.
     pub fn of<'a>(records: impl IntoIterator<Item = &'a [f64]> + Clone) -> Self {
         if records.clone().into_iter().map(<[f64]>::len).sum::<usize>() < FEWEST {
             return Self::Varies;
@@ -58,7 +58,8 @@ impl Course {
     }
 }
 
-/// The correlation of two columns if it is so close to 1 or -1 that they are one signal.
+/// The correlation of two columns if its magnitude is so close to 1 that they are one signal; otherwise
+/// `None`.
 pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
     let rows = || a.iter().zip(b).filter(|(a, b)| a.is_finite() && b.is_finite());
     let count = rows().count();
@@ -76,16 +77,16 @@ pub fn one_signal(a: &[f64], b: &[f64]) -> Option<f64> {
     (correlation.abs() >= ONE_SIGNAL).then_some(correlation)
 }
 
-/// The part that a quantity mostly has in hysteresis.
+/// The usual role of a physical quantity in hysteresis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// What drives: displacement, strain, magnetic field, electric voltage.
+    /// An input: displacement, strain, magnetic field, electric voltage.
     Drives(Domain),
-    /// What follows: force, stress, flux density, polarization.
+    /// An output: force, stress, flux density, polarization.
     Follows(Domain),
 }
 
-/// The field of a quantity.
+/// The branch of physics of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Domain {
     /// Displacements and forces.
@@ -115,7 +116,7 @@ const DISPLACEMENTS: [&str; 14] = [
 const FORCES: [&str; 7] = ["force", "load", "stress", "torque", "moment", "kraft", "pressure"];
 
 impl Part {
-    /// What a column's name and its unit tell, if anything.
+    /// The role that the name and unit of a column indicate; `None` if they indicate none.
     pub fn of(name: &str) -> Option<Self> {
         let (quantity, unit) = unit::split(name);
         let lower = quantity.to_lowercase();
@@ -134,7 +135,7 @@ impl Part {
         }
     }
 
-    /// True if an input and an output with these parts have them the other way round.
+    /// True if these roles of an input and an output are interchanged.
     pub fn are_swapped(input: Option<Self>, output: Option<Self>) -> bool {
         matches!((input, output), (Some(Self::Follows(one)), Some(Self::Drives(other))) if one == other)
     }

@@ -1,39 +1,50 @@
-//! Errors of a free run against a measured output, theory.md section 5. Every error is in the
-//! user's unit, or in percent of something that is named.
+//! Error metrics of a free run against a measured output.
+//!
+//! ```text
+//! MSE        = Σ e²/N                                                      theory.md (5.1)
+//! RMSE       = √MSE                                                        theory.md (5.2)
+//! NRMSE_std  = 100 RMSE/√(Σ (y - ȳ)²/N)      % of the standard deviation   theory.md (5.3)
+//! NRMSE_rng  = 100 RMSE/(max y - min y)      % of the range                theory.md (5.4)
+//! fit        = 100 (1 - ‖e‖/‖y - ȳ‖)         %, = 100 - NRMSE_std          theory.md (5.5)
+//! largest    = max |e|                                                     theory.md (5.6)
+//! ```
+//!
+//! `e = ŷ - y` is the simulated minus the measured output, over the `N` scored rows (those with a measured
+//! output) of all records together; `ȳ` is the mean of `y`. The standard deviation is that of the population.
+//! Errors have the unit of the output, or are in percent as stated.
 
 use serde::{Deserialize, Serialize};
 
-/// Errors over all scored rows together.
+/// Error metrics over all scored rows together; the equations are those of the [module page](self).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Name of the output.
     pub output: String,
-    /// Scored rows.
+    /// Number of scored rows: those with a measured output.
     pub samples: usize,
-    /// Records with at least one scored row.
+    /// Number of records with a scored row.
     pub records: usize,
-    /// Mean square error in the output's unit squared: theory.md (5.1).
+    /// Mean square error, in the output's unit squared: `Σ e²/N` (theory.md (5.1)).
     pub mse: f64,
-    /// Root of `mse`, in the output's unit: theory.md (5.2).
+    /// Root mean square error, in the output's unit: `√mse` (theory.md (5.2)).
     pub rmse: f64,
-    /// `rmse` in percent of the measured output's standard deviation: theory.md (5.3). `None` if
-    /// the output does not vary.
+    /// `rmse` in percent of the standard deviation of the measured output (theory.md (5.3)). `None` if the
+    /// output does not vary.
     pub nrmse_std_percent: Option<f64>,
-    /// `rmse` in percent of the measured output's range: theory.md (5.4). `None` if it does not
-    /// vary.
+    /// `rmse` in percent of the range of the measured output (theory.md (5.4)). `None` if it does not vary.
     pub nrmse_range_percent: Option<f64>,
-    /// 100 - `nrmse_std_percent`: theory.md (5.5).
+    /// `100 - nrmse_std_percent`; it may be negative (theory.md (5.5)).
     pub fit_percent: Option<f64>,
-    /// Largest absolute error in the output's unit: theory.md (5.6).
+    /// Largest absolute error, in the output's unit: `max |e|` (theory.md (5.6)).
     pub max_abs_error: f64,
 }
 
-/// A measured row and the error there.
+/// A scored row: its measured output and its error.
 #[derive(Debug, Clone, Copy)]
 pub struct ScoredRow {
-    /// The measured output.
+    /// The measured output, in its unit.
     pub measured: f64,
-    /// Squared error; the mean of several, where the row was simulated more than once.
+    /// Squared error; the mean of several if the row was simulated more than once.
     pub square_error: f64,
     /// Largest magnitude of the error.
     pub largest: f64,
@@ -46,7 +57,7 @@ impl ScoredRow {
     }
 }
 
-/// Gathers errors record by record, in one pass and constant memory.
+/// Running sums for [`Errors`], record by record, in one pass and constant memory.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSums {
     samples: usize,
@@ -62,19 +73,19 @@ pub struct ErrorSums {
 }
 
 impl ErrorSums {
-    /// Adds a record; rows whose measured output is NaN are passed over.
+    /// Adds a record: measured and simulated output of each row. Rows with a NaN measured output are skipped.
     pub fn add(&mut self, measured: &[f64], simulated: &[f64]) {
         self.add_rows(measured, simulated);
         self.end_record();
     }
 
-    /// Adds rows of a record that comes block by block.
+    /// Adds rows of a record that is processed in blocks.
     pub fn add_rows(&mut self, measured: &[f64], simulated: &[f64]) {
         let rows = measured.iter().zip(simulated).filter(|(y, _)| !y.is_nan());
         rows.for_each(|(&y, &model)| self.add_row(ScoredRow::once(y, model - y)));
     }
 
-    /// Ends a record that came block by block.
+    /// Ends a record that was processed in blocks.
     pub fn end_record(&mut self) {
         self.records += usize::from(std::mem::take(&mut self.is_scored));
     }
@@ -96,7 +107,7 @@ impl ErrorSums {
         self.square_deviation += deviation * (y - self.mean);
     }
 
-    /// The errors so far; `None` if no row was scored.
+    /// The errors so far, with this name of the output; `None` if no row was scored.
     pub fn errors(&self, output: &str) -> Option<Errors> {
         if self.samples == 0 {
             return None;

@@ -1,22 +1,35 @@
-//! The rate of an input on its actual time stamps, theory.md section 4.
+//! Rate (time derivative) of an input, from its samples and time stamps.
+//!
+//! ```text
+//! central         x'_k = [h_-² x_{k+1} + (h_+² - h_-²) x_k - h_+² x_{k-1}]/(h_- h_+ (h_- + h_+))    theory.md (4.1)
+//! at the ends     x'_0 = (x_1 - x_0)/(t_1 - t_0),  and likewise at the last row                   theory.md (4.2)
+//! backward        x'_k = (x_k - x_{k-1})/h_-,   x'_0 = 0                                          theory.md (4.3)
+//! Savitzky-Golay  x'_k = α_1 of the least                                                         theory.md (4.4)
+//!                 Σ_i (x_i - α_0 - α_1 (t_i - t_k) - α_2 (t_i - t_k)²)²
+//! ```
+//!
+//! `x_k` is the input at the time `t_k`; the steps `h_- = t_k - t_{k-1}` and `h_+ = t_{k+1} - t_k` need not
+//! be equal. The sum of the last line is over the rows `i` of a window around `k`.
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::record::{Excitation, Record};
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
 
-/// How the rate of the first input is found. A model remembers its method.
+/// Method by which the rate of the first input is found. A model stores the method of its training.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateMethod {
-    /// A column of the record.
+    /// The rate is a column of the record.
     Given,
-    /// Central differences, second order on uneven steps: theory.md (4.1), one-sided at the ends
-    /// (4.2).
+    /// Central difference: the slope at `t_k` of the parabola through three samples (theory.md (4.1));
+    /// one-sided difference `(x_1 - x_0)/(t_1 - t_0)` at the ends of a record (theory.md (4.2)).
     Central,
-    /// Backward differences, theory.md (4.3): all that is known in real time.
+    /// Backward difference, `(x_k - x_{k-1})/(t_k - t_{k-1})`, which needs no later sample and is therefore
+    /// available in real time (theory.md (4.3)).
     Backward,
-    /// Slope of a parabola through the neighbours by least squares: theory.md (4.4).
+    /// Savitzky-Golay: slope of the least-squares parabola through the neighbours, which smooths noise
+    /// (theory.md (4.4)).
     SavitzkyGolay,
 }
 
@@ -24,7 +37,7 @@ pub enum RateMethod {
 const HALF_WINDOW: usize = 5;
 
 impl RateMethod {
-    /// Rows before and behind a row that its rate follows from.
+    /// Numbers of rows before and after a row from which its rate follows.
     pub(crate) fn rows_around(self) -> (usize, usize) {
         match self {
             RateMethod::Given => (0, 0),
@@ -34,7 +47,7 @@ impl RateMethod {
         }
     }
 
-    /// Rate of the record's first input, in its unit over the unit of time, one value a row.
+    /// Rate of the record's first input, in its unit divided by that of time, one value a row.
     ///
     /// # Errors
     /// No time stamps (or no given rate), or a rate beyond [`LARGEST_VALUE`].
@@ -44,7 +57,7 @@ impl RateMethod {
         Ok(rate)
     }
 
-    /// Rates of the rows from `first` on, as many as `rate` has room for.
+    /// Rates of the rows from `first` on, one for each element of `rate`.
     ///
     /// # Errors
     /// As [`RateMethod::rate`].
@@ -97,7 +110,7 @@ impl std::str::FromStr for RateMethod {
     }
 }
 
-/// Backward difference at `row`, 0 at the first: theory.md (4.3).
+/// Backward difference `(x_k - x_{k-1})/(t_k - t_{k-1})` at `row`, 0 at the first (theory.md (4.3)).
 fn backward_at(time: &[f64], x: &[f64], row: usize) -> f64 {
     if row == 0 { 0.0 } else { (x[row] - x[row - 1]) / (time[row] - time[row - 1]) }
 }

@@ -1,7 +1,7 @@
-//! Measured data: a [`Record`] is one run of an experiment, a [`Dataset`] several of them with
-//! names.
+//! Measured data: a [`Record`] is one run of an experiment, a [`Dataset`] several of them with column names.
 //!
-//! A blank output is NaN: such a row drives the memory and is neither trained on nor scored.
+//! A blank output is NaN: such a row advances the memory of a model, but is used neither for training nor for
+//! errors. Such rows are *not scored*; the others are *scored*.
 
 mod copies;
 mod excitation;
@@ -16,7 +16,7 @@ pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
 pub use thinning::Thinning;
 
-/// One run of an experiment in time order. The memory starts afresh (virgin) at its beginning.
+/// One run of an experiment, in the order of time. A model begins each record in the virgin state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     name: String,
@@ -27,11 +27,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// A record from its input channels (each of the same length, in the user's units) and its
-    /// output, in which NaN is a blank.
+    /// A record from its inputs and its output: one slice of values for each input, all of one length, in the
+    /// user's units. NaN in the output is a blank.
     ///
     /// # Errors
-    /// No rows, differing lengths, an input that is not finite, values beyond [`crate::error::LARGEST_VALUE`].
+    /// No rows, differing lengths, an input that is not finite, values beyond
+    /// [`crate::error::LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
         let record = Self { name: name.into(), time: None, inputs, given_rate: None, output };
         Excitation::new(&record.name, columns(&record.inputs))?;
@@ -39,27 +40,28 @@ impl Record {
         Ok(record)
     }
 
-    /// The same record with time stamps, strictly increasing; their unit becomes the unit of time.
+    /// The same record with strictly increasing time stamps, one a row; their unit becomes the unit of time.
     ///
     /// # Errors
-    /// Another length, not finite, or not increasing.
+    /// Another length, a value that is not finite, or time stamps that do not increase.
     pub fn with_time(mut self, time: Vec<f64>) -> Result<Self> {
         self.excitation().with_time(&time)?;
         self.time = Some(time);
         Ok(self)
     }
 
-    /// The same record with a measured or otherwise given rate of the first input.
+    /// The same record with a given rate of the first input, one value a row, in its unit divided by that of
+    /// time.
     ///
     /// # Errors
-    /// Another length or not finite.
+    /// Another length, or a value that is not finite.
     pub fn with_given_rate(mut self, rate: Vec<f64>) -> Result<Self> {
         self.excitation().with_given_rate(&rate)?;
         self.given_rate = Some(rate);
         Ok(self)
     }
 
-    /// The same record with another output, in which NaN is a blank.
+    /// The same record with another output, one value a row, in which NaN is a blank.
     ///
     /// # Errors
     /// Another length, values beyond [`crate::error::LARGEST_VALUE`].
@@ -69,7 +71,7 @@ impl Record {
         Ok(self)
     }
 
-    /// What drives a model: all but the output.
+    /// Everything except the output, which is what a simulation needs.
     pub fn excitation(&self) -> Excitation<'_> {
         Excitation {
             name: &self.name,
@@ -99,7 +101,7 @@ impl Record {
         self.len() == 0
     }
 
-    /// The input channels, each with one value a row.
+    /// The inputs, each with one value a row.
     pub fn inputs(&self) -> &[Vec<f64>] {
         &self.inputs
     }
@@ -124,7 +126,7 @@ impl Record {
         self.output.iter().filter(|y| !y.is_nan()).count()
     }
 
-    /// By what the record is known again.
+    /// A fingerprint by which the record is recognized.
     pub fn fingerprint(&self) -> Fingerprint {
         let mut fingerprint = Fingerprint::default();
         for (row, &output) in self.output.iter().enumerate() {
@@ -133,11 +135,11 @@ impl Record {
         fingerprint
     }
 
-    /// Splits at a fraction of the rows that have an output: the head ends there; the tail is the
-    /// whole record with the head's outputs blanked, so that its memory is carried over.
+    /// Divides the record at a fraction of its scored rows. The first part ends there. The second part is the
+    /// whole record with the outputs of the first part blanked, so its memory begins correctly.
     ///
-    /// `fraction` is clamped so that both parts keep at least one scored row; a record with fewer
-    /// than two scored rows cannot be split and gives `None`.
+    /// `fraction` is clamped so that both parts keep at least one scored row. `None` for a record with fewer
+    /// than two scored rows.
     pub fn split_at_fraction(&self, fraction: f64) -> Option<(Record, Record)> {
         let scored: Vec<usize> = (0..self.len()).filter(|&row| !self.output[row].is_nan()).collect();
         if scored.len() < 2 {
@@ -148,7 +150,7 @@ impl Record {
         Some((self.rows_up_to(end), self.clone().scored_where(|row| row >= end)))
     }
 
-    /// The beginning of the record, without the row at `end` and those behind it.
+    /// The rows before `end`.
     pub fn rows_up_to(&self, end: usize) -> Record {
         let cut = |column: &Vec<f64>| column[..end].to_vec();
         Record {
@@ -160,7 +162,7 @@ impl Record {
         }
     }
 
-    /// The same record with its other outputs blanked.
+    /// The same record with the outputs blanked where `is_scored` is false.
     pub fn scored_where(mut self, is_scored: impl Fn(usize) -> bool) -> Record {
         for (row, y) in self.output.iter_mut().enumerate() {
             if !is_scored(row) {
@@ -175,10 +177,10 @@ fn columns(inputs: &[Vec<f64>]) -> Vec<&[f64]> {
     inputs.iter().map(Vec::as_slice).collect()
 }
 
-/// Of more pairs of records than this none is compared with the other.
+/// Above this number of pairs, records are not compared with each other.
 const MOST_COMPARED: usize = 100_000;
 
-/// Names of the columns, as the user wrote them.
+/// Names of the columns, as written by the user.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ColumnNames {
@@ -193,7 +195,7 @@ pub struct ColumnNames {
 }
 
 impl ColumnNames {
-    /// Plain names: `t`, `x` (or `x1`, `x2`, ...), `y`.
+    /// Default names: `t`, `x` (or `x1`, `x2`, ...), `y`.
     pub fn plain(inputs: usize) -> Self {
         let name = |index| {
             if inputs == 1 { "x".into() } else { format!("x{}", index + 1) }
@@ -207,7 +209,7 @@ impl ColumnNames {
     }
 }
 
-/// Records of the same channels.
+/// Records with the same columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     names: ColumnNames,
@@ -215,8 +217,8 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// One record of one input and the output, sample by sample; NaN in `y` is a blank, which drives the memory and is
-    /// neither trained on nor scored.
+    /// A data set of one record with one input `x` and the output `y`, sample by sample, in the user's units.
+    /// NaN in `y` is a blank: the row advances the memory and is not scored.
     ///
     /// ```
     /// let data = hysid_core::data::record::Dataset::from_slices(&[0.0, 1.0, 0.5], &[0.0, 0.9, 0.7])?;
@@ -230,7 +232,7 @@ impl Dataset {
         Self::from_columns(None, &[("x", x)], ("y", y))
     }
 
-    /// One record from named columns: time stamps if there are any, one or more inputs, the output.
+    /// A data set of one record from named columns: time stamps (optional), one or more inputs, the output.
     ///
     /// ```
     /// use hysid_core::data::record::Dataset;
@@ -261,10 +263,10 @@ impl Dataset {
         Self::new(names, vec![record])
     }
 
-    /// Several records with the same channels.
+    /// A data set of records with the same columns.
     ///
     /// # Errors
-    /// No record, or one whose channels are not those of `names`.
+    /// No record, or one whose columns are not those of `names`.
     pub fn new(names: ColumnNames, records: Vec<Record>) -> Result<Self> {
         if records.is_empty() {
             return Err(Error::NoRecords);
@@ -294,12 +296,12 @@ impl Dataset {
         &self.records
     }
 
-    /// True if the records carry time stamps.
+    /// True if the records have time stamps.
     pub fn has_time(&self) -> bool {
         self.records[0].time.is_some()
     }
 
-    /// True if the records carry a given rate.
+    /// True if the records have a given rate.
     pub fn has_given_rate(&self) -> bool {
         self.records[0].given_rate.is_some()
     }
@@ -324,7 +326,7 @@ impl Dataset {
         range(self.records.iter().flat_map(|record| &record.output))
     }
 
-    /// The same data with at most so many scored rows; the others drive the memory.
+    /// The same data with at most `most` scored rows; the others only advance the memory.
     pub fn thinned(&self, most: usize) -> Dataset {
         let thinning = Thinning::new(self.scored(), most);
         let mut thinned = self.clone();
@@ -332,7 +334,7 @@ impl Dataset {
         thinned
     }
 
-    /// The same data with the outputs of the first rows of each record blanked.
+    /// The same data with the outputs of the first `rows` rows of each record blanked.
     pub fn warmed_up(mut self, rows: usize) -> Dataset {
         for record in &mut self.records {
             let rows = rows.min(record.len());
@@ -341,8 +343,7 @@ impl Dataset {
         self
     }
 
-    /// Warns of records that are copies, or parts, of others, or have copies or parts among them: those that were
-    /// trained on.
+    /// Warnings of records that are copies or parts of records of `trained`, or contain them.
     pub fn copies_of(&self, trained: &Dataset) -> Vec<Warning> {
         if self.records.len().saturating_mul(trained.records.len()) > MOST_COMPARED {
             return Vec::new();
@@ -357,7 +358,7 @@ impl Dataset {
         self.records.iter().filter_map(found).collect()
     }
 
-    /// Those records that are chosen by their place, and the others.
+    /// The records for whose index `is_chosen` is true, and the others.
     pub fn partition(&self, is_chosen: impl Fn(usize) -> bool) -> (Dataset, Dataset) {
         let pick = |chosen: bool| {
             let records = self.records.iter().enumerate();
@@ -367,16 +368,17 @@ impl Dataset {
         (pick(true), pick(false))
     }
 
-    /// A record with the same channels, alone.
+    /// A data set of this record alone, which has the same columns.
     pub fn of_record(&self, record: Record) -> Dataset {
         Dataset { names: self.names.clone(), records: vec![record] }
     }
 
-    /// Splits for validation: from several measurements some are held out; a single one is cut at the
-    /// fraction `1 - held_out`, with the memory carried over into its tail.
+    /// Divides the data into training and validation data. Of several measurements some are held out; a
+    /// single one is divided in time at the fraction `1 - held_out`, and its second part keeps the memory of
+    /// the first.
     ///
-    /// The records held out are those in the middle when ordered by the range of the first input, so
-    /// that what is judged lies between what is trained on. `None` if the data are too few to split.
+    /// The records held out are those in the middle of the order by the range of the first input, so that
+    /// validation data lie between training data. `None` if there are too few data.
     pub fn split_for_validation(&self, held_out: f64) -> Option<(Dataset, Dataset)> {
         let mut order = measurements(&self.records);
         if let [alone] = order.as_slice() {
@@ -399,11 +401,10 @@ impl Dataset {
         Some((kept, held))
     }
 
-    /// Refuses what no model can be identified from: a constant input, a constant or blank output,
-    /// fewer than `needed` scored rows.
+    /// Checks that a model can be identified.
     ///
     /// # Errors
-    /// As named.
+    /// A constant input, a constant or blank output, fewer than `needed` scored rows.
     pub fn check_identifiable(&self, needed: usize) -> Result<()> {
         let first = &self.records[0];
         let found = self.scored();

@@ -1,16 +1,16 @@
-//! What a data set contains, before anything is fitted to it.
+//! Summary of a data set, before a fit.
 
 use crate::data::record::{Copy, Dataset, Record, copies};
 use crate::data::turning_points::turning_points;
 use crate::data::warning::Warning;
 
-/// Reversals below this share of the input's range are taken for noise.
+/// Reversals below this share of the range of the input count as noise.
 const SMALLEST_REVERSAL: f64 = 0.02;
 
-/// Fewer turning points in all records together teach little.
+/// Below this number of turning points of all records together there is a warning.
 const FEW_TURNING_POINTS: usize = 2;
 
-/// A step this many times the record's shortest is wild.
+/// Ratio of the longest to the shortest time step of a record above which there is a warning.
 const WILD_STEPS: f64 = 100.0;
 
 /// What a data set contains.
@@ -20,15 +20,15 @@ pub struct Summary {
     pub rows: usize,
     /// Rows with an output.
     pub scored: usize,
-    /// One for each record.
+    /// A summary of each record.
     pub records: Vec<RecordSummary>,
-    /// Range of each input.
+    /// Smallest and largest value of each input, in its unit.
     pub inputs: Vec<(f64, f64)>,
-    /// Range of the output.
+    /// Smallest and largest output, in its unit.
     pub output: (f64, f64),
 }
 
-/// What a record contains.
+/// Summary of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordSummary {
     /// Its name.
@@ -37,14 +37,14 @@ pub struct RecordSummary {
     pub rows: usize,
     /// Rows with an output.
     pub scored: usize,
-    /// Turning points of the first input, reversals under 2 % of its range aside.
+    /// Number of turning points of the first input, without reversals below 2 % of its range.
     pub turning_points: usize,
-    /// Shortest, median and longest time step.
+    /// Shortest, median and longest time step, in the unit of time.
     pub time_steps: Option<(f64, f64, f64)>,
 }
 
 impl Summary {
-    /// Looks through a data set.
+    /// The summary of a data set.
     pub fn of(data: &Dataset) -> Self {
         let inputs: Vec<(f64, f64)> = (0..data.names().inputs.len()).map(|i| data.input_range(i)).collect();
         let smallest = SMALLEST_REVERSAL * (inputs[0].1 - inputs[0].0);
@@ -69,7 +69,7 @@ impl Summary {
         self.records.iter().map(|record| record.turning_points).sum()
     }
 
-    /// What to know before training on these data.
+    /// Warnings before a fit to these data.
     pub fn warnings(&self, data: &Dataset) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.turning_points() < FEW_TURNING_POINTS {
@@ -106,7 +106,8 @@ impl Summary {
     }
 }
 
-/// True for values that jump at random: neighbours are not correlated, and two of three rows are turning points.
+/// True for values that jump at random: neighbours are uncorrelated, and two of three rows are turning
+/// points.
 fn is_without_order(values: &[f64]) -> bool {
     const FEWEST: usize = 50;
     let rows = values.len() as f64;

@@ -1,7 +1,7 @@
 //! Turning points of an input: where it reverses.
 
-/// Rows at which `x` reverses, ignoring reversals smaller than `smallest` (in the unit of `x`), in
-/// order; the first and last rows are not turning points.
+/// Indices of the rows at which `x` reverses, in order. Reversals smaller than `smallest`, in the unit of
+/// `x`, are ignored. The first and last rows are not turning points.
 pub fn turning_points(x: &[f64], smallest: f64) -> Vec<usize> {
     let mut found = Vec::new();
     let (mut low, mut high) = (0, 0);

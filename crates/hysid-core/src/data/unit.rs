@@ -8,10 +8,10 @@ use quantity::Quantity;
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
 const OTHER: [&str; 1] = ["degC"];
 
-/// Names of time that no other quantity has.
+/// Names that only time has.
 const TIME_NAMES: [&str; 2] = ["t", "time"];
 
-/// Further names of time, without blanks and underscores, in small letters. The values must confirm them.
+/// Further names of time, lower case, without blanks and underscores. The values must confirm them.
 const FURTHER_TIME_NAMES: [&str; 25] = [
     "timestamp",
     "elapsed",
@@ -40,24 +40,24 @@ const FURTHER_TIME_NAMES: [&str; 25] = [
     "時間",
 ];
 
-/// The part that a quantity with this unit mostly has in hysteresis, if it has one.
+/// The usual role of a quantity with this unit in hysteresis, if it has one.
 pub(crate) fn part(unit: &str) -> Option<Part> {
     Quantity::of(unit)?.part()
 }
 
-/// How the numbers of a column become those of another unit.
+/// Conversion of a column from one unit to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Conversion {
-    /// The units are the same, or one of them is not known from the name.
+    /// No conversion: the units are equal, or one of them is unknown.
     Same,
-    /// The number is multiplied by this.
+    /// Numbers are multiplied by this factor.
     Factor(f64),
-    /// The units differ, and there is no factor between them.
+    /// The units differ and have no common factor.
     Impossible,
 }
 
 impl Conversion {
-    /// From the unit that one column's name tells to that of another's.
+    /// The conversion from the unit in the name of one column to that in the name of another.
     pub fn between(from: &str, to: &str) -> Self {
         let (Some(from), Some(to)) = (of_column(from), of_column(to)) else { return Self::Same };
         if from == to {
@@ -81,7 +81,7 @@ fn rounded(factor: f64) -> f64 {
     if (factor / power - 1.0).abs() < 1e-12 { power } else { factor }
 }
 
-/// The unit that a column's name tells, if any.
+/// The unit in the name of a column, if there is one.
 pub fn of_column(name: &str) -> Option<String> {
     split(name).1
 }
@@ -91,8 +91,8 @@ pub fn is_time(name: &str) -> bool {
     is_named_time(name, &TIME_NAMES)
 }
 
-/// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and for all
-/// names with a unit of time. The values tell whether they do.
+/// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and
+/// for all names with a unit of time. The values must confirm it.
 pub fn may_be_time(name: &str) -> bool {
     is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_unit_of_time(split(name).1.as_deref())
 }
@@ -108,12 +108,12 @@ fn is_in_unit_of_time(unit: Option<&str>) -> bool {
     quantity.is_some_and(|quantity| quantity.dimension == quantity::TIME)
 }
 
-/// A number's unit as it is printed after it.
+/// A unit as it is printed after a number.
 pub fn suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }
 
-/// A name as quantity and unit.
+/// A name, divided into quantity and unit.
 pub fn split(name: &str) -> (&str, Option<String>) {
     let name = name.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {

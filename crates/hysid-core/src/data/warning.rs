@@ -1,4 +1,4 @@
-//! Things to know that are no errors: each says what, why, and what helps.
+//! Warnings: each states what was found, why it matters, and what helps.
 
 use std::fmt;
 
@@ -9,14 +9,14 @@ use crate::significant::Significant;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// A record hardly ever turns, so that there is little memory to learn from.
+    /// A record has few turning points, so it contains little information about memory.
     FewTurningPoints {
         /// The record.
         record: String,
         /// Turning points of the first input.
         found: usize,
     },
-    /// Values beyond what the model was trained on.
+    /// Inputs or rates lie outside the range of the training data.
     OutsideTrainedRange {
         /// The input, or its rate.
         name: String,
@@ -27,7 +27,7 @@ pub enum Warning {
         /// Range in the data.
         seen: (f64, f64),
     },
-    /// Time steps of very different length in one record.
+    /// Time steps of one record differ widely.
     UnevenTimeSteps {
         /// The record.
         record: String,
@@ -36,7 +36,7 @@ pub enum Warning {
         /// Longest step.
         longest: f64,
     },
-    /// A record whose measured output has one value throughout.
+    /// The measured output of a record is constant.
     ConstantOutput {
         /// The record.
         record: String,
@@ -49,22 +49,22 @@ pub enum Warning {
         copy: String,
         /// The other.
         of: String,
-        /// How like they are.
+        /// How similar they are.
         likeness: Likeness,
     },
-    /// A record to test on that is one that was trained on.
+    /// A test record was used in training.
     TrainedOn {
         /// The record.
         record: String,
-        /// How it is like the record that was trained on.
+        /// How similar it is to the training record.
         likeness: Likeness,
     },
-    /// A record whose input jumps at random from row to row, as where rows are not in the order of time.
+    /// The input of a record jumps at random from row to row, as if rows were not in the order of time.
     RowsOutOfOrder {
         /// The record.
         record: String,
     },
-    /// More parameters than rows to find them from.
+    /// A model has more parameters than there are rows to determine them.
     MoreParametersThanRows {
         /// Parameters of the model, or of the largest member of an ensemble.
         parameters: usize,
@@ -74,7 +74,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// Of more parameters than rows to find them from.
+    /// A warning if there are more parameters than rows with an output; otherwise `None`.
     pub fn of_size(parameters: usize, rows: usize) -> Option<Self> {
         (parameters > rows).then_some(Self::MoreParametersThanRows { parameters, rows })
     }

@@ -1,5 +1,5 @@
-//! Bouc-Wen: a spring beside a hysteretic element, which yields; with the degradation and pinching of
-//! Baber and Noori if asked for.
+//! Bouc-Wen: a spring in parallel with a hysteretic element that yields, optionally with the degradation and
+//! pinching of Baber and Noori.
 //!
 //! ```text
 //! y     = c0 + α k x + (1 - α) k z + c x'                                   theory.md (8.4)
@@ -7,11 +7,16 @@
 //! dz/dx = (h/η) {A - ν |z/z_u|^n [1 - b + b sgn(z dx)]}                     theory.md (8.6)
 //! ```
 //!
-//! `b = β/(β + γ)` and `z_u = (β + γ)^{-1/n}` stand for the `β` and `γ` of the literature with `A = 1`:
-//! `z_u` is the yield displacement and has a unit that does not depend on `n`. Written in `x` in place
-//! of time the law is rate independent, and moved in small parts of `z_u` it does not depend on the
-//! sampling. It has no return-point memory: small loops drift. Source: Bouc; Wen; Baber and Noori;
-//! Foliente.
+//! `x` is the input, `x'` its rate, `y` the output and `z` the hysteretic part of the displacement, in the
+//! unit of `x`. The second equation holds without degradation, the third with it; [`Degradation`] gives `A`,
+//! `ν`, `η` and `h`.
+//!
+//! `b = β/(β + γ)` and `z_u = (β + γ)^{-1/n}` replace the `β` and `γ` of the literature with `A = 1`. `z_u`
+//! is the yield displacement; its unit does not depend on `n`.
+//!
+//! Properties: the law is written in `x` instead of time, so it is rate-independent without damping `c`. It
+//! is integrated in small parts of `z_u`, so the output does not depend on the sampling. There is no
+//! return-point memory: small loops drift. Source: Bouc; Wen; Baber and Noori; Foliente.
 
 mod degradation;
 
@@ -44,7 +49,8 @@ pub(crate) const N_BOUNDS: (f64, f64) = (1.0, 10.0);
 /// Bounds of `b`. At 0 the element would not unload from `z_u`.
 pub const B_BOUNDS: (f64, f64) = (0.05, 3.0);
 
-/// A Bouc-Wen law in the user's units.
+/// A Bouc-Wen law in the user's units: `y = c0 + α k x + (1 - α) k z + c x'` (theory.md (8.4)), with `z` from
+/// the differential equation of the [module page](self).
 ///
 /// ```
 /// use hysid_core::law::bouc_wen::BoucWen;
@@ -60,17 +66,18 @@ pub const B_BOUNDS: (f64, f64) = (0.05, 3.0);
 pub struct BoucWen {
     /// `c0`, in the unit of the output.
     pub offset: f64,
-    /// `α k`: stiffness of the spring, in the unit of the output for that of the input.
+    /// `α k`: stiffness of the spring, in the unit of the output divided by that of the input.
     pub elastic_stiffness: f64,
-    /// `(1 - α) k`: first stiffness of the hysteretic element. The loops of actuators, whose output
-    /// lags, have a negative one.
+    /// `(1 - α) k`: initial stiffness of the hysteretic element, in the unit of the output divided by that of
+    /// the input. It is negative for the loops of actuators, whose output lags.
     pub hysteretic_stiffness: f64,
-    /// `c`: share of the rate in the output; 0 for a law that does not depend on it.
+    /// `c`: damping, in the unit of the output divided by that of the rate; 0 for a law that ignores the
+    /// rate.
     pub damping: f64,
     /// `z_u > 0`: yield displacement, in the unit of the input.
     pub yield_displacement: f64,
-    /// `b = β/(β + γ)`, 0.05 to 3: how much of the softening depends on the direction. At 0.5 the
-    /// element unloads with its first stiffness.
+    /// `b = β/(β + γ)`, 0.05 to 3: share of the softening that depends on the direction. At 0.5 the element
+    /// unloads with its initial stiffness.
     pub b: f64,
     /// `n`, 1 to 10: sharpness of yielding.
     pub n: f64,
@@ -78,14 +85,14 @@ pub struct BoucWen {
     pub degradation: Option<Degradation>,
 }
 
-/// What the element knows of the past.
+/// The state: the input, `z` and the dissipated energy.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct BoucWenState {
     x: f64,
     inner: Inner,
 }
 
-/// The hysteretic element: `z` in yield displacements, and the energy `e` that it has taken up.
+/// The hysteretic element: `z` in yield displacements, and its dissipated energy `e`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct Inner {
     z: f64,
@@ -111,12 +118,12 @@ impl BoucWen {
         law.validated()
     }
 
-    /// `k`: the first stiffness of all.
+    /// `k`: the initial stiffness of the whole law, in the unit of the output divided by that of the input.
     pub fn stiffness(&self) -> f64 {
         self.elastic_stiffness + self.hysteretic_stiffness
     }
 
-    /// `α`: the share of the spring in the first stiffness. Infinite or NaN without a stiffness.
+    /// `α`: the share of the spring in the initial stiffness. Infinite or NaN if that is 0.
     pub fn alpha(&self) -> f64 {
         self.elastic_stiffness / self.stiffness()
     }
@@ -126,7 +133,7 @@ impl BoucWen {
         self.yield_displacement * state.inner.z
     }
 
-    /// Takes the next input and gives `z`, in yield displacements.
+    /// Advances to the next input and returns `z/z_u`.
     pub fn advance(&self, state: &mut BoucWenState, x: f64) -> f64 {
         let by = (x - state.x) / self.yield_displacement;
         state.x = x;
@@ -167,7 +174,9 @@ impl BoucWen {
         inner
     }
 
-    /// The exact solution for `n = 1` without degradation: theory.md (8.7).
+    /// The exact solution for `n = 1` without degradation. With `ζ = z/z_u`, `m = 2b - 1` and `s = Δx/z_u`
+    /// upwards from `ζ_0`: `ζ = 1 - (1 - ζ_0) e^{-s}` for `ζ_0 >= 0`, otherwise `-ζ = (-ζ_0 + 1/m) e^{-ms} -
+    /// 1/m` up to `ζ = 0` (theory.md (8.7)).
     fn exponential_branches(&self, z: f64, by: f64) -> f64 {
         let (mut z, mut by) = (z, by);
         if z < 0.0 {

@@ -1,45 +1,45 @@
-//! What a law says about itself beside its equations.
+//! Facts about a law beside its equations: name, options, and how it is identified.
 
-/// What is true of a law whatever its parameters.
+/// Facts that hold for a law with any parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facts {
     /// The name on the command line and in model files.
     pub name: &'static str,
     /// Whether the rate of the input is in its equations.
     pub rate: Rate,
-    /// From where its input is measured.
+    /// The origin of its input.
     pub origin: Origin,
     /// How its parameters are found.
     pub identification: Identification,
-    /// Options of a fit that it uses, beside those of every model.
+    /// Options of a fit that it uses, in addition to those of every model.
     pub options: &'static [&'static str],
-    /// Largest numbers of such options, where they are smaller than those of the table of options.
+    /// Largest values of such options, where they are smaller than in the table of options.
     pub limits: &'static [(&'static str, usize)],
-    /// The option among them that adds a term or takes another form; both are tried where a law is tried in all its
-    /// variants.
+    /// The option that selects a variant of the law: a further term, or another form.
     pub variant: Option<&'static str>,
-    /// For data of one loop: mean logarithm of the error inside the loop over the cross-validation error, measured on
-    /// generated cases (docs/accuracy.md).
+    /// Natural logarithm of a ratio of errors, for data of one loop: the error inside the loop divided by the
+    /// cross-validation error, geometric mean over generated cases (docs/accuracy.md).
     pub log_error_inside: f64,
 }
 
 /// Whether the rate of the input is in the equations of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rate {
-    /// It is not.
+    /// The rate does not occur.
     Ignored,
-    /// It can be.
+    /// The rate is an optional term.
     Optional,
-    /// There is no such law without it.
+    /// The rate is always needed.
     Needed,
 }
 
-/// From where the inputs of a model are measured.
+/// The origin from which the inputs of a model are measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// From 0, for laws in which an input of 0 is a state of its own, as a demagnetising field is.
+    /// 0, for laws in which an input of 0 is a special state, as a field of 0 is.
     Zero,
-    /// From 0 where 0 lies within the data, otherwise from where they begin or from their middle.
+    /// 0 if it lies within the data; otherwise the value at which the records begin, or the middle of their
+    /// range.
     OfData,
 }
 

@@ -1,5 +1,5 @@
-//! Generalized Prandtl-Ishlinskii model: plays between two bent envelopes in place of two straight
-//! lines, which saturates and need not be symmetric.
+//! Generalized Prandtl-Ishlinskii model: plays between two curved envelopes, which can saturate and be
+//! asymmetric.
 //!
 //! ```text
 //! S_k  = max(γ_l(x_k) - r, min(γ_r(x_k) + r, S_{k-1}))                      theory.md (8.12), (6.13)
@@ -7,10 +7,12 @@
 //! y    = c + Σ_j p(r_j) S_j,   r_j = α j,   j = 0 ... N                     theory.md (8.14), (6.15)
 //! ```
 //!
-//! Each play follows `γ_l - r` upwards and `γ_r + r` downwards and rests in between. Thresholds and
-//! envelopes are pure numbers; the weights carry the unit of the output. Rate independent, with
-//! return-point memory. Source: Al Janaideh, Rakheja and Su (2010, 2011); form of the eleven parameters
-//! as in the program of Basaeri et al. (2019).
+//! `x_k` is sample `k` of the input, `S_j` the play with the threshold `r_j`, `γ_l` and `γ_r` are the
+//! envelopes, `p` the weights and `y` the output. A play follows `γ_l - r` upwards and `γ_r + r` downwards,
+//! and rests in between. Thresholds and envelopes are pure numbers; the weights have the unit of the output.
+//!
+//! Properties: rate-independent, with return-point memory. Source: Al Janaideh, Rakheja and Su (2010, 2011);
+//! the form with eleven parameters is that of the program of Basaeri et al. (2019).
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +27,7 @@ use crate::property::Property;
 /// Largest magnitude of what an envelope is made of: sums of weighted plays stay finite.
 const LARGEST: f64 = 1e100;
 
-/// An envelope `a0 tanh(a1 x + a2) + a3`: theory.md (8.13).
+/// An envelope `γ(x) = a0 tanh(a1 x + a2) + a3`, a pure number (theory.md (8.13)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Envelope {
@@ -63,13 +65,14 @@ impl Envelope {
     }
 }
 
-/// Where a play with threshold `r` is next, between the values of its envelopes there: theory.md (8.12).
+/// The next value of a play with threshold `r`: `max(left - r, min(right + r, play))`, with the envelopes
+/// `left = γ_l(x)` and `right = γ_r(x)` at the present input (theory.md (8.12)).
 #[inline(always)]
 pub fn follow(play: f64, left: f64, right: f64, r: f64) -> f64 {
     (left - r).max((right + r).min(play))
 }
 
-/// A generalized Prandtl-Ishlinskii model in the user's units.
+/// A generalized Prandtl-Ishlinskii model in the user's units: `y = c + Σ_j p(r_j) S_j` (theory.md (8.14)).
 ///
 /// ```
 /// use hysid_core::law::generalized_prandtl_ishlinskii::*;
@@ -96,10 +99,10 @@ pub struct GeneralizedPrandtlIshlinskii {
     pub left: Envelope,
     /// `γ_r`, followed downwards.
     pub right: Envelope,
-    /// Where every play is before the first sample: 0 is virgin; a value above `γ_r + r` begins as after
-    /// a large input that has been lowered.
+    /// Value of every play before the first sample: 0 for virgin; a value above `γ_r + r` for a start on the
+    /// descending envelope, as after a large input.
     pub initial: f64,
-    /// `α`: spacing of the thresholds, not negative.
+    /// `α`: spacing of the thresholds, a pure number, not negative.
     pub spacing: f64,
     /// `p_j`, in the unit of the output.
     pub weights: PlayWeights,
@@ -108,7 +111,7 @@ pub struct GeneralizedPrandtlIshlinskii {
 impl GeneralizedPrandtlIshlinskii {}
 
 impl Law for GeneralizedPrandtlIshlinskii {
-    /// `S` of every play.
+    /// The plays `S_j`.
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts {

@@ -1,17 +1,21 @@
-//! Jiles-Atherton: domain walls that are pinned on their way to the anhysteretic magnetisation.
+//! Jiles-Atherton: magnetisation by domain walls that are pinned on their way to the anhysteretic curve.
 //!
 //! ```text
-//! y   = c0 + μ H + M,   H_e = H + α M,   M_an = M_s (coth(H_e/a) - a/H_e)   theory.md (8.22)
+//! y   = c0 + μ H + M,   H_e = H + α M,   M_an = M_s (coth(H_e/a) - a/H_e)          theory.md (8.22)
 //! dM/dH = δ_M (M_an - M)/{(1 + c)[δk - α(M_an - M)]} + c/(1 + c) dM_an/dH_e   1986   theory.md (8.23)
-//! dM/dH = N/(1 - α N),   N = δ_M (M_an - M)/(δk) + c dM_an/dH_e             1992   theory.md (8.24)
+//! dM/dH = N/(1 - α N),   N = δ_M (M_an - M)/(δk) + c dM_an/dH_e               1992   theory.md (8.24)
 //! ```
 //!
-//! `δ` is the direction of the field; `δ_M` is 0 while `M_an - M` opposes it, else 1, so that the
-//! susceptibility is never negative. Source: Jiles and Atherton 1986; Jiles, Thoelke and Devine 1992; form of
-//! the first as in the program JAmodel of Szewczyk. Minor loops do not close.
+//! `H` is the field, the input; `M` the magnetisation, in the unit of the output; `M_an` the anhysteretic
+//! magnetisation and `H_e` the effective field. `δ` is the sign of `dH`. `δ_M` is 0 where `M_an - M` is
+//! opposed to the direction of the field, else 1, so the susceptibility is never negative.
 //!
-//! Ours are the guards of (8.25): where the feedback `α` would make the susceptibility infinite it is
-//! limited. The field is moved in small parts of `a` and `k`, so that the sampling does not matter.
+//! Where the feedback `α` would make the susceptibility infinite it is limited: `k - α|M_an - M| >= 0.02 k`
+//! in the form of 1986, `α N <= 0.98` in that of 1992 (theory.md (8.25), our own). The field is integrated in
+//! small parts of `a` and `k`, so the output does not depend on the sampling.
+//!
+//! Properties: rate-independent; minor loops do not close. Source: Jiles and Atherton 1986; Jiles, Thoelke
+//! and Devine 1992; the form of the first as in the program JAmodel of Szewczyk.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,10 +36,10 @@ const MOST_PARTS: f64 = 4000.0;
 /// Beyond so many times `a + k + α M_s` the material is saturated and nothing more is computed.
 const SATURATED: f64 = 300.0;
 
-/// `δk - α(M_an - M)` is not below this share of `k`: theory.md (8.25).
+/// Least `k - α|M_an - M|` as a share of `k` (theory.md (8.25)).
 const LEAST_PINNING: f64 = 0.02;
 
-/// `α N` is not above this: theory.md (8.25).
+/// Largest `α N`; at 1 the susceptibility would be infinite (theory.md (8.25)).
 const LARGEST_FEEDBACK: f64 = 0.98;
 
 /// Bounds of `c`.
@@ -45,29 +49,32 @@ pub const C_BOUNDS: (f64, f64) = (0.0, 0.99);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum JilesAthertonForm {
-    /// theory.md (8.23), of 1986.
+    /// `dM/dH = δ_M (M_an - M)/{(1 + c)[δk - α(M_an - M)]} + c/(1 + c) dM_an/dH_e`, of 1986 (theory.md
+    /// (8.23)).
     #[default]
     Original,
-    /// theory.md (8.24), of 1992: reversible and irreversible magnetisation apart.
+    /// `dM/dH = N/(1 - α N)` with `N = δ_M (M_an - M)/(δk) + c dM_an/dH_e`, of 1992: reversible and
+    /// irreversible magnetisation are separate (theory.md (8.24)).
     Differential,
 }
 
-/// A Jiles-Atherton law in the user's units: the input is the field `H`, the output `B` or `M`.
+/// A Jiles-Atherton law in the user's units: `y = c0 + μ H + M` (theory.md (8.22)). The input is the field
+/// `H`, the output the flux density `B` or the magnetisation `M`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JilesAtherton {
     /// `c0`, in the unit of the output.
     pub offset: f64,
-    /// `μ`: share of the field itself in the output.
+    /// `μ`: share of the field itself in the output, in the unit of the output divided by that of the input.
     pub permeability: f64,
     /// `M_s`: saturation magnetisation, in the unit of the output.
     pub saturation: f64,
     /// `a > 0`: width of the anhysteretic curve, in the unit of the input.
     pub a: f64,
-    /// `k > 0`: pinning, near to the coercive field, in the unit of the input.
+    /// `k > 0`: pinning, close to the coercive field, in the unit of the input.
     pub k: f64,
-    /// `α M_s`, from 0 to `3a`: the field that the saturated magnetisation adds, in the unit of the
-    /// input. From `3a` on the anhysteretic curve would have a loop of its own.
+    /// `α M_s`, from 0 to `3a`: the field that the saturated magnetisation adds, in the unit of the input.
+    /// From `3a` on the anhysteretic curve itself would have a loop.
     pub coupling: f64,
     /// `c`, 0 to 0.99: share of the reversible magnetisation.
     pub c: f64,
@@ -75,7 +82,7 @@ pub struct JilesAtherton {
     pub form: JilesAthertonForm,
 }
 
-/// Field and magnetisation, the latter as a share of `M_s`.
+/// The state: field and magnetisation, the latter as a share of `M_s`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct JilesAthertonState {
     h: f64,
@@ -83,12 +90,12 @@ pub struct JilesAthertonState {
 }
 
 impl JilesAtherton {
-    /// `α`, in the unit of the input for that of the output; infinite or NaN without saturation.
+    /// `α`, in the unit of the input divided by that of the output; infinite or NaN if `M_s` is 0.
     pub fn alpha(&self) -> f64 {
         self.coupling / self.saturation
     }
 
-    /// Elementary operations, roughly, that [`Self::advance`] takes.
+    /// Approximate number of elementary operations of [`Self::advance`].
     pub fn operations(&self, state: &JilesAthertonState, h: f64) -> usize {
         let end = SATURATED * (self.a + self.k + self.coupling);
         let travel = (h - state.h).abs().min(2.0 * end);
@@ -96,7 +103,7 @@ impl JilesAtherton {
         20 + 200 * parts as usize
     }
 
-    /// Takes the next field and gives `M/M_s`.
+    /// Advances to the next field and returns `M/M_s`.
     pub fn advance(&self, state: &mut JilesAthertonState, h: f64) -> f64 {
         let direction = (h - state.h).signum();
         let end = SATURATED * (self.a + self.k + self.coupling);

@@ -6,12 +6,14 @@
 //! y     = c0 + k x + σ0 z + σ1 dz/dt + σ2 v                                        theory.md (8.27)
 //! ```
 //!
-//! `x` is the displacement, `v` its rate and `y` the force. At a small rate the contact is a spring of stiffness `σ0`
-//! that yields at `F_S`; the faster it slides, the more its friction falls to `F_C` (the Stribeck effect). For a rate
-//! that is constant between two samples the first equation has an exact solution, which is used here: no step is too
-//! long. Written with `s = σ0 z/F_C`, the deflection as a share of that at `F_C`, and the presliding displacement
-//! `x_s = F_C/σ0`. Source: Canudas de Wit, Olsson, Åström and Lischinsky, IEEE Transactions on Automatic Control 40
-//! (1995) 419-425.
+//! `x` is the displacement, `v` its rate, `y` the force and `z` the deflection of the bristles, in the unit
+//! of `x`. At a small rate the contact is a spring of stiffness `σ0` that yields at the static friction
+//! `F_S`; with increasing rate the friction decreases to `F_C` (the Stribeck effect).
+//!
+//! For a rate that is constant between two samples the first equation has an exact solution, which is used
+//! here: the time step can have any length. The state is `s = σ0 z/F_C`, and the presliding displacement is
+//! `x_s = F_C/σ0`. Source: Canudas de Wit, Olsson, Åström and Lischinsky, IEEE Transactions on Automatic
+//! Control 40 (1995) 419-425.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,10 +23,10 @@ use crate::law::interval::Interval;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// Bounds of the static over the sliding friction, less 1.
+/// Bounds of `F_S/F_C - 1`.
 pub const STRIBECK_BOUNDS: (f64, f64) = (0.0, 10.0);
 
-/// A LuGre law in the user's units.
+/// A LuGre law in the user's units: `y = c0 + σ0 z + σ1 dz/dt + σ2 v` (theory.md (8.27)).
 ///
 /// ```
 /// use hysid_core::law::lugre::Lugre;
@@ -45,13 +47,13 @@ pub struct Lugre {
     pub sliding: f64,
     /// `x_s = F_C/σ0 > 0`: presliding displacement, in the unit of the input.
     pub presliding: f64,
-    /// `F_S/F_C - 1`, 0 to 10: what static friction has more than sliding friction.
+    /// `F_S/F_C - 1`, 0 to 10: relative excess of the static over the sliding friction.
     pub stribeck: f64,
     /// `v_s > 0`: Stribeck velocity, in the unit of the rate.
     pub stribeck_velocity: f64,
-    /// `σ1 F_C/σ0`: damping of the bristles, in the unit of the output, multiplied by that of time.
+    /// `σ1 F_C/σ0`: damping of the bristles, in the unit of the output times that of time.
     pub bristle_damping: f64,
-    /// `σ2`: viscous friction, in the unit of the output for that of the rate.
+    /// `σ2`: viscous friction, in the unit of the output divided by that of the rate.
     pub viscous: f64,
 }
 
@@ -71,7 +73,7 @@ impl Default for Lugre {
     }
 }
 
-/// What the contact knows of the past.
+/// The state: the displacement and the deflection of the bristles.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LugreState {
     x: f64,
@@ -82,21 +84,22 @@ pub struct LugreState {
 /// The deflection of the bristles and its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristles {
-    /// `σ0 z/F_C`, a share of the deflection at the sliding friction.
+    /// `σ0 z/F_C`: the deflection as a share of that at the sliding friction.
     pub deflection: f64,
-    /// Its derivative by time.
+    /// The derivative of `deflection` with respect to time.
     pub rate: f64,
 }
 
 impl Lugre {
-    /// `g(v)/F_C`: friction of a steady motion over the sliding friction, without the viscous part.
+    /// `g(v)/F_C`: the friction of steady motion divided by the sliding friction, without the viscous part.
     pub fn steady(&self, rate: f64) -> f64 {
         let share = rate / self.stribeck_velocity;
         1.0 + self.stribeck * (-share * share).exp()
     }
 
-    /// Takes the next input and gives the bristles: the exact solution for a rate that is constant since the sample
-    /// before.
+    /// Advances to the next sample and returns the bristles: the exact solution for a rate that is constant
+    /// since the previous sample, `z_k = z_g + (z_{k-1} - z_g) exp(-σ0 |x_k - x_{k-1}| / g(v_k))` with `z_g =
+    /// sgn(x_k - x_{k-1}) g(v_k)/σ0` (theory.md (8.28)).
     pub fn advance(&self, state: &mut LugreState, sample: Sample) -> Bristles {
         let by = sample.x - state.x;
         state.x = sample.x;

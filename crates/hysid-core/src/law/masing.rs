@@ -1,4 +1,4 @@
-//! Masing's rule: every branch is the virgin curve, twice as large.
+//! Masing's rule: every branch is the virgin curve, magnified by two.
 //!
 //! ```text
 //! virgin:   y = c + g(x)                                              theory.md (7.3)
@@ -6,11 +6,13 @@
 //! g(x) = Σ_j m_j [clip(x; -r_j, r_j) - clip(x; -r_{j-1}, r_{j-1})]
 //! ```
 //!
-//! The virgin curve `g` is odd and a polygon: `m_j` is its slope between the thresholds `r_{j-1}` and
-//! `r_j`, and the last slope goes on for ever. A branch that meets the one before goes on along that
-//! (Madelung), see [`turning_point_stack`](crate::law::turning_point_stack). The rule so extended
-//! is the Prandtl model: along the stack the terms of `g` add up to stops,
-//! `y = c + Σ_j (m_j - m_{j+1}) ε_{r_j}[x] + m_{n+1} x`, theory.md (7.13), so the model is linear in its slopes.
+//! `x` is the input, `y` the output; `clip(a; l, u) = min(u, max(l, a))`. The virgin curve `g` is an odd
+//! polygon: `m_j` is its slope between the thresholds `r_{j-1}` and `r_j`, and the last slope continues
+//! without end. A branch that meets an earlier one continues along it (Madelung's rules), see
+//! [`turning_point_stack`](crate::law::turning_point_stack).
+//!
+//! So extended, the rule is the Prandtl model of stops `ε_r`: `y = c + Σ_j (m_j - m_{j+1}) ε_{r_j}[x] +
+//! m_{n+1} x` (theory.md (7.13)). The output is therefore linear in the slopes.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +25,8 @@ use crate::law::turning_point_stack::{Branch, TurningPointStack};
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// A model by Masing's rule.
+/// A model by Masing's rule: `y = c + g(x)` on the virgin curve, `y = y* + 2 g((x - x*)/2)` from a turning
+/// point `(x*, y*)`, with an odd polygon `g` (theory.md (7.3)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MasingParts", into = "MasingParts")]
 pub struct Masing {
@@ -32,7 +35,7 @@ pub struct Masing {
     heights: Vec<f64>,
 }
 
-/// What a model by Masing's rule consists of.
+/// Parameters of a model by Masing's rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MasingParts {
@@ -40,8 +43,8 @@ pub struct MasingParts {
     pub constant: f64,
     /// Thresholds `r_1 < r_2 < ...` where the virgin curve bends, in the unit of the input, positive.
     pub thresholds: Vec<f64>,
-    /// Slopes `m_j` of the virgin curve, output for input: one below each threshold, one beyond the
-    /// last.
+    /// Slopes `m_j` of the virgin curve, in the unit of the output divided by that of the input: one below
+    /// each threshold, one beyond the last.
     pub slopes: Vec<f64>,
 }
 
@@ -60,11 +63,11 @@ impl From<Masing> for MasingParts {
 }
 
 impl Masing {
-    /// A model from its parts.
+    /// A model from its parameters.
     ///
     /// # Errors
-    /// Thresholds that are not positive, finite and rising; not one slope more than thresholds; a slope
-    /// or constant that is not finite or beyond 1e100.
+    /// Thresholds that are not positive, finite and rising; not one more slope than thresholds; a slope or
+    /// constant that is not finite or beyond 1e100.
     pub fn new(parts: MasingParts) -> Result<Self> {
         check_thresholds(&parts.thresholds)?;
         check_weights(&parts.slopes)?;
@@ -87,12 +90,12 @@ impl Masing {
         Ok(Self { parts, heights })
     }
 
-    /// Its parts.
+    /// The parameters.
     pub fn parts(&self) -> &MasingParts {
         &self.parts
     }
 
-    /// The virgin curve `g` at an input.
+    /// The virgin curve `g` at the input `x`, in the unit of the output.
     pub fn virgin_curve(&self, x: f64) -> f64 {
         let (size, thresholds) = (x.abs(), &self.parts.thresholds);
         let piece = thresholds.partition_point(|&r| r <= size);
@@ -103,7 +106,7 @@ impl Masing {
 }
 
 impl Law for Masing {
-    /// Turning points with the output there, the constant left out.
+    /// Turning points with the output there, without the constant.
     type State = TurningPointStack<f64>;
 
     const FACTS: Facts = Facts {

@@ -1,14 +1,17 @@
-//! Modified Prandtl-Ishlinskii model: plays, then one-sided dead zones that bend their sum.
+//! Modified Prandtl-Ishlinskii model: a sum of plays, bent by one-sided dead zones.
 //!
 //! ```text
-//! y = S[H[x]],   H[x] = c + w_0 x + Σ_i w_i P_{r_i}[x]                        theory.md (7.6)
+//! y = S(H[x]),   H[x] = c + w_0 x + Σ_i w_i p_{r_i}[x]                        theory.md (7.6)
 //! S(z) = c_S + w_S0 z + Σ_j w_Sj S_{r_Sj}(z)
 //! S_r(z) = max(z - r, 0) for r > 0,   min(z - r, 0) for r < 0
 //! ```
 //!
-//! `S` is a rising polygon. Its loops need not be symmetric, which those of a Prandtl-Ishlinskii model
-//! are; they still wipe out. Source: Kuhnen, "Modeling, identification and compensation of complex
-//! hysteretic nonlinearities", European Journal of Control (2003).
+//! `x` is the input, `y` the output, `p_r` the [play](crate::operator::play) of threshold `r`, `H` the sum of
+//! plays (a [`PrandtlIshlinskii`]) and `S` a rising polygon.
+//!
+//! Properties: loops can be asymmetric, unlike those of a Prandtl-Ishlinskii model, and wiping-out holds.
+//! Source: Kuhnen, "Modeling, identification and compensation of complex hysteretic nonlinearities", European
+//! Journal of Control (2003).
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +24,7 @@ use crate::law::thresholds::check_weights;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// A modified Prandtl-Ishlinskii model.
+/// A modified Prandtl-Ishlinskii model `y = S(H[x])` (theory.md (7.6)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModifiedPrandtlIshlinskii {
@@ -29,14 +32,15 @@ pub struct ModifiedPrandtlIshlinskii {
     superposition: DeadZones,
 }
 
-/// A sum of one-sided dead zones: a rising polygon through `(0, c_S)`.
+/// A sum of one-sided dead zones, `S(z) = c_S + w_S0 z + Σ_j w_Sj S_{r_Sj}(z)`: a rising polygon through `(0,
+/// c_S)`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "DeadZoneParts", into = "DeadZoneParts")]
 pub struct DeadZones {
     parts: DeadZoneParts,
 }
 
-/// What a sum of dead zones consists of.
+/// Parameters of a sum of dead zones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeadZoneParts {
@@ -46,7 +50,7 @@ pub struct DeadZoneParts {
     pub linear: f64,
     /// Thresholds `r_Sj`, rising, none of them 0; in the unit of the sum of plays.
     pub thresholds: Vec<f64>,
-    /// Weights `w_Sj`: by how much the slope changes at the threshold, going away from 0.
+    /// Weights `w_Sj`: changes of the slope at each threshold, in the direction away from 0.
     pub weights: Vec<f64>,
 }
 
@@ -65,11 +69,11 @@ impl From<DeadZones> for DeadZoneParts {
 }
 
 impl DeadZones {
-    /// Dead zones from their parts.
+    /// Dead zones from their parameters.
     ///
     /// # Errors
-    /// Thresholds that are not finite and rising, or 0; a weight that is not usable; a slope somewhere
-    /// that is not positive.
+    /// Thresholds that are not finite and rising, or 0; a weight that is not usable; a slope that is not
+    /// positive.
     pub fn new(parts: DeadZoneParts) -> Result<Self> {
         check_weights(&parts.thresholds)?;
         check_weights(&parts.weights)?;
@@ -93,17 +97,17 @@ impl DeadZones {
         }
     }
 
-    /// The same without checks, for parts that a fit is still changing.
+    /// As [`DeadZones::new`], without checks, for parameters that a fit still changes.
     pub fn unchecked(parts: DeadZoneParts) -> Self {
         Self { parts }
     }
 
-    /// What they consist of.
+    /// The parameters.
     pub fn parts(&self) -> &DeadZoneParts {
         &self.parts
     }
 
-    /// Value at `z`.
+    /// The value `S(z)`, in the unit of the output.
     pub fn value(&self, z: f64) -> f64 {
         let parts = &self.parts;
         let zones = parts.thresholds.iter().zip(&parts.weights);
@@ -125,7 +129,7 @@ impl DeadZones {
     }
 }
 
-/// `S_r(z)`
+/// A one-sided dead zone `S_r(z)`: `max(z - r, 0)` for `r > 0`, `min(z - r, 0)` for `r < 0`.
 #[inline(always)]
 pub fn dead_zone(z: f64, r: f64) -> f64 {
     if r > 0.0 { (z - r).max(0.0) } else { (z - r).min(0.0) }

@@ -1,19 +1,22 @@
-//! Neuro-Madelung model: every branch is a curve through the turning point where it began, and a small
-//! network gives the slope of its chord.
+//! Neuro-Madelung model: every branch starts at its turning point, and a small network gives the slope of its
+//! chord.
 //!
 //! ```text
 //! y = y_t + (x - x_t) N(x, x_t, y_t[, x'])                                  theory.md (8.19)
 //! N = c_0 + Σ_i c_i tanh(b_i + Σ_j U_ij u_j),   u the scaled x, x_t, y_t[, x']   theory.md (8.20)
 //! ```
 //!
-//! `(x_t, y_t)` is the turning point from which the present branch began, `y_t` being the model's own
-//! output there, so that the output is continuous at reversals. Madelung's rules rule the stack of
-//! turning points: a branch that passes the turning point before the last closes a loop, and both are
-//! forgotten. So the model has return-point memory by construction, and loops need not be congruent.
-//! Before any turning point stands the virgin one, `(0, y_0)`.
+//! `x` is the input, `x'` its rate (optional), `y` the output. `(x_t, y_t)` is the turning point at which the
+//! present branch began; `y_t` is the model's own output there, so the output is continuous at reversals. The
+//! stack of turning points follows Madelung's rules: a branch that passes the turning point before the last
+//! closes a loop, and both points are deleted. Before the first turning point its place is taken by the
+//! virgin point `(0, y_0)`.
 //!
-//! Source: Farrokh and Dizaji 2016, of whom the inputs of the network are known; its form, the
-//! factor `x - x_t` and the training are ours.
+//! Properties: return-point memory by construction; loops need not be congruent. The output is limited to the
+//! trained range, extended by its own width beyond either end.
+//!
+//! Source: Farrokh and Dizaji 2016 for the inputs of the network; its form, the factor `x - x_t` and the
+//! training are ours.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,43 +27,42 @@ use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
-/// The output may leave the range that was trained on by so many of these ranges. A chain of wrong
-/// branches, each beginning at the end of the one before, can otherwise grow beyond all bounds; a
-/// hysteresis that is extrapolated sensibly stays well within.
+/// The output may leave the trained range by so many of its widths. Each branch begins at the end of the one
+/// before, so errors could otherwise grow without bound.
 const BEYOND: f64 = 1.0;
 
 /// Scaled inputs of the network are limited to this: far outside of the data it is saturated anyway.
 const LARGEST_INPUT: f64 = 1e6;
 
-/// Most tanh neurons that can be asked for: the search takes the square of their number in memory.
+/// Largest number of tanh neurons: the memory of the search grows with its square.
 pub const MOST_HIDDEN: usize = 100;
 
-/// A neuro-Madelung model in the user's units.
+/// A neuro-Madelung model in the user's units: `y = y_t + (x - x_t) N(x, x_t, y_t[, x'])` (theory.md (8.19)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NeuroMadelung {
-    /// What the input is divided by, in its unit.
+    /// Divisor of the input, in its unit.
     pub input_scale: f64,
-    /// What the rate is divided by; `None` for a model without it.
+    /// Divisor of the rate, in its unit; `None` for a model without rate.
     pub rate_scale: Option<f64>,
     /// Mean of the output in training, in its unit.
     pub output_mean: f64,
-    /// What the output's distance from its mean is divided by.
+    /// Divisor of the output minus its mean, in its unit.
     pub output_scale: f64,
     /// Smallest and largest output in training, in its unit.
     pub output_range: (f64, f64),
-    /// `b_i, U_i1, U_i2, ...` of every tanh neuron, one after another.
+    /// `b_i, U_i1, U_i2, ...` of each tanh neuron in turn.
     pub hidden: Vec<f64>,
-    /// `c_0, c_1, ...`.
+    /// Output weights `c_0, c_1, ...` of the network.
     pub output: Vec<f64>,
-    /// `y_0`, scaled.
+    /// `y_0`, the scaled output of the virgin turning point.
     pub virgin_output: f64,
 }
 
-/// The network and what surrounds it, as training sees it: all scaled.
+/// The network `N` with the limits of its inputs and output, in scaled units.
 #[derive(Debug, Clone, Copy)]
 pub struct Branch<'a> {
-    /// Bias and weights of the tanh neurons, one after another.
+    /// Bias and weights of each tanh neuron in turn.
     pub hidden: &'a [f64],
     /// Constant and weights of the output.
     pub output: &'a [f64],
@@ -70,7 +72,7 @@ pub struct Branch<'a> {
 }
 
 impl Branch<'_> {
-    /// Bias and weights of a neuron.
+    /// Number of values of one tanh neuron: its bias and weights.
     pub fn run(&self) -> usize {
         self.hidden.len() / (self.output.len() - 1).max(1)
     }
@@ -86,15 +88,15 @@ impl Branch<'_> {
         self.limited(inputs[2] + (inputs[0] - inputs[1]) * slope)
     }
 
-    /// What the network sees: inputs within the ranges that it was trained on. Beyond them a branch goes
-    /// on with the slope that its chord has at the edge.
+    /// The inputs, limited to the trained ranges. Beyond them a branch continues with the slope of its chord
+    /// at the edge.
     pub fn seen(&self, inputs: &[f64]) -> [f64; 4] {
         let rate = inputs.get(3).copied().unwrap_or(0.0);
         let unit = |value: f64| value.clamp(-1.0, 1.0);
         [unit(inputs[0]), unit(inputs[1]), inputs[2].clamp(self.low, self.high), unit(rate)]
     }
 
-    /// An output within what the law can give.
+    /// The output, limited to the range that the law allows.
     pub fn limited(&self, y: f64) -> f64 {
         let beyond = BEYOND * (self.high - self.low);
         y.clamp(self.low - beyond, self.high + beyond)
@@ -107,12 +109,12 @@ pub fn argument(neuron: &[f64], inputs: &[f64]) -> f64 {
 }
 
 impl NeuroMadelung {
-    /// Inputs of the network.
+    /// Number of inputs of the network: 3, or 4 with the rate.
     pub fn inputs(&self) -> usize {
         3 + usize::from(self.rate_scale.is_some())
     }
 
-    /// The network and what surrounds it.
+    /// The network with its limits.
     pub fn branch(&self) -> Branch<'_> {
         let scaled = |y: f64| (y - self.output_mean) / self.output_scale;
         let (low, high) = (scaled(self.output_range.0), scaled(self.output_range.1));
@@ -214,5 +216,5 @@ impl Law for NeuroMadelung {
     }
 }
 
-/// Weights may not be larger: products with scaled inputs and sums of them stay finite.
+/// Largest magnitude of a weight: sums of products with scaled inputs stay finite.
 pub const LARGEST_WEIGHT: f64 = 1e6;

@@ -3,6 +3,8 @@
 //! ```text
 //! p(r) = ρ e^{-τ r}     or one free weight for each play                    theory.md (8.14)
 //! ```
+//!
+//! `r` is the threshold of a play, `ρ` has the unit of a weight and `τ` the inverse unit of `r`.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,9 +22,9 @@ pub enum PlayWeights {
     Exponential {
         /// Number of plays.
         plays: usize,
-        /// `ρ`.
+        /// `ρ`, in the unit of a weight.
         rho: f64,
-        /// `τ`, in one over the unit of the thresholds.
+        /// `τ`, in the inverse unit of the thresholds.
         tau: f64,
     },
     /// A weight for each play.
@@ -38,14 +40,14 @@ impl PlayWeights {
         }
     }
 
-    /// The weight of the plays at thresholds `spacing` times `first`, `first + 1`, ...
+    /// The weights of the plays at the thresholds `spacing` times `first`, `first + 1`, ...
     pub fn values(&self, spacing: f64, first: usize) -> Vec<f64> {
         let mut all = Vec::with_capacity(self.plays());
         self.for_each(spacing, first, |_, weight| all.push(weight));
         all
     }
 
-    /// Calls with the index and the weight of every play; one exponential for all of them.
+    /// Calls a function with the index and the weight of each play; one exponential suffices for all.
     #[inline(always)]
     pub(crate) fn for_each(&self, spacing: f64, first: usize, mut take: impl FnMut(usize, f64)) {
         match self {
@@ -65,7 +67,7 @@ impl PlayWeights {
         }
     }
 
-    /// Refuses what would overflow.
+    /// Rejects weights that would overflow.
     pub(crate) fn check(&self, law: &str, spacing: f64, first: usize) -> Result<()> {
         if self.plays() == 0 || self.plays() > MOST_PLAYS {
             let plays = self.plays();

@@ -1,12 +1,14 @@
-//! Prandtl-Ishlinskii model in its play form.
+//! Prandtl-Ishlinskii model: a weighted sum of plays.
 //!
 //! ```text
-//! y = c + w_0 x + Σ_i w_i P_{r_i}[x]                                   theory.md (7.4)
+//! y = c + w_0 x + Σ_i w_i p_{r_i}[x]                                   theory.md (7.4)
 //! ```
 //!
-//! `P_r` is the play of theory.md (1.2). Because a stop is the input less its play, sums of stops have
-//! the same form. The model wipes out, is congruent, obeys Masing's rule from the virgin state, and its
-//! loops are symmetric about their middle; it can be inverted where all partial sums of the `w_i` are
+//! `x` is the input, `y` the output and `p_r` the [play] of threshold `r`. A stop is
+//! the input minus its play, so sums of stops have the same form.
+//!
+//! Properties: wiping-out and congruency hold; from the virgin state the model obeys Masing's rule, and its
+//! loops are symmetric about their middle. It can be inverted if all partial sums `w_0 + w_1 + ... + w_i` are
 //! positive.
 
 use serde::{Deserialize, Serialize};
@@ -20,7 +22,7 @@ use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::operator::play;
 use crate::property::Property;
 
-/// A Prandtl-Ishlinskii model.
+/// A Prandtl-Ishlinskii model `y = c + w_0 x + Σ_i w_i p_{r_i}[x]` (theory.md (7.4)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, try_from = "Parts", into = "Parts")]
 pub struct PrandtlIshlinskii {
@@ -30,7 +32,7 @@ pub struct PrandtlIshlinskii {
     weights: Vec<f64>,
 }
 
-/// What a model is stored as.
+/// The form in which a model is stored.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parts {
@@ -56,8 +58,9 @@ impl From<PrandtlIshlinskii> for Parts {
 }
 
 impl PrandtlIshlinskii {
-    /// A model from its constant `c` (unit of the output), `w_0`, and the thresholds (unit of the input)
-    /// and weights (output for input) of its plays.
+    /// A model from its constant `c` (unit of the output), the weight `w_0` of the input (unit of the output
+    /// divided by that of the input), and the thresholds `r_i` (unit of the input) and weights `w_i` (as
+    /// `w_0`) of its plays.
     ///
     /// # Errors
     /// Thresholds that are not positive, finite and rising; a weight that is not finite or beyond 1e50;
@@ -80,7 +83,7 @@ impl PrandtlIshlinskii {
         self.constant
     }
 
-    /// The weight `w_0` of the input, output for input.
+    /// The weight `w_0` of the input, in the unit of the output divided by that of the input.
     pub fn linear(&self) -> f64 {
         self.linear
     }
@@ -90,7 +93,7 @@ impl PrandtlIshlinskii {
         &self.thresholds
     }
 
-    /// Weights `w_i` of the plays, output for input.
+    /// Weights `w_i` of the plays, in the unit of the output divided by that of the input.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }

@@ -1,15 +1,18 @@
-//! The classical Preisach model on a plane of cells.
+//! The classical Preisach model: relays spread over a plane that is divided into cells.
 //!
 //! ```text
 //! y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]                        theory.md (7.8)
 //! ```
 //!
-//! `R_ij` is the mean output of the relays of cell `(i, j)` of the plane, spread evenly over it;
-//! `m_j` that of relays without width (`α = β`) in interval `j`, which remember nothing: with `k x` it is
-//! the reversible part. The state is the staircase that parts relays up from relays down, a stack of
-//! dominant extrema; a step costs one value of the Everett function, whatever the number of cells.
+//! `x` is the input, `y` the output. `R_ij` is the mean output, -1 to 1, of [relays](crate::operator::relay)
+//! spread evenly over cell `(i, j)`: they switch up at an `α` in interval `i` and down at a `β` in interval
+//! `j`, with `β <= α`. `m_j` is that of relays without width (`α = β`) in interval `j`, which have no memory;
+//! with `k x` they are the reversible part.
 //!
-//! The model wipes out and is congruent, and every model that does is one of these (Mayergoyz).
+//! The state is the staircase between relays up and relays down, stored as a stack of dominant extrema. A
+//! step costs one value of the Everett function, for any number of cells.
+//!
+//! Properties: wiping-out and congruency hold, and every model with both is a Preisach model (Mayergoyz).
 
 mod everett;
 pub mod plane;
@@ -30,7 +33,8 @@ use plane::Plane;
 /// Most intervals of each axis.
 pub const MOST_INTERVALS: usize = 200;
 
-/// A Preisach model.
+/// A Preisach model on a plane of cells: `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]` (theory.md
+/// (7.8)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PreisachWeights", into = "PreisachWeights")]
 pub struct Preisach {
@@ -42,16 +46,16 @@ pub struct Preisach {
     reversible: Vec<f64>,
 }
 
-/// What a Preisach model consists of.
+/// Parameters of a Preisach model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreisachWeights {
     /// Constant `c`, in the unit of the output.
     pub constant: f64,
-    /// Slope `k` of the reversible part, output for input.
+    /// Slope `k` of the reversible part, in the unit of the output divided by that of the input.
     pub slope: f64,
-    /// Places of the `N + 1` lines that cut both axes of the plane, in the unit of the input, rising.
-    /// Beyond them nothing switches.
+    /// The inputs at which `N + 1` lines divide both axes of the plane, in the unit of the input, rising. No
+    /// relay switches beyond them.
     pub lines: Vec<f64>,
     /// Weights `v_j` of the `N` intervals in the reversible part, in the unit of the output.
     pub reversible: Vec<f64>,
@@ -75,11 +79,11 @@ impl From<Preisach> for PreisachWeights {
 }
 
 impl Preisach {
-    /// A model from its weights.
+    /// A model from its parameters.
     ///
     /// # Errors
-    /// Fewer than two lines or more than 201, lines that are not finite and rising, numbers of weights
-    /// that do not fit, a weight that is not finite or beyond 1e100.
+    /// Fewer than two lines or more than 201, lines that are not finite and rising, numbers of weights that
+    /// do not fit, a weight that is not finite or beyond 1e100.
     pub fn new(weights: PreisachWeights) -> Result<Self> {
         let lines = &weights.lines;
         if lines.len() < 2 || lines.len() > MOST_INTERVALS + 1 {
@@ -116,14 +120,15 @@ impl Preisach {
         Ok(Self { everett: Everett::new(&plane, &weights.cells), virgin, reversible, weights })
     }
 
-    /// Its weights.
+    /// The parameters.
     pub fn weights(&self) -> &PreisachWeights {
         &self.weights
     }
 
-    /// The Everett function: half of what the output falls by, reversible part left out, when the input
-    /// falls from `a` to `b` after having risen from `b` or below; 0 unless `a > b`. Inputs in their
-    /// unit, the value in that of the output: theory.md (7.10).
+    /// The Everett function `E(a, b) = Σ_ij w_ij (share of cell ij within b <= β <= α <= a)`: half of the
+    /// decrease of the output, without its reversible part, when the input falls from `a` to `b` after a rise
+    /// from `b` or below (theory.md (7.10)). 0 unless `a > b`. `a` and `b` are in the unit of the input, the
+    /// value in that of the output.
     pub fn everett(&self, a: f64, b: f64) -> f64 {
         self.everett.value(self.everett.place(a), self.everett.place(b))
     }
@@ -137,7 +142,7 @@ impl Preisach {
 }
 
 impl Law for Preisach {
-    /// Dominant extrema, each with the output there, reversible part left out.
+    /// Dominant extrema, each with the output there without its reversible part.
     type State = TurningPointStack<f64>;
 
     const FACTS: Facts = Facts {

@@ -1,8 +1,9 @@
-//! What the equations of a law decide, theory.md (10.35): a property, and whether every such law has it.
+//! Properties that follow from the equations of a law, each with whether every such law has it (theory.md
+//! (10.35)).
 
 use crate::property::Property;
 
-/// Return-point memory, and what follows from it.
+/// Return-point memory, and the properties that follow from it.
 pub const WIPES_OUT: [(Property, bool); 3] =
     [(Property::WipingOut, true), (Property::Deterioration, false), (Property::LoopClosure, true)];
 
@@ -15,5 +16,5 @@ pub const MASING: (Property, bool) = (Property::Masing, true);
 /// A branch turned by half a turn is the opposite branch.
 pub const ODD: (Property, bool) = (Property::OddSymmetry, true);
 
-/// The speed of the input does not matter.
+/// The output does not depend on the speed of the input.
 pub const RATE_INDEPENDENT: (Property, bool) = (Property::RateDependence, false);

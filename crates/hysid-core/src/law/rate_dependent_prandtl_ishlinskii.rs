@@ -1,15 +1,18 @@
-//! Rate-dependent Prandtl-Ishlinskii model: plays whose thresholds grow with the rate of the input, so
-//! that loops grow wider and flatter with speed.
+//! Rate-dependent Prandtl-Ishlinskii model: plays whose thresholds grow with the rate of the input, so that
+//! loops widen and flatten with increasing speed.
 //!
 //! ```text
 //! p_i,k = max(x_k - r_i, min(x_k + r_i, p_i,k-1)),   virgin: 0              theory.md (8.15)
-//! r_i   = α i + β |x'|             linear                                   theory.md (8.16)
-//! r_i   = α i ln(β + λ |x'|^ε)     logarithmic; not below 0                 theory.md (8.17)
+//! r_i   = α i + β |x'|                 linear                               theory.md (8.16)
+//! r_i   = α i max(0, ln(β + λ |x'|^ε)) logarithmic                          theory.md (8.17)
 //! y     = c + a0 x + Σ_i a_i p_i,   a_i = ρ e^{-τ α i} or free,  i = 1 ... n   theory.md (8.18)
 //! ```
 //!
-//! At one rate it is a Prandtl-Ishlinskii model, with return-point memory at that rate only. Source: Al
-//! Janaideh, Rakheja and Su; that all thresholds of the logarithmic form share one factor is our reading.
+//! `x_k` is sample `k` of the input, `x'` its rate, `y` the output, `p_i` play `i` with the threshold `r_i`.
+//!
+//! Properties: at a constant rate it is a Prandtl-Ishlinskii model, with return-point memory at that rate
+//! only. Source: Al Janaideh, Rakheja and Su; that all thresholds of the logarithmic form share one factor is
+//! our reading.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,24 +28,24 @@ use crate::property::Property;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Thresholds {
-    /// theory.md (8.16).
+    /// `r_i = α i + β |x'|` (theory.md (8.16)).
     Linear {
         /// `β`, in the unit of time.
         beta: f64,
     },
-    /// theory.md (8.17).
+    /// `r_i = α i max(0, ln(β + λ |x'|^ε))` (theory.md (8.17)).
     Logarithmic {
-        /// `β`: `ln β` is the factor at rest.
+        /// `β`: `ln β` is the factor of the thresholds at rest.
         beta: f64,
         /// `λ`: growth with the rate, in the unit of the rate to the power `-ε`.
         lambda: f64,
-        /// `ε`.
+        /// `ε`: exponent of the rate.
         epsilon: f64,
     },
 }
 
 impl Thresholds {
-    /// What is added to all thresholds, and what they are multiplied with, at a rate.
+    /// The sum and the factor by which all thresholds `α i` change at a rate.
     fn growth(&self, rate: f64) -> (f64, f64) {
         match *self {
             Self::Linear { beta } => (beta * rate.abs(), 1.0),
@@ -74,24 +77,25 @@ impl Thresholds {
     }
 }
 
-/// A rate-dependent Prandtl-Ishlinskii model in the user's units.
+/// A rate-dependent Prandtl-Ishlinskii model in the user's units: `y = c + a0 x + Σ_i a_i p_i` (theory.md
+/// (8.18)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RateDependentPrandtlIshlinskii {
     /// `c`, in the unit of the output.
     pub offset: f64,
-    /// `a0`: share of the output without memory.
+    /// `a0`: weight of the input, in the unit of the output divided by that of the input.
     pub spring: f64,
     /// `α`: spacing of the thresholds at rest, in the unit of the input, not negative.
     pub spacing: f64,
     /// How the thresholds grow with the rate.
     pub thresholds: Thresholds,
-    /// `a_i`: weights of the plays, in the unit of the output for that of the input.
+    /// `a_i`: weights of the plays, in the unit of the output divided by that of the input.
     pub weights: PlayWeights,
 }
 
 impl RateDependentPrandtlIshlinskii {
-    /// Moves the plays to the next input.
+    /// Advances the plays to the next sample.
     pub fn advance(&self, plays: &mut [f64], sample: Sample) {
         let (added, factor) = self.thresholds.growth(sample.rate);
         for (index, play) in plays.iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! Records as classical models are fitted to them: rows of samples and outputs in the user's units.
+//! Records in the form in which laws are fitted to them: samples and outputs, row by row, in the user's
+//! units.
 
 use crate::data::rate::RateMethod;
 use crate::data::record::{Dataset, Excitation, Record};
@@ -8,7 +9,7 @@ use crate::law::{Law, Sample};
 /// The samples of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What a law is told, row by row.
+    /// The sample of each row.
     pub samples: Vec<Sample>,
     /// The measured output; NaN where it is blank.
     pub output: Vec<f64>,
@@ -33,7 +34,7 @@ impl Series {
     }
 }
 
-/// What a law is told, row by row; rates are 0 without a method, time steps are 0 without time.
+/// The sample of each row; rates are 0 without a method, time steps are 0 without time stamps.
 ///
 /// # Errors
 /// A rate that cannot be computed.
@@ -60,16 +61,16 @@ pub fn run<L: Law>(law: &L, samples: &[Sample]) -> Vec<f64> {
     outputs
 }
 
-/// Free run of a law from the state that it is in.
+/// Free run of a law from a given state.
 pub(crate) fn run_on<L: Law>(law: &L, state: &mut L::State, samples: &[Sample], outputs: &mut [f64]) {
     outputs.iter_mut().zip(samples).for_each(|(output, sample)| *output = law.step(state, *sample));
 }
 
-/// The work of all loops, `∮ y dx`: negative where the output lags behind a growing input as that of a
-/// play does, positive for friction, whose loops are passed the other way round.
+/// The work of all loops, `∮ y dx`, in the unit of the output times that of the input: positive for an output
+/// that leads, as friction does, negative for one that lags behind its input, as a play does.
 ///
-/// Each measured row counts with half the way of the input from the row before to the row behind, which is
-/// the trapezoidal rule if all rows are measured, and still the right sign if only some are.
+/// Each measured row counts with half the path of the input from the previous to the next row. This is the
+/// trapezoidal rule if all rows are measured, and has the right sign if only some are.
 pub fn work(series: &[Series]) -> f64 {
     let slope = slope(series);
     let of_one = |series: &Series| -> f64 {
@@ -86,7 +87,7 @@ pub fn work(series: &[Series]) -> f64 {
     series.iter().map(of_one).sum()
 }
 
-/// Slope of the straight line that fits the rows with an output best.
+/// Slope of the straight line through the rows with an output, by least squares.
 pub fn slope(series: &[Series]) -> f64 {
     let rows = || {
         let all = series.iter().flat_map(|series| series.samples.iter().zip(&series.output));

@@ -1,11 +1,11 @@
-//! Thresholds of banks of operators, and what is asked of parameters in general.
+//! Checks of thresholds and weights.
 
 use crate::error::{Error, LARGEST_VALUE, Result};
 
 /// Largest magnitude of a weight, which keeps a free run finite.
 const LARGEST_WEIGHT: f64 = 1e100;
 
-/// Refuses thresholds that are not positive, finite and rising.
+/// Rejects thresholds that are not positive, finite and rising.
 pub fn check_thresholds(thresholds: &[f64]) -> Result<()> {
     let sound = |r: f64| r.is_finite() && r > 0.0;
     if let Some(r) = thresholds.iter().find(|&&r| !sound(r)) {
@@ -19,7 +19,7 @@ pub fn check_thresholds(thresholds: &[f64]) -> Result<()> {
     }
 }
 
-/// Refuses weights that are not finite, or so large that an output could overflow.
+/// Rejects weights that are not finite, or so large that an output could overflow.
 pub(crate) fn check_weights(weights: &[f64]) -> Result<()> {
     match weights.iter().find(|weight| weight.is_nan() || weight.abs() > LARGEST_WEIGHT) {
         Some(weight) => Err(Error::Parts(format!("weight {weight} is not a usable number"))),
@@ -27,8 +27,7 @@ pub(crate) fn check_weights(weights: &[f64]) -> Result<()> {
     }
 }
 
-/// An input as a law takes it: one beyond [`LARGEST_VALUE`] is taken as that, so that nothing
-/// overflows.
+/// An input limited to the magnitude [`LARGEST_VALUE`], so that nothing overflows.
 #[inline(always)]
 pub(crate) fn limited(x: f64) -> f64 {
     x.clamp(-LARGEST_VALUE, LARGEST_VALUE)

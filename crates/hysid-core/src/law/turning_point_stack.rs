@@ -2,42 +2,41 @@
 //!
 //! ```text
 //! 1. A branch is fixed by the turning point where it began.
-//! 2. A branch that returns to the turning point before last goes on as if the two had not been.
-//! 3. Beyond all turning points, or beyond the mirror image of the first, the virgin curve goes on.
+//! 2. A branch that returns to the turning point before last continues as if the last two had not been.
+//! 3. Beyond the first turning point, or its mirror image about 0, the virgin curve continues.
 //!                                                                             theory.md (7.2)
 //! ```
 //!
-//! The points that remain are the *dominant extrema*: the input value of largest magnitude since the
-//! virgin state, the furthest opposite extremum after it, the furthest opposite one after that, and so
-//! on to the present.
+//! The points that remain are the *dominant extrema*: the input of largest magnitude since the virgin state,
+//! the furthest opposite extremum after it, the furthest opposite one after that, and so on to the present.
 
-/// A point of the path, with what the model knows there.
+/// A turning point of the input with the value of the model there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningPoint<T> {
-    /// Input.
+    /// Input, in its unit.
     pub x: f64,
-    /// What the model knows there, such as its output.
+    /// Value of the model there, such as its output.
     pub value: T,
 }
 
 /// The curve that the present point lies on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Branch<T> {
-    /// The virgin curve: no turning point is remembered.
+    /// The virgin curve: there is no turning point.
     Virgin,
     /// A branch that began at a turning point.
     From {
         /// Where it began.
         start: TurningPoint<T>,
-        /// Where the branch before began, which this one heads for; `None` if that is the virgin curve.
+        /// The beginning of the previous branch, to which this one leads; `None` if that is the virgin curve.
         before: Option<TurningPoint<T>>,
     },
 }
 
 /// The turning points of an input that are not wiped out, oldest first, and the present point.
 ///
-/// Each sample is put down once and wiped out at most once, so that a step takes constant time on
-/// average, however long the path. It takes memory for as many points as loops are nested.
+/// Each sample is stored once and deleted at most once, so a step takes constant time on average. The storage
+/// is that of as many points as loops are nested.
 ///
 /// ```
 /// use hysid_core::law::turning_point_stack::TurningPointStack;
@@ -56,22 +55,22 @@ pub struct TurningPointStack<T> {
 }
 
 impl<T> Default for TurningPointStack<T> {
-    /// Virgin: the input has rested at 0 for ever.
+    /// Virgin: the input has always been 0.
     fn default() -> Self {
         Self { points: Vec::new(), present: None }
     }
 }
 
 impl<T: Clone> TurningPointStack<T> {
-    /// Moves to the next input, which must be finite: the present point is put down as a turning point
-    /// if the input turns there, and what the input passes is wiped out. `value` is what the model knows
+    /// Advances to the next input, which must be finite. The present point becomes a turning point if the
+    /// input turns there, and the points that the input passes are deleted. `value` is the value of the model
     /// at the new point; where it follows from the branch, [`TurningPointStack::set_value`] sets it.
     pub fn advance(&mut self, x: f64, value: T) {
         self.advance_with(x, value, |_| {});
     }
 
-    /// [`TurningPointStack::advance`], telling of every change of the points: `changed` sees each point
-    /// just put down, and the stack just before points are wiped out.
+    /// As [`TurningPointStack::advance`], and calls `changed` with every change: after a point is added, and
+    /// before points are deleted.
     pub fn advance_with(&mut self, x: f64, value: T, mut changed: impl FnMut(Change<'_, T>)) {
         if let Some(present) = &self.present {
             if x == present.x {
@@ -107,7 +106,7 @@ impl<T: Clone> TurningPointStack<T> {
         self.present = Some(TurningPoint { x, value });
     }
 
-    /// Says what the model knows at the present point.
+    /// Sets the value of the model at the present point.
     pub fn set_value(&mut self, value: T) {
         if let Some(present) = &mut self.present {
             present.value = value;
@@ -138,8 +137,8 @@ impl<T: Clone> TurningPointStack<T> {
 /// A change of the turning points on the way to a new input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Change<'a, T> {
-    /// The last of these was put down.
+    /// The last of these points was added.
     PutDown(&'a [TurningPoint<T>]),
-    /// The last so many of these are about to be wiped out.
+    /// So many of these points, the last ones, are about to be deleted.
     WipedOut(&'a [TurningPoint<T>], usize),
 }

@@ -23,7 +23,7 @@ const GROUP: usize = 64;
 const TILE: usize = 4;
 
 /// The factor in place of the lower triangle of `data`, `n` rows of `n` numbers; `None` unless
-/// positive definite to rounding, and once asked to stop.
+/// positive definite to rounding, and once stopped.
 pub(super) fn factorise(mut data: Vec<f64>, n: usize, stop: StopCheck<'_>) -> Option<Vec<f64>> {
     simd::run(Factorise { data: &mut data, n, pace: Pace::new(stop) }).then_some(data)
 }

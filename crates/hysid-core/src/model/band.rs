@@ -1,12 +1,16 @@
-//! How far off a prediction may be: a band about the output, calibrated on data held out.
+//! Prediction band: limits about the output between which the measured output lies with a given probability.
 //!
 //! ```text
 //! y ± q(p) √(f² + d²)                                                      theory.md (11.7)
+//! q(p) = quantile_p of |y_measured - y| / √(f² + d²)    on held-out rows
 //! ```
 //!
-//! `d` is how much the members of the ensemble disagree at that row, `f` the error that is left where they
-//! agree. The factors `q(p)` are quantiles of what was found on rows that the members had not seen: split
-//! conformal prediction. They are kept apart for rows inside the trained range and beyond it.
+//! `y` is the output of the model at a row and `p` the probability. `d` is the disagreement of the members of
+//! the ensemble at that row: half the distance between the 15.9 % and 84.1 % quantiles of their outputs. `f`
+//! is half the median held-out error, in the unit of the output.
+//!
+//! This is split conformal prediction. The factors `q(p)` are separate for rows inside and outside the
+//! trained range.
 
 use std::ops::RangeInclusive;
 
@@ -15,17 +19,17 @@ use serde::{Deserialize, Serialize};
 use crate::error::{Error, Result};
 use crate::model::ensemble::Predictions;
 
-/// Probabilities that the factors are kept for.
+/// Probabilities for which the factors are stored.
 const LEVELS: [f64; 10] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.925, 0.95, 0.975, 0.99];
 
-/// Probabilities that a band can be asked for.
+/// The smallest and largest probability of a band.
 pub const BAND_PROBABILITIES: RangeInclusive<f64> = LEVELS[0]..=LEVELS[LEVELS.len() - 1];
 
-/// A calibrated band.
+/// A calibrated prediction band `y ± q(p) √(f² + d²)` (theory.md (11.7)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Band {
-    /// `f` of theory.md (11.7), in the output's unit.
+    /// `f`: half the median held-out error, in the output's unit.
     floor: f64,
     /// `q` inside the trained range, at each of the levels.
     inside: Vec<f64>,
@@ -35,19 +39,20 @@ pub struct Band {
     rows: (usize, usize),
 }
 
-/// A simulated record with its band.
+/// A simulated record with its prediction band.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     /// Output of each row, in the user's unit.
     pub output: Vec<f64>,
-    /// Lower edge of the band.
+    /// Lower limit of the band for each row, in the user's unit.
     pub low: Vec<f64>,
-    /// Upper edge.
+    /// Upper limit, likewise.
     pub high: Vec<f64>,
 }
 
 impl Prediction {
-    /// How many of the rows with a measured output (not NaN) lie within the band, and how many there are.
+    /// The number of rows whose measured output (not NaN) lies within the band, and the number of rows with a
+    /// measured output.
     pub fn covered(&self, measured: &[f64]) -> (usize, usize) {
         let edges = self.low.iter().zip(&self.high);
         let scored = measured.iter().zip(edges).filter(|(y, _)| !y.is_nan());
@@ -57,34 +62,36 @@ impl Prediction {
     }
 }
 
-/// What was found on a row held out.
+/// Result on a held-out row.
 #[derive(Debug, Clone, Copy)]
 pub struct HeldOutRow {
     /// Measured less simulated output.
     pub error: f64,
-    /// How much the members disagreed: [`disagreement`].
+    /// Disagreement `d` of the members: [`disagreement`].
     pub disagreement: f64,
-    /// Degree of having been outside the range of the fold's training data, 0 to 1.
+    /// How far the record had been outside the range of the fold's training data, 0 to 1.
     pub outside: f64,
-    /// What it counts, so that each fold counts the same.
+    /// Weight of the row; each fold has the same total.
     pub weight: f64,
 }
 
-/// Half the distance between the quantiles that a normal distribution has at one deviation on each side.
+/// Disagreement `d` of the members: half the distance between the 15.9 % and 84.1 % weighted quantiles of
+/// their outputs. For a normal distribution it is one standard deviation.
 pub fn disagreement(votes: &mut Predictions) -> f64 {
     0.5 * (votes.quantile(0.841) - votes.quantile(0.159))
 }
 
-/// Fewest rows from which factors are found.
+/// Least number of rows for a calibration.
 const FEWEST_ROWS: usize = 20;
 
-/// The level of so many rows that a further row stays below with this probability: theory.md (11.7).
+/// The quantile level `p (1 + 1/n)` of `n` rows, below which a further row lies with the probability `p`
+/// (theory.md (11.7)).
 fn of_rows(level: f64, rows: usize) -> f64 {
     (level * (1.0 + 1.0 / rows as f64)).min(1.0)
 }
 
 impl Band {
-    /// Calibrates on rows held out; `None` if they are too few.
+    /// A band calibrated on held-out rows; `None` if they are too few.
     pub fn calibrate(rows: &[HeldOutRow]) -> Option<Self> {
         let (outside, inside): (Vec<HeldOutRow>, Vec<HeldOutRow>) =
             rows.iter().partition(|row| row.outside > 0.5);
@@ -110,13 +117,13 @@ impl Band {
         Some(Self { floor, inside: of_inside, outside: of_outside, rows: (inside.len(), outside.len()) })
     }
 
-    /// The same band, so many times as wide.
+    /// The same band, wider by the factor `times`.
     pub fn wider(mut self, times: f64) -> Self {
         self.inside.iter_mut().chain(&mut self.outside).for_each(|factor| *factor *= times);
         self
     }
 
-    /// Rows held out, inside the trained range and beyond it, that the band was calibrated on.
+    /// Numbers of held-out rows, inside and outside the trained range, of the calibration.
     pub fn rows(&self) -> (usize, usize) {
         self.rows
     }
@@ -128,7 +135,7 @@ impl Band {
         factor * self.floor.hypot(disagreement)
     }
 
-    /// Refuses a probability that the band was not calibrated for.
+    /// Rejects a probability outside those of the calibration.
     pub(crate) fn check(level: f64) -> Result<()> {
         if BAND_PROBABILITIES.contains(&level) {
             return Ok(());
@@ -137,7 +144,7 @@ impl Band {
         Err(Error::Probability { probability: level, least: *least, most: *most })
     }
 
-    /// Refuses factors of a file that are none.
+    /// Rejects invalid factors of a file.
     pub(crate) fn validated(self) -> Result<Self> {
         let is_sound = |factors: &[f64]| {
             factors.len() == LEVELS.len() && factors.iter().all(|factor| *factor >= 0.0 && factor.is_finite())

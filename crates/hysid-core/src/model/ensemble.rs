@@ -1,25 +1,30 @@
-//! Ensembles: several models that answer together by weighted medians.
+//! Ensembles: several models whose outputs are combined by nested weighted medians.
 //!
 //! ```text
-//! y = M(y_1 .. y_n; w_1 .. w_n),    w_i = a_i^{1-o} b_i^o                  theory.md (11.3), (11.4)
-//! w_i = (1-o) a_i/Σa + o b_i/Σb           where that is 0 for all i          theory.md (11.9)
+//! y   = M(y_1 .. y_n; w_1 .. w_n)                                          theory.md (11.3)
+//! w_i = a_i^{1-o} b_i^o,   o = min(1, e / 0.06 (u - l))                    theory.md (11.4)
+//! w_i = (1-o) a_i/Σa + o b_i/Σb      if the products are 0 for all i       theory.md (11.9)
 //! ```
 //!
-//! The median, not the mean: a single fit that runs away does not move it. Nodes come in groups that first
-//! agree among themselves (fits of one kind from several starts, kinds of one family), so that a kind does
-//! not win by being many. A node that is good inside the range it was trained on need not be good outside,
-//! so it has two weights, and `o` tells how far outside the record has been.
+//! `y_i` is the output of node `i`, a member or a group, and `M` the weighted median: each value is placed at
+//! the middle of its weight, with linear interpolation to the cumulative weight 1/2. Node `i` has the weight
+//! `a_i` inside the trained range `l` to `u` of the first input and `b_i` outside it, since a model that is
+//! good inside need not be good outside. `e` is the largest distance by which the record has left the range
+//! so far; `o` is 0 inside and 1 from 6 % of the range on.
+//!
+//! The median is robust: one diverging fit does not change it. Nodes are nested (starts of one model form a
+//! group, models of a kind the next), so that a kind gains no weight by its number of members.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::model::Model;
 
-/// Share of the trained range by which the input must leave it until only the outer weights count.
+/// Share of the trained range by which the input must leave it until only the outside weights count.
 /// Designed.
 const WAY_OUT: f64 = 0.06;
 
-/// Groups within groups, at most.
+/// Largest depth of nested groups.
 const DEEPEST: usize = 8;
 
 /// Several models whose predictions are combined by nested weighted medians.
@@ -34,9 +39,9 @@ pub struct Ensemble {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Group {
-    /// What they have in common.
+    /// Name of the group: what its nodes have in common.
     pub name: String,
-    /// Its members and groups.
+    /// Its nodes: members and groups.
     #[serde(rename = "voices")]
     pub nodes: Vec<Node>,
 }
@@ -56,7 +61,7 @@ pub struct Node {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NodeKind {
-    /// A member, by its place among all.
+    /// A member, by its index in [`Ensemble::members`].
     Member(usize),
     /// The weighted median of a group.
     Group(Group),
@@ -66,19 +71,20 @@ pub enum NodeKind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
-    /// While the record stays in the trained range of the first input.
+    /// Weight `a` while the record stays in the trained range of the first input.
     pub inside: f64,
-    /// Once the record has left it.
+    /// Weight `b` once the record has left it.
     pub outside: f64,
 }
 
 impl Weights {
-    /// The same inside and outside.
+    /// Weight 1 inside and outside.
     pub fn equal() -> Self {
         Self { inside: 1.0, outside: 1.0 }
     }
 
-    /// The weight of a record that has been outside by this degree, 0 to 1: theory.md (11.4).
+    /// The weight `a^{1-o} b^o`, where `o` from 0 to 1 is how far the record has been outside (theory.md
+    /// (11.4)).
     pub(crate) fn at(&self, outside: f64) -> f64 {
         if outside == 0.0 {
             self.inside
@@ -90,7 +96,7 @@ impl Weights {
     }
 }
 
-/// How far outside the trained range a record has been.
+/// How far outside the trained range a record has been so far.
 #[derive(Debug, Clone, Copy)]
 pub struct Excursion {
     range: (f64, f64),
@@ -98,12 +104,14 @@ pub struct Excursion {
 }
 
 impl Excursion {
-    /// Beyond this range, at the beginning of a record.
+    /// At the beginning of a record, for this trained range.
     pub fn beyond(range: (f64, f64)) -> Self {
         Self { range, farthest: 0.0 }
     }
 
-    /// Takes the next input; 0 for always inside, 1 for fully outside.
+    /// Adds the next input and returns `o = min(1, e / 0.06 (u - l))`, where `e` is the largest distance so
+    /// far outside the range `l` to `u`: 0 if the record was always inside, 1 for fully outside (theory.md
+    /// (11.4)).
     pub fn take(&mut self, x: f64) -> f64 {
         let (low, high) = self.range;
         self.farthest = self.farthest.max(low - x).max(x - high);
@@ -111,12 +119,12 @@ impl Excursion {
     }
 }
 
-/// Value and weight of each member, and room to sort them.
+/// Output and weight of each member, for weighted quantiles.
 #[derive(Debug, Clone, Default)]
 pub struct Predictions(Vec<(f64, f64)>);
 
 impl Predictions {
-    /// Forgets all values.
+    /// Removes all values.
     pub fn clear(&mut self) {
         self.0.clear();
     }
@@ -136,8 +144,11 @@ impl Predictions {
         self.0.iter().map(|(_, weight)| weight).sum()
     }
 
-    /// The weighted quantile, theory.md (11.3): each value stands at the middle of its weight, and values
-    /// between are interpolated. With equal weights, `quantile(0.5)` is the ordinary median.
+    /// The weighted quantile at a level from 0 to 1 (theory.md (11.3)).
+    ///
+    /// With the sorted values `y_i` and weights `w_i`, value `i` is at the level `q_i = (w_1 + .. + w_{i-1} +
+    /// w_i/2) / Σ w`, with linear interpolation in between. With equal weights, `quantile(0.5)` is the
+    /// ordinary median.
     pub fn quantile(&mut self, level: f64) -> f64 {
         self.0.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let wanted = level * self.weight();
@@ -161,11 +172,11 @@ impl Predictions {
 }
 
 impl Ensemble {
-    /// An ensemble of models of the same columns. `range` is that of the first input over all data they
-    /// were trained on.
+    /// An ensemble of models of the same columns. `group` combines them, by their indices. `range` is that of
+    /// the first input over all training data, in its unit.
     ///
     /// # Errors
-    /// A group without nodes, a member that is not there, an ensemble as a member, members of different
+    /// A group without nodes, a member that does not exist, an ensemble as a member, members of different
     /// inputs, weights that are negative, not finite or all 0, inside and outside.
     pub fn new(mut members: Vec<Model>, group: Group, range: (f64, f64)) -> Result<Self> {
         group.check(members.len(), DEEPEST)?;
@@ -183,22 +194,22 @@ impl Ensemble {
         Ok(Self { members, group, range })
     }
 
-    /// The group of all.
+    /// The outermost group.
     pub fn group(&self) -> &Group {
         &self.group
     }
 
-    /// All models.
+    /// All members.
     pub fn members(&self) -> &[Model] {
         &self.members
     }
 
-    /// Range of the first input beyond which the outer weights count, in its unit.
+    /// Trained range of the first input, in its unit, outside which the outside weights count.
     pub fn range(&self) -> (f64, f64) {
         self.range
     }
 
-    /// True if it matters that a record has once left the range.
+    /// True if the weights inside and outside differ, so that an excursion of the record matters.
     pub fn remembers_excursions(&self) -> bool {
         self.group.remembers_excursions()
     }
@@ -232,8 +243,9 @@ impl Group {
         Ok(())
     }
 
-    /// The same with something else in the place of each member, or nothing; `None` if nothing is left. The
-    /// weights of each group sum to 1; a class whose weights are all gone has those of the other.
+    /// The group with each member replaced by another node, or removed; `None` if no node is left. The
+    /// weights of each group are scaled to the sum 1; if all weights of a class (inside, outside) are
+    /// removed, those of the other replace them.
     pub fn map_members(&self, with: &mut impl FnMut(usize) -> Option<NodeKind>) -> Option<Group> {
         let mut nodes = Vec::new();
         for Node { weights, kind } in &self.nodes {
@@ -253,7 +265,7 @@ impl Group {
         (inside > 0.0 && outside > 0.0).then_some(group)
     }
 
-    /// Weights of each member in the whole, inside and outside.
+    /// Weight of each member in the whole ensemble, inside and outside.
     pub fn shares(&self) -> Vec<(usize, Weights)> {
         let mut shares = Vec::new();
         let weights = self.blended(0.0).zip(self.blended(1.0));
@@ -277,8 +289,8 @@ impl Group {
         (weights().map(|weights| weights.inside).sum(), weights().map(|weights| weights.outside).sum())
     }
 
-    /// The weights of a record that has been outside by this degree where (11.4) leaves none: theory.md
-    /// (11.9). A class without weights has those of the other.
+    /// The weights `(1-o) a_i/Σa + o b_i/Σb`, where the products `a_i^{1-o} b_i^o` are 0 for all nodes
+    /// (theory.md (11.9)). A class without weights takes those of the other.
     fn blended(&self, outside: f64) -> impl Iterator<Item = f64> {
         let (a, b) = self.sums();
         self.nodes.iter().map(move |Node { weights, .. }| {
@@ -288,7 +300,7 @@ impl Group {
         })
     }
 
-    /// Sum of the weights of (11.4).
+    /// Sum of the products `a_i^{1-o} b_i^o` (theory.md (11.4)).
     fn sum_at(&self, outside: f64) -> f64 {
         self.nodes.iter().map(|node| node.weights.at(outside)).sum()
     }

@@ -1,8 +1,8 @@
-//! The model file: JSON that a person can read, with a version and a checksum.
+//! The model file: readable JSON with a version and a checksum.
 //!
-//! Everything a later version needs to simulate the model stands in it. Every released version is
-//! read by all later ones: when the layout changes, [`FORMAT_VERSION`] rises and the older reader
-//! stays.
+//! It contains everything needed to simulate the model. Every later version of Hysid reads the files of all
+//! released versions: when the layout changes, [`FORMAT_VERSION`] increases and the reader of the earlier
+//! layout is kept.
 
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ struct File {
     checksum: String,
 }
 
-/// The members of an ensemble, how they answer together, and the range beyond which the outer weights count.
+/// The members of an ensemble, how they are combined, and the range outside which the outside weights count.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EnsembleParts {
@@ -86,7 +86,7 @@ struct NetworkParts {
     readout: Readout,
 }
 
-/// Units, as far as the names of the columns tell them: for the reader, the names decide.
+/// Units in the names of the columns, for readers of the file; the program uses the names.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Units {
@@ -194,7 +194,7 @@ impl NetworkParts {
     }
 }
 
-/// The parts of a body: a network, a law or an ensemble.
+/// The parts of a predictor: a network, a law or an ensemble.
 fn parts(body: &Predictor) -> (Option<NetworkParts>, Option<Classical>, Option<EnsembleParts>) {
     match body {
         Predictor::Network { network, scaling } => (Some(NetworkParts::of(network, scaling)), None, None),
@@ -362,7 +362,7 @@ fn assemble(file: File) -> Result<Model> {
     checked(model, file.model)
 }
 
-/// Refuses parts that do not fit together.
+/// Rejects parts that are inconsistent.
 fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.preprocessing.check()?;
     model.trained.check()?;

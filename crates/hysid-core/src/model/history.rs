@@ -1,4 +1,4 @@
-//! What became of each training run.
+//! Training history: the runs of a fit and their errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ use crate::termination::Termination;
 pub enum Phase {
     /// Starts on the training part of a fold.
     Starts,
-    /// The starts on all data; the run kept is the winner's.
+    /// The starts on all data; the history is that of the best one.
     #[serde(alias = "refit")]
     AllData,
 }
@@ -21,31 +21,31 @@ pub enum Phase {
 pub struct HistoryPoint {
     /// Epoch: an iteration, or a generation.
     pub epoch: usize,
-    /// Evaluations of the objective so far, gradients included; 0 in old files, which did not count.
+    /// Evaluations of the objective so far, including gradients; 0 in old files, which did not count them.
     #[serde(default)]
     pub evaluations: usize,
     /// Error on the training rows, in percent of the output's standard deviation.
     pub train_nrmse_percent: f64,
 }
 
-/// What one method made of one start, or of all data.
+/// A training run: one method from one start, or on all data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// Which part of the fit it is.
+    /// The part of the fit to which it belongs.
     pub phase: Phase,
     /// Start, counted from 0.
     pub start: usize,
     /// The method; those of a hybrid are two runs.
     #[serde(default)]
     pub method: Method,
-    /// Error after each epoch; where epochs are many, those at which it fell noticeably, and the last.
-    /// Epochs and evaluations of a hybrid's second method go on from the first.
+    /// Error after each epoch. If there are many epochs, only those at which it decreased noticeably, and the
+    /// last. Epochs and evaluations of a hybrid's second method continue those of the first.
     pub history: Vec<HistoryPoint>,
     /// Why it ended.
     pub termination: Termination,
-    /// The fold that it was trained on, counted from 0; `None` for all data, and in files of before version 4.
+    /// The fold of its training data, counted from 0; `None` for all data, and in files before version 4.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fold: Option<usize>,
-    /// Error on what was held out of the fold, in percent of the standard deviation there.
+    /// Error on the held-out data of the fold, in percent of their standard deviation.
     pub validation_nrmse_percent: Option<f64>,
 }

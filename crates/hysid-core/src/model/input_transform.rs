@@ -1,15 +1,20 @@
-//! What a model sees of its input: as measured, companded, or with a summary of the past beside it.
+//! Input transform: shifts and compresses the input of a model, and adds its history as further inputs.
 //!
 //! ```text
-//! x - c in the place of x                                                   theory.md (11.8)
+//! x - c instead of x                                                        theory.md (11.8)
 //! u = asinh(x / s),    v = asinh(x' / s')                                   theory.md (11.1)
 //! m = max |x| so far / X,    p = ln(1 + 10 path so far / P) / ln 11         theory.md (11.2)
 //! ```
 //!
-//! A soft magnet reverses within a hundredth of the field range, a damper within a hundredth of its speeds;
-//! weights that are spread over these ranges see little of it. Since `u` grows with `x`, all laws of memory
-//! (turning points, wiping-out, Madelung's rules) hold in `u` as they hold in `x`. The largest input and the
-//! path so far tell a degrading structure's state more directly than its stops do.
+//! `x` is the first input and `x'` its rate. `c` is the origin: 0 if it lies inside the range of the input,
+//! otherwise the value at which the records begin, or the middle of the range. *Companding* replaces `x` and
+//! `x'` by `u` and `v`, with the scales `s` and `s'` in the units of `x` and `x'`. *History* adds `m` and `p`
+//! as inputs: running peak and travelled path of the first input, with the largest `|x|` in training, `X`,
+//! and the longest path of a record, `P`.
+//!
+//! Companding resolves small inputs: a soft magnet reverses within a hundredth of the field range. `u`
+//! increases with `x`, so turning points, wiping-out and Madelung's rules are the same in `u` as in `x`.
+//! Running peak and path describe the state of a degrading structure directly.
 
 use std::borrow::Cow;
 
@@ -24,27 +29,28 @@ use crate::network::scaling::SCALES;
 use crate::options::input_options::HISTORY_INPUTS;
 use crate::options::input_options::InputOptions;
 
-/// How a model sees its input, in the user's units.
+/// The input transform of a model, in the user's units; the equations are those of the [module page](self).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InputTransform {
-    /// `c` of theory.md (11.8): the value of each input that the model sees as 0, in the unit of the input.
-    /// The memory is virgin at the `c` of the first input. Empty where all are 0.
+    /// `c`: origin of each input, in its unit. The memory is virgin where the first input is `c`. Empty if
+    /// all are 0 (theory.md (11.8)).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub origins: Vec<f64>,
-    /// `s` of theory.md (11.1), in the unit of the input.
+    /// `s` of `u = asinh(x / s)`, in the unit of the input; `None` for no companding (theory.md (11.1)).
     pub companding: Option<f64>,
-    /// `s'`, in the unit of the rate.
+    /// `s'` of `v = asinh(x' / s')`, in the unit of the rate; `None` for no companding (theory.md (11.1)).
     pub rate_companding: Option<f64>,
-    /// `X` and `P` of theory.md (11.2), in the unit of the input.
+    /// `X` and `P` of `m = max |x| so far / X` and `p = ln(1 + 10 path so far / P) / ln 11`, in the unit of
+    /// the input; `None` for no history (theory.md (11.2)).
     pub history: Option<(f64, f64)>,
 }
 
-/// Share of the rows whose rates stay below the one that the companding of the rate is measured by.
+/// Share of the rows whose rates stay below the reference rate of companding.
 const ROWS_BELOW: f64 = 0.995;
 
 impl InputOptions {
-    /// With the scales that the data have.
+    /// The input transform for these data. Shares are converted to scales in the user's units.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -75,19 +81,21 @@ impl InputOptions {
     }
 }
 
-/// Share of the range of an input that zero must lie away from its ends to be what the input goes about.
-/// Also how far apart, as a share of the range, records may begin that begin at one point. Designed.
+/// Share of the input range by which 0 must be away from the ends to be the origin; also the largest
+/// distance, as a share of the range, between the first values of records that begin at one point. Designed.
 const MARGIN: f64 = 0.05;
 
-/// `c` of theory.md (11.8), one for each input; none where all are 0.
+/// The origin `c` of each input (theory.md (11.8)); none if all are 0.
 fn origins(data: &Dataset) -> Vec<f64> {
     let origins: Vec<f64> = (0..data.names().inputs.len()).map(|input| origin(data, input)).collect();
     if origins.iter().all(|origin| *origin == 0.0) { Vec::new() } else { origins }
 }
 
-/// The physical zero where the input goes about it. Elsewhere (0 to 150 V, 198 to 202 mm) it means nothing or
-/// is an end: what counts is where the specimen was at rest, and that is where its records begin. Of records
-/// that begin here and there, nobody knows; further inputs have no beginning that matters.
+/// The origin `c` of an input, in its unit (theory.md (11.8)): 0 if it lies inside the range; otherwise, for
+/// the first input, the value at which all records begin, if there is one; otherwise the middle of the range.
+///
+/// A 0 outside the range, or at its end (0 to 150 V, 198 to 202 mm), has no meaning for the memory. The
+/// virgin state then belongs where the records begin.
 pub fn origin(data: &Dataset, input: usize) -> f64 {
     let (low, high) = data.input_range(input);
     let margin = MARGIN * (high - low);
@@ -106,7 +114,7 @@ fn path(x: &[f64]) -> f64 {
     x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum()
 }
 
-/// The rate that most rows stay below; 1 if all are 0.
+/// The rate that most rows stay below; 1 if all rates are 0.
 fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
     let mut rates = Vec::with_capacity(data.rows());
     for record in data.records() {
@@ -117,13 +125,13 @@ fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
     Ok(if *rate > 0.0 { *rate } else { 1.0 })
 }
 
-/// Data as a model sees them, and how the rate is found there.
+/// Transformed data, and the method of their rate.
 pub struct Transformed<'d> {
-    /// How the model sees its input.
+    /// The input transform.
     pub preprocessing: InputTransform,
-    /// The data as it sees them.
+    /// The transformed data.
     pub data: Cow<'d, Dataset>,
-    /// How the rate is found there.
+    /// The method of the rate of the transformed data.
     pub rate: Option<RateMethod>,
 }
 
@@ -161,7 +169,8 @@ pub(crate) struct Past {
 }
 
 impl Past {
-    /// Takes the next input; gives `m` and `p` of theory.md (11.2).
+    /// Adds the next input and returns `m = max |x| so far / X` and `p = ln(1 + 10 path so far / P) / ln 11`
+    /// (theory.md (11.2)).
     fn take(&mut self, x: f64, (largest, longest): (f64, f64)) -> [f64; HISTORY_INPUTS] {
         self.largest = self.largest.max(x.abs());
         self.path += self.last.map_or(0.0, |last| (x - last).abs());
@@ -171,38 +180,38 @@ impl Past {
 }
 
 impl InputTransform {
-    /// True if the model sees its input as it is.
+    /// True if the input is not changed.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Inputs that are added to those of the record.
+    /// Number of inputs that are added to those of the record.
     pub fn added_inputs(&self) -> usize {
         if self.history.is_some() { HISTORY_INPUTS } else { 0 }
     }
 
-    /// What an input of the record is measured from.
+    /// Origin `c` of an input, in its unit.
     pub fn origin(&self, input: usize) -> f64 {
         self.origins.get(input).copied().unwrap_or_default()
     }
 
-    /// The first input as the model sees it.
+    /// The transformed first input.
     pub fn input(&self, x: f64) -> f64 {
         let x = x - self.origin(0);
         self.companding.map_or(x, |scale| (x / scale).asinh())
     }
 
-    /// Any input as the model sees it; the first counts as 0.
+    /// Any transformed input; the index 0 is the first.
     pub fn input_as_seen(&self, input: usize, value: f64) -> f64 {
         if input == 0 { self.input(value) } else { value - self.origin(input) }
     }
 
-    /// The rate as the model sees it.
+    /// The transformed rate.
     pub fn rate(&self, rate: f64) -> f64 {
         self.rate_companding.map_or(rate, |scale| (rate / scale).asinh())
     }
 
-    /// All inputs of a sample as the model sees them, into `seen`.
+    /// Writes all transformed inputs of a sample into `seen`.
     pub(crate) fn sample(&self, inputs: &[f64], past: &mut Past, seen: &mut Vec<f64>) {
         seen.clear();
         seen.extend(
@@ -213,7 +222,7 @@ impl InputTransform {
         }
     }
 
-    /// What the model sees of an excitation; `None` where that is the excitation itself.
+    /// The transformed columns of an excitation; `None` if they are unchanged.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -244,7 +253,7 @@ impl InputTransform {
         Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()? }))
     }
 
-    /// Data as the model sees them, and how the rate is found there.
+    /// Transformed data, and the method of their rate.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -265,7 +274,7 @@ impl InputTransform {
         Ok((Cow::Owned(Dataset::new(names, records)?), rate.map(|_| RateMethod::Given)))
     }
 
-    /// Refuses scales of a file that are none.
+    /// Rejects invalid scales of a file.
     pub(crate) fn check(&self) -> Result<()> {
         let scales =
             [self.companding, self.rate_companding, self.history.map(|h| h.0), self.history.map(|h| h.1)];
@@ -283,7 +292,7 @@ pub(crate) fn limited(value: f64) -> f64 {
     value.clamp(-LARGEST_VALUE, LARGEST_VALUE)
 }
 
-/// Columns that a model sees in the place of those measured.
+/// Transformed columns.
 pub(crate) struct SeenColumns {
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! What a user should know of a fitted model beside its errors.
+//! Notes on a fitted model, other than its errors.
 
 use crate::data::metrics::Errors;
 use crate::data::warning::Warning;
@@ -10,15 +10,15 @@ use crate::significant::Significant;
 const WEIGHTS_A_ROW: usize = 2;
 
 impl Model {
-    /// What a user should know before relying on the model, in sentences: rows that it was not trained on, and
-    /// data that could not tell candidates apart. Empty if there is nothing.
+    /// Notes to read before use of the model, in sentences: rows that were not used in training, and data
+    /// that could not distinguish candidates. Empty if there are none.
     pub fn notes(&self) -> Vec<String> {
         let size = self.size_warning().map(|warning| warning.to_string());
         self.warm_up_note().into_iter().chain(self.one_loop_note()).chain(size).collect()
     }
 
-    /// Warns of more parameters than rows that they were found from, in an ensemble of those of its largest member. Of a
-    /// single network it is told before the fit.
+    /// A note on more parameters than rows; for an ensemble, of its largest member. For a single network
+    /// there is a warning before the fit.
     fn size_warning(&self) -> Option<Warning> {
         // Where data were held out, their error tells more.
         if self.network().is_some() || self.provenance().validation.is_some() {

@@ -1,4 +1,4 @@
-//! Inputs and rates beyond what a model was trained on.
+//! Inputs and rates outside the range of the training data.
 
 use crate::data::warning::Warning;
 use crate::model::Model;

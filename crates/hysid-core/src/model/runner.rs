@@ -1,7 +1,7 @@
-//! A model on its way over a record, some rows at a time: what every free run of a model goes through.
+//! Run of a model over a record in chunks of rows: the common path of all simulations.
 //!
-//! Rows are taken in chunks, with the rates of their first input and the time steps before them. However a record is
-//! cut, the outputs are the same to the last bit, since each row's rate and step follow from the rows around it.
+//! Each chunk has the rates of its first input and the time steps. They follow from the neighbouring rows, so
+//! the outputs are the same to the last bit for any division of a record.
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
@@ -42,15 +42,15 @@ enum Parts<'m> {
     Ensemble(Box<Members<'m>>),
 }
 
-/// A single model: a network or a law, and how it sees its input.
+/// A single model: a network or a law, with its input transform.
 #[derive(Debug, Clone)]
 struct Single<'m> {
     mechanism: Mechanism<'m>,
-    /// `None` for a model that sees its input as it is.
+    /// `None` for a model without input transform.
     preprocessing: Option<&'m InputTransform>,
     rate: Option<RateMethod>,
     past: Past,
-    /// Columns of a chunk as the model sees them.
+    /// Transformed columns of a chunk.
     seen: Vec<Vec<f64>>,
     seen_rate: Vec<f64>,
 }
@@ -289,7 +289,7 @@ impl<'m> Single<'m> {
     }
 }
 
-/// Inputs as a model sees them, column by column.
+/// Transformed inputs, column by column.
 fn see(preprocessing: &InputTransform, inputs: &[&[f64]], past: &mut Past, seen: &mut Vec<Vec<f64>>) {
     seen.resize(inputs.len() + preprocessing.added_inputs(), Vec::new());
     seen.iter_mut().for_each(Vec::clear);
@@ -302,7 +302,7 @@ fn see(preprocessing: &InputTransform, inputs: &[&[f64]], past: &mut Past, seen:
 }
 
 impl Mechanism<'_> {
-    /// Runs on with the inputs and the rate as the model sees them.
+    /// Continues with transformed inputs and rate.
     fn run(
         &mut self,
         chunk: &Chunk<'_>,

@@ -5,34 +5,37 @@ use serde::{Deserialize, Serialize};
 use crate::model::Weights;
 use crate::significant::Significant;
 
-/// How candidates did on data held out.
+/// Cross-validation of candidates: the folds, and the error of each candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Selection {
-    /// What was held out, fold by fold, in words.
+    /// Name of the held-out data of each fold.
     pub folds: Vec<String>,
-    /// Error of the ensemble, in percent of the standard deviation: geometric mean over the folds, of rows
-    /// inside the trained range and of rows beyond it (theory.md 11.5).
+    /// Error of the ensemble in percent of the standard deviation, inside and outside the trained range:
+    /// geometric mean over the folds of `rmse_f / σ_f`, with the standard deviation `σ_f` of the output on
+    /// fold `f` (theory.md (11.5)).
     pub error_percent: (f64, f64),
     /// The candidates, the best of each kind first.
     pub candidates: Vec<CandidateResult>,
-    /// How a single model came about; `None` for an ensemble.
+    /// How a single model was chosen; `None` for an ensemble.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single: Option<SingleModel>,
-    /// Rows at the beginning of each record that were not trained on; `None` if there are none.
+    /// The warm-up: rows at the beginning of each record that were not scored in training; `None` if there
+    /// are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warm_up: Option<WarmUp>,
-    /// All reversals of the first input lie at the ends of its range: the data cannot tell candidates apart
-    /// inside the loop. The weights then also use how candidates did on generated cases, and the band is wider.
+    /// True if all reversals of the first input lie at the ends of its range. Such data cannot distinguish
+    /// candidates inside the loop. The weights then also use errors on generated cases, and the band is
+    /// wider.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub one_loop: bool,
-    /// Candidates that were dropped early, because they stayed far behind the best.
+    /// Candidates that were dropped early because their errors were far above the best.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub dropped: Vec<String>,
 }
 
 impl Selection {
-    /// What was chosen and why, in two lines.
+    /// The choice and its reason, in two lines.
     pub fn summary(&self) -> [String; 2] {
         let mut kinds: Vec<&str> = self.candidates.iter().map(|one| one.kind.as_str()).collect();
         kinds.dedup();
@@ -84,53 +87,56 @@ impl Selection {
     }
 }
 
-/// How a candidate did.
+/// Cross-validation result of a candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CandidateResult {
-    /// What it is.
+    /// Name of the candidate.
     pub name: String,
     /// Its kind.
     pub kind: String,
-    /// Its error, as that of the ensemble.
+    /// Its error, in percent, as that of the ensemble.
     pub error_percent: (f64, f64),
-    /// What it counts in the whole, as a share of all.
+    /// Its share of all weights in the ensemble, inside and outside.
     pub share: Weights,
-    /// Fits of it in the model.
+    /// Number of its fits in the ensemble.
     pub members: usize,
-    /// Error of the ensemble without it; `None` if it does not count.
+    /// Error of the ensemble without it, in percent; `None` if it has no weight.
     pub without_percent: Option<(f64, f64)>,
 }
 
-/// A single model that was asked for, and how it was chosen.
+/// How a requested single model was chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SingleModel {
-    /// The candidate that it is a fit of.
+    /// The candidate of which it is a fit.
     pub name: String,
     /// True if it was distilled from the ensemble, false if it was fitted to the data alone.
     pub distilled: bool,
-    /// Error of a distilled model on data held out, as that of the ensemble; `None` if none was made.
+    /// Error of the distilled model on held-out data, in percent, as that of the ensemble; `None` if none was
+    /// made.
     pub distilled_percent: Option<(f64, f64)>,
-    /// Error of the best candidate fitted to the data alone, from one start, as that of the ensemble.
+    /// Error of the best candidate fitted to the data alone, from one start, in percent, as that of the
+    /// ensemble.
     pub plain_percent: (f64, f64),
 }
 
-/// Rows at the beginning of each record that drive the memory and are not trained on, and what that changes.
+/// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training, and
+/// their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WarmUp {
-    /// Rows of each record.
+    /// Number of rows of each record.
     pub rows: usize,
-    /// Cross-validated error of a quick model that was not trained on them, on the rows behind, in percent of
-    /// the standard deviation (theory.md 11.5); `None` where the user has decided.
+    /// Cross-validated error on the later rows, in percent of the standard deviation, of a quick model
+    /// trained without the rows of the warm-up; `None` if the user chose the warm-up.
     pub without_percent: Option<f64>,
-    /// The same of a model that was.
+    /// The same of a model trained with them.
     pub with_percent: Option<f64>,
 }
 
 impl WarmUp {
-    /// So many rows, because the user has decided so.
+    /// A warm-up chosen by the user.
     pub fn decided(rows: usize) -> Self {
         Self { rows, without_percent: None, with_percent: None }
     }

@@ -1,4 +1,4 @@
-//! A free run over records that come block by block: memory does not grow with the record.
+//! Simulation of records that are processed in blocks: the storage needed does not grow with the record.
 
 use std::mem;
 
@@ -8,10 +8,10 @@ use crate::error::{Channel, DataProblem, Error, Result};
 use crate::model::runner::{Runner, Spread};
 use crate::model::{Band, Model, Prediction};
 
-/// A free run that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
-/// [`Model::predict`] to the last bit, however the record is cut.
+/// A simulation that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
+/// [`Model::predict`] to the last bit, for any division into blocks.
 ///
-/// Where the rate of a row follows from the rows behind it, its output comes with a later block.
+/// If the rate of a row depends on later rows, its output is returned with a later block.
 #[derive(Debug, Clone)]
 pub struct Simulation<'m> {
     model: &'m Model,
@@ -39,18 +39,18 @@ impl<'m> Simulation<'m> {
         Self { model, runner, band, record: String::new(), window: Window::default() }
     }
 
-    /// Begins a record of this name, from the virgin state. What was left of another is dropped.
+    /// Begins a record of this name, from the virgin state. Pending rows of an earlier record are dropped.
     pub fn begin(&mut self, record: impl Into<String>) {
         self.runner.reset();
         self.record = record.into();
         self.window = Window::default();
     }
 
-    /// Takes the next rows of the record. Gives the outputs of those rows, after all before, whose rates are known; the
-    /// edges of the band are empty without one.
+    /// Simulates the next rows of the record. Returns the outputs of all rows so far whose rates are known
+    /// and that have not been returned before. Without a band, its limits are empty.
     ///
     /// # Errors
-    /// As [`Model::simulate`], with the row in the record; time that does not advance from block to block.
+    /// As [`Model::simulate`], with the row in the record; time that does not increase from block to block.
     pub fn take(&mut self, rows: &Excitation<'_>) -> Result<Prediction> {
         self.model.check_time(rows)?;
         self.window.append(rows)?;
@@ -58,7 +58,7 @@ impl<'m> Simulation<'m> {
         self.simulate(self.window.len().saturating_sub(behind))
     }
 
-    /// Ends the record: gives the outputs of the rows that are left.
+    /// Ends the record and returns the outputs of the remaining rows.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -66,7 +66,7 @@ impl<'m> Simulation<'m> {
         self.simulate(self.window.len())
     }
 
-    /// Warns of inputs and rates, of all records so far, beyond what the model was trained on.
+    /// Warnings of inputs and rates, of all records so far, outside the range of the training data.
     pub fn range_warnings(&self) -> Vec<Warning> {
         self.runner.ranges().map_or_else(Vec::new, |ranges| ranges.warnings())
     }

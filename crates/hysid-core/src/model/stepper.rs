@@ -1,4 +1,4 @@
-//! A model run sample by sample.
+//! Simulation of a model sample by sample.
 
 use std::borrow::Cow;
 
@@ -9,8 +9,8 @@ use crate::model::input_transform::{Past, limited};
 use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
-/// A model that is run sample by sample. Fed with the rates that [`Model::simulate`] would use, it
-/// gives the same outputs to the last bit.
+/// A sample-by-sample simulation. With the rates that [`Model::simulate`] uses, its outputs are the same to
+/// the last bit.
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
     model: Cow<'m, Model>,
@@ -67,19 +67,21 @@ impl<'m> Stepper<'m> {
         Self { state: State::virgin(&model), model }
     }
 
-    /// The next sample: inputs and time in the user's units, `time` of no matter for a model that
-    /// needs none. `rate` is that of the first input, for a model with one; without it a backward
-    /// difference is taken (0 at the first sample).
+    /// Advances to the next sample and returns the output there, in the user's unit.
+    ///
+    /// `inputs` has one value for each input and `time` is the time of the sample, in the user's units;
+    /// `time` is ignored by a model that needs none. `rate` is that of the first input, for a model with one;
+    /// `None` stands for a backward difference (0 at the first sample).
     ///
     /// # Errors
-    /// Another number of inputs, a value that is not finite, or time that does not advance. The memory is as it was
-    /// then.
+    /// Another number of inputs, a value that is not finite, or time that does not increase. The memory is
+    /// then unchanged.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
         Ok(self.state.advance(&self.model, inputs, time, rate))
     }
 
-    /// Back to the virgin state.
+    /// Returns to the virgin state.
     pub fn reset(&mut self) {
         self.state.reset(&self.model);
     }
@@ -95,7 +97,7 @@ impl State {
         }
     }
 
-    /// Refuses a sample that cannot be taken, before anything is changed.
+    /// Rejects an invalid sample before the state changes.
     fn check(&self, model: &Model, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<()> {
         let expected = model.inputs();
         if inputs.len() != expected {

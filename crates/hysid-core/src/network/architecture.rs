@@ -1,10 +1,10 @@
-//! Which parts a network has: one family, many names.
+//! Architecture: which parts of the family a network has, and how many.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, OptionError, Result};
 
-/// The networks of the paper, and ours. All are [`Architecture`]s with parts switched off.
+/// A named family of networks: which parts of the [`Architecture`] are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Family {
     /// Prandtl neural network: stops of x, linear readout.
@@ -30,7 +30,7 @@ impl Family {
     pub const ALL: [Family; 5] =
         [Family::Pnn, Family::Gpnn, Family::PreisachNn, Family::Xpnn, Family::XpnnPlus];
 
-    /// The name on the command line and in model files.
+    /// Its name on the command line and in model files, such as `preisach-nn`.
     pub fn name(self) -> &'static str {
         match self {
             Family::Pnn => "pnn",
@@ -41,27 +41,27 @@ impl Family {
         }
     }
 
-    /// True if the family's stops see the rate of the input.
+    /// True if the rate of the first input is an input of the stops.
     pub fn uses_rate(self) -> bool {
         matches!(self, Family::Xpnn | Family::XpnnPlus)
     }
 
-    /// True if the family's stops deteriorate.
+    /// True if the stops deteriorate.
     pub fn deteriorates(self) -> bool {
         matches!(self, Family::Gpnn | Family::Xpnn | Family::XpnnPlus)
     }
 
-    /// True if the family has a layer of tanh neurons.
+    /// True if there is a tanh layer.
     pub fn has_tanh_layer(self) -> bool {
         !matches!(self, Family::Pnn | Family::Gpnn)
     }
 
-    /// True if the family has relaxation neurons where there is time.
+    /// True if there are relaxation neurons, provided that the data have time stamps.
     pub fn relaxes(self) -> bool {
         self == Family::XpnnPlus
     }
 
-    /// True if the family takes more than one input.
+    /// True if more than one input is possible.
     pub fn takes_further_inputs(self) -> bool {
         self == Family::XpnnPlus
     }
@@ -79,14 +79,14 @@ impl std::str::FromStr for Family {
     }
 }
 
-/// Sizes that the user chooses.
+/// Numbers of neurons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sizes {
     /// Stop neurons.
     pub stops: usize,
-    /// Tanh neurons, where the family has a tanh layer.
+    /// Tanh neurons; ignored by a family without a tanh layer.
     pub hidden: usize,
-    /// Relaxation neurons of each input, where the family has any and there is time.
+    /// Relaxation neurons of each input; ignored by a family without them, and without time stamps.
     pub relaxation: usize,
 }
 
@@ -96,27 +96,27 @@ impl Default for Sizes {
     }
 }
 
-/// The parts of a network of the family, theory.md (2.1) to (2.6).
+/// The parts of a network: which equations of the [module page](super) it uses (theory.md (2.1) to (2.6)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Architecture {
-    /// Input channels, without the rate.
+    /// Number of inputs, without the rate.
     pub inputs: usize,
-    /// The rate of the first input is a channel too.
+    /// True if the rate of the first input is an input of the network too.
     pub rate: bool,
     /// Stop neurons.
     pub stops: usize,
-    /// The stops deteriorate.
+    /// True if the stops deteriorate (finite `β`).
     pub deterioration: bool,
-    /// One linear neuron beside the stops.
+    /// True if there is a linear neuron `z_0`.
     pub linear: bool,
-    /// Relaxation neurons of each input channel.
+    /// Relaxation neurons of each input.
     pub relaxation: usize,
-    /// Tanh neurons; 0 for a linear readout of the memory layer.
+    /// Tanh neurons; 0 for a network whose memory neurons lead directly to the output.
     pub hidden: usize,
-    /// The memory layer also goes straight to the output, past the tanh layer.
+    /// True if there is a direct path `d_j` beside the tanh layer.
     pub direct: bool,
-    /// The output has a constant.
+    /// True if the output has a constant `c_0`.
     pub constant: bool,
 }
 
@@ -127,11 +127,11 @@ const MOST_NEURONS: usize = 1000;
 const MOST_INPUTS: usize = 100;
 
 impl Architecture {
-    /// The architecture of a family, for `inputs` channels, with or without a rate, with or without
-    /// time (without time there is nothing to relax in).
+    /// The architecture of a family for data with this number of inputs, with or without a rate, with or
+    /// without time stamps. Without time stamps there are no relaxation neurons.
     ///
     /// # Errors
-    /// No stops or hidden neurons where the family needs them, more than 1000 of one kind, further
+    /// No stops or tanh neurons where the family needs them, more than 1000 neurons of one kind, several
     /// inputs for a family that takes one.
     pub fn new(family: Family, sizes: Sizes, inputs: usize, rate: bool, time: bool) -> Result<Self> {
         let neural = !matches!(family, Family::Pnn | Family::Gpnn);
@@ -158,7 +158,7 @@ impl Architecture {
         Ok(architecture)
     }
 
-    /// Refuses numbers of parts that make no network, or one beyond reason.
+    /// Checks the numbers of parts.
     ///
     /// # Errors
     /// No stop, no input, more than 100 inputs, more than 1000 neurons of a kind.
@@ -179,33 +179,36 @@ impl Architecture {
         Ok(())
     }
 
-    /// Channels that the stops see: the first input, its rate, the further inputs.
+    /// Number of channels of `u`: the first input, its rate, the further inputs.
     pub fn channels(&self) -> usize {
         self.inputs + usize::from(self.rate)
     }
 
-    /// Relaxation neurons of all inputs together.
+    /// Number of relaxation neurons of all inputs together.
     pub fn relaxation_neurons(&self) -> usize {
         self.relaxation * self.inputs
     }
 
-    /// Neurons of the memory layer: linear, stops, relaxation, in this order.
+    /// Number of memory neurons: linear neuron, stops and relaxation neurons, in this order.
     pub fn memory_neurons(&self) -> usize {
         usize::from(self.linear) + self.stops + self.relaxation_neurons()
     }
 
-    /// True if the memory layer goes straight to the output.
+    /// True if the memory neurons lead directly to the output, beside a tanh layer or without one.
     pub fn has_direct_path(&self) -> bool {
         self.direct || self.hidden == 0
     }
 
-    /// Output weights, found by least squares: constant, tanh neurons, direct path, in this order.
+    /// Number of output weights, found by least squares: constant, tanh neurons, direct path, in this order.
     pub fn output_weights(&self) -> usize {
         let direct = if self.has_direct_path() { self.memory_neurons() } else { 0 };
         usize::from(self.constant) + self.hidden + direct
     }
 
-    /// Number of parameters found by search: all but the output weights, theory.md (2.8).
+    /// Number of parameters found by search, which are all but the output weights.
+    ///
+    /// For `xpnn` with `n_s` stops, `n_t` tanh neurons and the two inputs `x` and `x'` it is `n_s n_t + 3 n_s
+    /// + 2 n_t + 2` (theory.md (2.8)).
     pub fn searched_parameters(&self) -> usize {
         let memory = self.stops * (self.channels() + usize::from(self.deterioration))
             + if self.linear { self.channels() } else { 0 }
@@ -218,8 +221,11 @@ impl Architecture {
         self.searched_parameters() + self.output_weights()
     }
 
-    /// The paper's count of free parameters, theory.md (2.7): connection weights of a network with x
-    /// and its rate; it leaves out the output weights and forgets the β of the stops.
+    /// The paper's count of free parameters of a network with the inputs `x` and `x'`: `n_s n_t + 2 (n_s +
+    /// n_t + 1)`, with `n_s` stops and `n_t` hidden (tanh) neurons (theory.md (2.7)).
+    ///
+    /// It includes the connection weights and biases, but neither the output weights nor the capacities `β`
+    /// of the stops.
     pub fn paper_count(stops: usize, hidden: usize) -> usize {
         stops * hidden + 2 * (stops + hidden + 1)
     }

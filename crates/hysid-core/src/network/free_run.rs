@@ -1,5 +1,5 @@
-//! A network run over records in the user's units, from the virgin state and without ever looking at
-//! the measured output.
+//! Free run of a network over records in the user's units: from the virgin state, and without the measured
+//! output.
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
@@ -10,7 +10,7 @@ use crate::network::{Network, Simulator};
 /// Rows scaled at a time: they stay in the first-level cache.
 pub(crate) const CHUNK: usize = 1024;
 
-/// A network with what it takes to run it over a record.
+/// A network with its memory, its scaling and the method of its rate.
 #[derive(Debug, Clone)]
 pub struct FreeRun<'a> {
     network: &'a Network,
@@ -22,23 +22,24 @@ pub struct FreeRun<'a> {
 }
 
 impl<'a> FreeRun<'a> {
-    /// A run that begins in the virgin state.
+    /// A run from the virgin state. `rate` is the method by which the rate of the first input is found;
+    /// `None` for a network without rate.
     pub fn new(network: &'a Network, scaling: &'a Scaling, rate: Option<RateMethod>) -> Self {
         let channels = vec![Vec::new(); network.architecture().channels()];
         Self { network, simulator: network.simulator(), scaling, rate, channels }
     }
 
-    /// Inputs of a record.
+    /// Number of inputs of a record.
     pub fn inputs(&self) -> usize {
         self.scaling.inputs.len()
     }
 
-    /// Back to the virgin state.
+    /// Returns to the virgin state.
     pub fn reset(&mut self) {
         self.simulator.reset();
     }
 
-    /// Runs on over a chunk: the rows of the excitation from `first` on, with the time step before each.
+    /// Simulates the rows of the excitation from `first` on, with the time step before each.
     pub fn rows(
         &mut self,
         excitation: &Excitation<'_>,
@@ -55,6 +56,9 @@ impl<'a> FreeRun<'a> {
     }
 
     /// The output of each row, in the user's unit.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed.
     pub fn response(&mut self, excitation: &Excitation<'_>) -> Result<Vec<f64>> {
         let (expected, found) = (self.inputs(), excitation.inputs().len());
         if expected != found {

@@ -1,12 +1,16 @@
-//! The gradient of a sum of squared residuals, without the Jacobian: each block of rows is run
-//! backward once, and what comes out is summed over rows at once.
+//! Gradient of half the sum of squared residuals by the parameters found by search, without the Jacobian.
 //!
 //! ```text
-//! g = Jᵀr,   r = Φc - y      theory.md (3.3)
+//! g = Jᵀr,   r = Φc - y                                      theory.md (3.3)
 //! ```
 //!
-//! It costs about as much as two evaluations, whatever the number of parameters, where the Gram matrix
-//! of the Jacobian costs their square.
+//! `Φ` has one row for each row with a measured output `y`, and its columns are the terms of the output
+//! (constant, tanh neurons, direct path); `c` are the output weights, held fixed; `J = ∂(Φc)/∂θ` for the
+//! parameters `θ`.
+//!
+//! Each block of rows is propagated backward once, with its residuals, and the results are summed over the
+//! rows. The cost is about that of two evaluations for any number of parameters; the cost of the Gram matrix
+//! of the Jacobian grows with their square.
 
 use pulp::{Simd, WithSimd};
 
@@ -20,24 +24,25 @@ use crate::stop_check::StopCheck;
 /// Partial sums of each component, so that a sum over rows is SIMD code.
 const LANES: usize = 8;
 
-/// Gathers `Jᵀr` over records, for output weights held; a target of NaN is passed over.
+/// The gradient `Jᵀr` over records, `r = Φc - y`, with output weights `c` held fixed (theory.md (3.3)). Rows
+/// with a NaN target are skipped.
 pub struct GradientOverRecords<'a> {
-    /// The network.
+    /// Architecture of the network.
     pub architecture: &'a Architecture,
-    /// Its parameters.
+    /// Its parameters, in the order of [`Layout`].
     pub parameters: &'a [f64],
-    /// Its output weights.
+    /// Its output weights `c`.
     pub output: &'a [f64],
     /// Scaled inputs of each record.
     pub drives: &'a [Drive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
-    /// Ends the walk early; the sum means nothing then.
+    /// Stops the computation early; the sum is then incomplete and must not be used.
     pub stop: StopCheck<'a>,
 }
 
 impl GradientOverRecords<'_> {
-    /// The sum over rows, one number for each parameter.
+    /// Computes the sum over rows, one number for each parameter.
     pub fn sum(self) -> Vec<f64> {
         simd::run(self)
     }

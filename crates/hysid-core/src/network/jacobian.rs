@@ -1,12 +1,26 @@
-//! Exact derivatives of the output by every parameter found by search, and the Gram matrix that
-//! gathers all that least squares needs of them.
+//! Exact derivatives of the output by every parameter found by search, and their Gram matrix for least
+//! squares.
 //!
 //! ```text
-//! q_j = ∂y/∂z_j = Σ_i c_i (1 - h_i²) U_ij + d_j      theory.md (2.11)
+//! q_j = ∂y/∂z_j = Σ_i c_i (1 - h_i²) U_ij + d_j              theory.md (2.11)
+//!
+//! ∂y/∂w_j    = q_j ∂z_j/∂w_j                                 weights of stop j
+//! ∂y/∂ln β_j = q_j ε_j s_j/β_j                               its capacity
+//! ∂y/∂a      = q_0 u                                         weights of the linear neuron
+//! ∂y/∂ln τ_j = q_j ∂z_j/∂ln τ_j                              time constant of a relaxation neuron
+//! ∂y/∂U_ij   = c_i (1 - h_i²) z_j,   ∂y/∂b_i = c_i (1 - h_i²)
 //! ```
 //!
-//! The derivative by a parameter of a memory neuron is `q_j` times that of its output, theory.md
-//! (2.9) and (2.10).
+//! The symbols are those of the [module of networks](crate::network). For a stop, with `u_ref` the scaled
+//! input at its last slip (0 before the first),
+//!
+//! ```text
+//! ∂p/∂w = u_ref,   ∂ε/∂w = u - u_ref,   ∂s/∂w = Σ sign(Δp) Δu_ref
+//! ∂z/∂w = (1 - s/β) ∂ε/∂w - (ε/β) ∂s/∂w                      theory.md (2.9)
+//! ```
+//!
+//! and all derivatives are 0 once `s >= β`. That of a relaxation neuron follows from its step (theory.md
+//! (2.10)).
 
 use pulp::{Simd, WithSimd};
 
@@ -18,20 +32,20 @@ use crate::network::{Architecture, Layout, Network};
 use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
 
-/// Output and Jacobian of a network over a record.
+/// Output and Jacobian of a network over a record, in scaled units.
 #[derive(Debug, Clone)]
 pub struct Linearised {
     /// Scaled output of each row.
     pub output: Vec<f64>,
-    /// Derivative of the output by each parameter in the order of [`Layout`], output weights held:
-    /// one column of all rows for each parameter. At a kink of a stop, one of the two one-sided
-    /// derivatives (a sub-gradient).
+    /// Derivative of the output by each parameter, with output weights held fixed: one column for each
+    /// parameter in the order of [`Layout`], with one value a row. At a kink of a stop it is one of the two
+    /// one-sided derivatives (a sub-gradient).
     pub jacobian: Vec<Vec<f64>>,
 }
 
 impl Network {
-    /// Output and exact Jacobian over a record, from the virgin state. It holds rows times parameters
-    /// numbers: meant for analysis; training gathers what it needs without storing it.
+    /// Simulates a record from the virgin state and computes the exact Jacobian. The result holds rows times
+    /// parameters numbers: it is meant for analysis. Training sums the same derivatives without storing them.
     ///
     /// # Panics
     /// If the drive's channels are not those of the architecture.
@@ -58,8 +72,8 @@ impl Network {
     }
 }
 
-/// What is computed for every row that has a target: features, target and, if output weights are
-/// given, the Jacobian; in this order, as columns.
+/// The columns that are computed for every row with a target: features (what the output weights multiply),
+/// target and, if output weights are given, the Jacobian, in this order.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns<'a> {
     /// The network.
@@ -87,20 +101,20 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Gathers the Gram matrix of the [`Columns`] over records; a target of NaN is passed over.
+/// The Gram matrix of the [`Columns`] over records. Rows with a NaN target are skipped.
 pub struct GramOverRecords<'a> {
-    /// What is multiplied.
+    /// The columns.
     pub columns: Columns<'a>,
     /// Scaled inputs of each record.
     pub drives: &'a [Drive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
-    /// Ends the walk early; what is gathered means nothing then.
+    /// Stops the computation early; the matrix is then incomplete and must not be used.
     pub stop: StopCheck<'a>,
 }
 
 impl GramOverRecords<'_> {
-    /// The Gram matrix.
+    /// Computes the Gram matrix.
     pub fn gram(self) -> Gram {
         simd::run(self)
     }
@@ -158,17 +172,17 @@ impl TakeRows for Rows {
     }
 }
 
-/// The [`Columns`] of every row with a target, from column `first` on: for few rows.
+/// The [`Columns`] of every row with a target, from column `first` on, stored; for few rows.
 pub struct RowsOverRecords<'a> {
-    /// What is computed.
+    /// The columns.
     pub columns: Columns<'a>,
-    /// The first column that is kept.
+    /// The first column that is stored.
     pub first: usize,
     /// Scaled inputs of each record.
     pub drives: &'a [Drive],
     /// Scaled outputs of each record.
     pub targets: &'a [Vec<f64>],
-    /// Ends the walk early; rows are missing then.
+    /// Stops the computation early; rows are then missing.
     pub stop: StopCheck<'a>,
 }
 
@@ -213,7 +227,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
         }
     }
 
-    /// Columns of the Jacobian, theory.md (2.11).
+    /// Columns of the Jacobian: the derivatives of the module page, by theory.md (2.11).
     #[inline(always)]
     fn jacobian<S: Simd>(&mut self, output: &[f64], block: &Block, readout: &Readout) {
         let m = self.spec.architecture.output_weights();

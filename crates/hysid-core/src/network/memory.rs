@@ -1,12 +1,16 @@
 //! The memory layer: linear neuron, stop neurons, relaxation neurons.
 //!
 //! ```text
-//! v = w·u;  p <- clip(p; v - 1, v + 1);  ε = v - p;  s += |Δp|;  z = ε max(0, 1 - s/β)   theory.md (2.2)
+//! v = w·u;  p = clip(p; v - 1, v + 1);  ε = v - p;  s += |Δp|;  z = ε max(0, 1 - s/β)    theory.md (2.2)
 //! z_0 = a·u                                                                              theory.md (2.3)
+//! z'  = u_c' - z/τ                                                                       theory.md (2.4)
 //! ```
 //!
-//! Time cannot be cut into lanes, neurons can: eight stops advance together, and their outputs are
-//! then turned from time-major to neuron-major for the readout, which has all of time to cut.
+//! The symbols are those of the [module of networks](crate::network).
+//!
+//! Rows depend on those before, neurons do not depend on each other: eight stops advance together as the
+//! lanes of a vector. Their outputs are then transposed from time-major to neuron-major for the readout,
+//! whose lanes are rows.
 
 use std::ops::{Deref, DerefMut};
 
@@ -91,7 +95,8 @@ struct Group {
     inverse_beta: Lanes,
 }
 
-/// What the memory layer knows of the past: the model's whole state.
+/// The state of a network: plays and slips of the stops, states of the relaxation neurons, and the last
+/// inputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MemoryState {
     started: bool,
@@ -278,8 +283,8 @@ impl MemoryLayer {
         self.remember(state, u, rows);
     }
 
-    /// At the first row of a record the plays jump from virgin to where they are held; that jump is
-    /// no slip: theory.md (1.5).
+    /// Initializes the plays at the first row of a record; this movement is no slip, `s_0 = 0` (theory.md
+    /// (1.5)).
     #[inline(always)]
     fn begin<S: Simd>(&self, state: &mut MemoryState, u: &[Row]) {
         if state.started {
@@ -468,8 +473,8 @@ struct StopSlopes<'a> {
     ln_beta: &'a mut [Row],
 }
 
-/// Advances one group through a block with the sub-gradient of theory.md (2.9). At a kink the
-/// sample counts as sticking.
+/// Advances one group through a block with its sub-gradient `∂z/∂w = (1 - s/β) ∂ε/∂w - (ε/β) ∂s/∂w`
+/// (theory.md (2.9)). At a kink the sample counts as sticking.
 #[inline(always)]
 fn advance_with_slopes<S: Simd>(
     simd: S,

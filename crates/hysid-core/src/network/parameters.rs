@@ -5,19 +5,21 @@ use std::ops::Range;
 use crate::error::{Error, Result};
 use crate::network::Architecture;
 
-/// Where each kind of parameter stands in the flat vector.
+/// Positions of the parameters in the flat vector: those of the stops first (`w`, then `ln β`), then `a` of
+/// the linear neuron, `ln τ` of the relaxation neurons, and `b` and `U` of the tanh neurons.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Layout {
     architecture: Architecture,
-    /// Weights of the stops: one run of channels for each stop.
+    /// `w`: weights of the stops, one value for each channel of the first stop, then of the second, and so
+    /// on.
     pub stop_weights: Range<usize>,
-    /// ln β of each stop; empty without deterioration.
+    /// `ln β` of each stop; empty without deterioration.
     pub ln_beta: Range<usize>,
-    /// Weights of the linear neuron; empty without it.
+    /// `a`: weights of the linear neuron, one for each channel; empty without it.
     pub linear: Range<usize>,
-    /// ln τ of each relaxation neuron, by input, then by neuron; τ in the unit of time.
+    /// `ln τ` of each relaxation neuron, by input, then by neuron, with `τ` in the unit of time.
     pub ln_tau: Range<usize>,
-    /// Tanh neurons, a run for each: bias, then the weights of the memory neurons.
+    /// Of each tanh neuron in turn: bias `b_i`, then the weights `U_ij` of the memory neurons.
     pub hidden: Range<usize>,
 }
 
@@ -51,7 +53,7 @@ impl Layout {
         self.len() == 0
     }
 
-    /// True for a connection weight (which weight decay acts on), false for ln β and ln τ.
+    /// True for a connection weight, on which weight decay acts; false for `ln β` and `ln τ`.
     pub fn is_weight(&self, index: usize) -> bool {
         !self.ln_beta.contains(&index) && !self.ln_tau.contains(&index)
     }
@@ -86,9 +88,8 @@ impl Layout {
         names
     }
 
-    /// Lower and upper bound of a parameter. They are wide: they keep a search finite, they do not
-    /// guide it. Weights are of scaled inputs (theory.md (2.1)); β lies between 0.3 and 1e7, which
-    /// stands for no deterioration.
+    /// Lower and upper bound of a parameter. They are wide: they keep a search finite and do not guide it.
+    /// Weights multiply scaled inputs. `β` lies between 0.3 and 1e7, which is practically no deterioration.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if self.stop_weights.contains(&index) {
             (-1e4, 1e4)
@@ -112,7 +113,7 @@ impl Layout {
     /// Checks length and bounds of a flat vector.
     ///
     /// # Errors
-    /// Another length, or a parameter that is outside its bounds or NaN, named.
+    /// Another length, or a parameter that is NaN or outside its bounds, which the error names.
     pub fn check(&self, values: &[f64]) -> Result<()> {
         if values.len() != self.len() {
             return Err(Error::Parts(format!(

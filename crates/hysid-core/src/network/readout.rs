@@ -1,11 +1,12 @@
 //! The readout: tanh layer and linear output.
 //!
 //! ```text
-//! h_i = tanh(b_i + U_i0 z_0 + Σ_j U_ij z_j)          theory.md (2.5)
-//! y   = c_0 + Σ_i c_i h_i + Σ_j d_j z_j              theory.md (2.6)
+//! h_i = tanh(b_i + U_i0 z_0 + Σ_j U_ij z_j)                  theory.md (2.5)
+//! y   = c_0 + Σ_i c_i h_i + Σ_j d_j z_j                      theory.md (2.6)
 //! ```
 //!
-//! Rows of a block are independent here, so lanes are cut out of time.
+//! The symbols are those of the [module of networks](crate::network). Rows do not depend on each other here,
+//! so the lanes of a vector are rows.
 
 use pulp::Simd;
 
@@ -98,7 +99,7 @@ impl Readout {
         }
     }
 
-    /// What the output weights multiply, theory.md (3.1): constant, tanh neurons, direct path.
+    /// The features, which the output weights multiply: constant 1, tanh neurons, direct path.
     #[inline(always)]
     pub fn features(&self, z: &[Row], h: &[Row], features: &mut [Row]) {
         let (constant, rest) = features.split_at_mut(usize::from(self.constant));
@@ -110,12 +111,14 @@ impl Readout {
     }
 }
 
-/// The readout run backward: a weight for each row, carried to all that the output depends on.
+/// Backward pass of the readout: the derivatives of the output by all it depends on, times a weight for each
+/// row.
 #[derive(Debug, Clone)]
 pub(crate) struct Backward {
     /// By the weighted sum of each tanh neuron: the weight times `c_i (1 - h_i²)`.
     pub by_sum: Vec<Row>,
-    /// By the output of each memory neuron: the weight times `q_j`, theory.md (2.11).
+    /// By the output of each memory neuron: the weight times `q_j = Σ_i c_i (1 - h_i²) U_ij + d_j` (theory.md
+    /// (2.11)).
     pub by_memory: Vec<Row>,
 }
 

@@ -1,4 +1,11 @@
-//! Factors between the user's units and those of a network, theory.md (2.1).
+//! Scale factors between the user's units and those of a network.
+//!
+//! ```text
+//! u = [x/X, x'/X', further inputs/their X],   y_scaled = (y - mean)/deviation      theory.md (2.1)
+//! ```
+//!
+//! `x` is the first input and `x'` its rate. `X` and `X'` are their largest magnitudes in the training data;
+//! mean and standard deviation are those of the measured output there.
 
 use std::ops::RangeInclusive;
 
@@ -13,24 +20,25 @@ use crate::network::{Architecture, Drive};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scaling {
-    /// Largest magnitude of each input in training, in its unit: 1 in scaled units.
+    /// Largest magnitude of each input in training, in its unit. It becomes 1 in scaled units.
     pub inputs: Vec<f64>,
-    /// Largest magnitude of the rate in training, in the unit of the input over that of time.
+    /// Largest magnitude of the rate in training, in the unit of the input divided by that of time; `None`
+    /// without rate.
     pub rate: Option<f64>,
-    /// Mean output in training: 0 in scaled units.
+    /// Mean of the output in training, in its unit. It becomes 0 in scaled units.
     pub output_mean: f64,
-    /// Standard deviation of the output in training: 1 in scaled units.
+    /// Standard deviation of the output in training, in its unit. It becomes 1 in scaled units.
     pub output_deviation: f64,
 }
 
-/// Scales that a value of the user's can be divided by, and its quotient be squared.
+/// Scales by which a value in the user's units can be divided and the quotient be squared.
 pub(crate) const SCALES: RangeInclusive<f64> = 1e-150..=1e150;
 
 impl Scaling {
-    /// Refuses factors of a file that are none.
+    /// Rejects invalid factors of a file.
     ///
     /// # Errors
-    /// A factor that cannot be divided by, or a mean beyond any record's.
+    /// A factor that is no usable divisor, or a mean beyond the largest value of a record.
     pub(crate) fn check(&self) -> Result<()> {
         let factors = self.inputs.iter().chain(&self.rate).chain([&self.output_deviation]);
         if let Some(factor) = factors.into_iter().find(|factor| !SCALES.contains(factor)) {
@@ -42,7 +50,7 @@ impl Scaling {
         Err(Error::Parts(format!("its scaling has the mean output {}", self.output_mean)))
     }
 
-    /// Finds the factors of a data set.
+    /// The factors of a data set. `rate` is the method by which the rate is found; `None` for no rate.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -70,7 +78,7 @@ impl Scaling {
         })
     }
 
-    /// A record as a network of the architecture sees it.
+    /// A record as scaled inputs of a network of this architecture.
     ///
     /// # Errors
     /// A rate that cannot be computed.

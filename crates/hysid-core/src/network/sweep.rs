@@ -1,8 +1,7 @@
-//! One walk of a network over records, handing on whole blocks of the rows that have a target.
+//! One pass of a network over records, which yields whole blocks of the rows that have a target.
 //!
-//! Blocks run through every row of a record, since memory needs them all; rows with a target are
-//! gathered, so that readout and derivatives are computed for whole blocks of them. Memory does not
-//! grow with the record.
+//! All rows of a record advance the memory. Rows with a target are collected, so that readout and derivatives
+//! are computed for whole blocks of them. The storage needed does not grow with the record.
 
 use pulp::Simd;
 
@@ -11,13 +10,14 @@ use crate::network::readout::Readout;
 use crate::network::{Architecture, limited};
 use crate::stop_check::{Pace, StopCheck};
 
-/// A record as a network sees it: scaled inputs by channel (first input, rate, further inputs), and
-/// the time step before each row, 0 at the first.
+/// Scaled inputs of a network over a record, with time steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
-    /// One column for each channel of the architecture.
+    /// One column for each channel (first input, its rate if there is one, further inputs), each with one
+    /// value a row.
     pub channels: Vec<Vec<f64>>,
-    /// Time steps; empty for an architecture without relaxation neurons.
+    /// The time step before each row, 0 at the first, in the unit of time; empty for an architecture without
+    /// relaxation neurons.
     pub steps: Vec<f64>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) trait TakeBlock {
 }
 
 impl Walk<'_> {
-    /// Walks over every record from the virgin state; ends early once asked to stop.
+    /// Walks over every record from the virgin state; ends early once stopped.
     #[inline(always)]
     pub fn over<S: Simd>(
         &self,

@@ -4,8 +4,8 @@
 //! tanh a = E / (E + 2),   E = e^{2a} - 1 = 2^k (e^r - 1) + (2^k - 1),   2a = k ln 2 + r
 //! ```
 //!
-//! `|r| <= ln 2 / 2`, so neither sum cancels. Relative error below 5e-16 everywhere, exactly odd,
-//! never above 1 in magnitude.
+//! `k` is an integer and `|r| <= ln 2 / 2`, so neither sum cancels. The relative error is below 5e-16
+//! everywhere; the result is exactly odd and never above 1 in magnitude.
 
 use pulp::Simd;
 

@@ -1,41 +1,47 @@
-//! Deteriorating stop: a stop that loses strength as it slides, until nothing is left.
+//! Deteriorating stop: a stop whose strength decreases in proportion to its slip, down to 0.
 //!
 //! ```text
 //! s_k = s_{k-1} + |p_k - p_{k-1}|,   s_0 = 0                 theory.md (1.5)
-//! y_k = ε_k max(0, 1 - s_k / (r β))                          theory.md (1.6)
+//! z_k = ε_k max(0, 1 - s_k / (r β))                          theory.md (1.6)
 //! ```
 //!
-//! `p` and `ε` are play and stop of threshold `r`. The slip `s` is the way slid; while the spring
-//! only stretches, it stays. The jump from the virgin state to the first sample is not counted: the
-//! record starts there. The capacity `β` says how many thresholds `r` the element can slide until
-//! it is dead; `β = ∞` never deteriorates.
+//! `p_k` and `ε_k = x_k - p_k` are the [play](super::play) and the [stop](super::stop) of threshold `r`, and
+//! `z_k` is the output, all in the unit of the input `x`. The *slip* `s_k` is the path length of the slider;
+//! it stays constant while only the spring deforms. The movement from the virgin state to the first sample
+//! does not count, because the record begins there. The *capacity* `β > 0` is a pure number: the output is 0
+//! after a slip of `r β`. `β = ∞` is the plain stop.
 //!
-//! A cycle of amplitude `V > r` slips `4 (V - r)`, theory.md (1.8), which gives the life in cycles,
-//! theory.md (1.9).
+#![doc = "<figure>"]
+#![doc = include_str!("deteriorating_stop.svg")]
+#![doc = "</figure>"]
 //!
-//! Slip never heals, so there is neither wiping-out nor congruency, and loops do not close.
+//! A cycle of amplitude `V > r` adds the slip `4 (V - r)` (theory.md (1.8)). The life of the element is
+//! therefore about `1/4 + (r β - (V - r)) / (4 (V - r))` cycles (theory.md (1.9)).
+//!
+//! Slip never decreases, so there is neither wiping-out nor congruency, and loops do not close.
 
 use super::{InvalidOperator, Operator, checked_threshold, is_usable, play, stop};
 
-/// The slip after the play has moved from `play_before` to `play_after`, given the `slip` before:
-/// theory.md (1.5). In the unit of `x`.
+/// The slip after the play has moved from `play_before` to `play_after`: `slip + |play_after - play_before|`
+/// (theory.md (1.5)). All in the unit of `x`.
 #[inline(always)]
 pub fn accumulate(slip: f64, play_before: f64, play_after: f64) -> f64 {
     slip + (play_after - play_before).abs()
 }
 
-/// The share of its strength, 1 down to 0, that is left to an element after `slip`: `max(0, 1 -
-/// slip * inverse_capacity)`, the factor of theory.md (1.6).
+/// The share of its strength that an element has left after `slip`, from 1 down to 0: `max(0, 1 - slip *
+/// inverse_capacity)`, the factor of theory.md (1.6).
 ///
-/// `inverse_capacity = 1 / (r β)` in one over the unit of `x`; 0 for an element that never
-/// deteriorates.
+/// `inverse_capacity = 1 / (r β)` has the inverse unit of `x`; it is 0 for an element that does not
+/// deteriorate.
 #[inline(always)]
 pub fn remaining_strength(slip: f64, inverse_capacity: f64) -> f64 {
     let strength = 1.0 - slip * inverse_capacity;
     if strength > 0.0 { strength } else { 0.0 }
 }
 
-/// Deteriorating stop with threshold `r` and capacity `β`: theory.md (1.6).
+/// Deteriorating stop with threshold `r` and capacity `β`: `z = ε max(0, 1 - s/(r β))`, with the stop `ε` and
+/// the slip `s` (theory.md (1.6)).
 ///
 /// ```
 /// use hysid_core::operator::{DeterioratingStop, Operator};
@@ -60,14 +66,14 @@ pub struct DeterioratingStop {
 }
 
 impl DeterioratingStop {
-    /// A virgin deteriorating stop with threshold `r` in the unit of `x` and capacity `beta`, a
-    /// pure number: it dies after sliding `r beta`. With `beta` infinite it never deteriorates and
-    /// is a [`Stop`](super::Stop), bit for bit.
+    /// A virgin deteriorating stop with threshold `r` in the unit of `x` and capacity `beta`, a pure number:
+    /// its output is 0 after a slip of `r beta`. With an infinite `beta` its outputs are those of a
+    /// [`Stop`](super::Stop), bit for bit.
     ///
     /// # Errors
     ///
-    /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0,
-    /// [`InvalidOperator::Capacity`] unless `beta` is greater than 0.
+    /// [`InvalidOperator::Threshold`] unless `r` is finite and greater than 0, [`InvalidOperator::Capacity`]
+    /// unless `beta` is greater than 0.
     pub fn new(r: f64, beta: f64) -> Result<Self, InvalidOperator> {
         let r = checked_threshold(r)?;
         // NaN is not greater than 0 either.
@@ -78,12 +84,12 @@ impl DeterioratingStop {
         }
     }
 
-    /// The way slid since the first sample, in the unit of `x`: theory.md (1.5).
+    /// The slip since the first sample, `Σ |p_k - p_{k-1}|`, in the unit of `x` (theory.md (1.5)).
     pub fn slip(&self) -> f64 {
         self.slip
     }
 
-    /// Whether the capacity is used up: every output from now on is 0.
+    /// True once the slip has reached `r β`: every further output is 0.
     pub fn is_dead(&self) -> bool {
         remaining_strength(self.slip, self.inverse_capacity) == 0.0
     }

@@ -1,21 +1,30 @@
-//! Play: a slider dragged along by a slot of width `2 r`, the backlash of a pair of gears.
+//! Play: a slider dragged by a slot of width `2 r`, like the backlash of gears.
 //!
 //! ```text
 //! p_k = min(x_k + r, max(x_k - r, p_{k-1}))                  theory.md (1.2)
 //!
-//! virgin: p = 0, hence p_0 = clip(0; x_0 - r, x_0 + r)
+//! virgin: p_0 = min(x_0 + r, max(x_0 - r, 0))
 //! ```
 //!
-//! Only comparisons with `x ± r`: no rounding accumulates, however long the signal. The stop and
-//! the deteriorating stop therefore keep their memory as a play.
+//! `x_k` is sample `k` of the input, `r >= 0` the threshold, `p_k` the output; all have the unit of `x`. The
+//! play rests until the input has moved `2 r` away from its last turning point, and then follows at the
+//! distance `r`.
+//!
+#![doc = "<figure>"]
+#![doc = include_str!("play.svg")]
+#![doc = "</figure>"]
+//!
+//! A sample is only compared with `p` and never added to a sum, so no rounding error accumulates. The
+//! [stop](super::stop) and the [deteriorating stop](super::deteriorating_stop) therefore store their memory
+//! as a play.
 
 use super::{InvalidOperator, Operator, is_usable};
 
-/// The play after input `x`, given the `play` before: `min(x + r, max(x - r, play))`,
-/// theory.md (1.2). All three in the unit of `x`, `r >= 0`.
+/// The play at input `x`, from its previous value `play`: `min(x + r, max(x - r, play))` (theory.md (1.2)).
+/// All three arguments are in the unit of `x`, with `r >= 0`.
 ///
-/// Written as selects in place of [`f64::min`] and [`f64::max`], so that each is one machine
-/// instruction. Their order is such that a NaN `x` leaves the play as it was.
+/// The order of the comparisons is such that a NaN `x` leaves the play unchanged. They are written as selects
+/// instead of [`f64::min`] and [`f64::max`], so that each is one machine instruction.
 #[inline(always)]
 pub fn follow(play: f64, x: f64, r: f64) -> f64 {
     let (lower, upper) = (x - r, x + r);
@@ -23,7 +32,7 @@ pub fn follow(play: f64, x: f64, r: f64) -> f64 {
     if upper < pushed_up { upper } else { pushed_up }
 }
 
-/// Play with threshold `r`: theory.md (1.2).
+/// Play with threshold `r`: `p_k = min(x_k + r, max(x_k - r, p_{k-1}))` (theory.md (1.2)).
 ///
 /// ```
 /// use hysid_core::operator::{Operator, Play};

@@ -1,5 +1,5 @@
-//! Relaxation: a spring and a dashpot in series (Maxwell element); what is stretched and then held
-//! relaxes in time.
+//! Relaxation: a spring in series with a dashpot (Maxwell element), whose stress decays while the input is
+//! held.
 //!
 //! ```text
 //! σ' = x' - σ / τ                                            theory.md (1.10)
@@ -7,42 +7,42 @@
 //! σ_k = E σ_{k-1} + G (x_k - x_{k-1})                        theory.md (1.11)
 //! E = e^{-h/τ},   G = (τ/h) (1 - e^{-h/τ}),   h = t_k - t_{k-1}
 //!
-//! virgin: σ = 0; the first sample is an instantaneous load of the spring: σ_0 = x_0
+//! virgin: σ_0 = x_0
 //! ```
 //!
-//! (1.11) is the exact solution of (1.10) for an input that runs straight from sample to sample,
-//! whatever the step `h`: unlike with a difference scheme there is no step size to keep small, and
-//! halving all steps of a straight piece changes nothing.
+//! `x_k` is the input and `σ_k` the stress at the time `t_k`, both in the unit of `x`; `τ > 0` is the
+//! relaxation time and `h` the time step, in one unit of time. A prime is a derivative with respect to time.
+//! The first sample is an instantaneous load of the spring.
 //!
-//! Limits: `τ -> ∞` is a spring, `σ = x`; `τ -> 0` a dashpot, `σ = τ x'`.
+//! The second equation solves the first exactly for an input that is linear between samples. The step `h` can
+//! therefore have any length.
+//!
+//! Limits: `τ -> ∞` is a spring, `σ = x`; `τ -> 0` is a dashpot, `σ = τ x'`.
 
 use super::{InvalidOperator, is_usable};
 
-/// The factors `(E, G)` of theory.md (1.11) for a step of length `time_step`: `E = e^{-h/τ}` for
-/// the stress already there, `G = (τ/h) (1 - e^{-h/τ})` for the input increment. Both lie between 0
-/// and 1.
+/// The factors of one time step, `E = e^{-h/τ}` for the present stress and `G = (τ/h) (1 - e^{-h/τ})` for the
+/// increment of the input, both between 0 and 1 (theory.md (1.11)).
 ///
-/// `time_step` and `tau > 0` in the same unit of time. Without cancellation for short steps, and
-/// exactly `(1, 1)` for `time_step = 0`, a jump of the input. A `time_step` that is negative or NaN
-/// is taken as 0.
+/// `time_step` is `h`, and `tau > 0`, in the same unit of time. `time_step = 0`, a jump of the input, gives
+/// exactly `(1, 1)`; a negative or NaN `time_step` counts as 0. Short steps cause no cancellation.
 #[inline(always)]
 pub fn decay(time_step: f64, tau: f64) -> (f64, f64) {
     let steps = time_step / tau;
     if steps > 0.0 { ((-steps).exp(), -(-steps).exp_m1() / steps) } else { (1.0, 1.0) }
 }
 
-/// The stress after the input has moved by `x_increment`, given the `stress` before and the factors
-/// of [`decay`]: theory.md (1.11). In the unit of `x`.
+/// The stress after a step, `E stress + G x_increment`, with the factors of [`decay`] (theory.md (1.11)).
+/// `stress` is the stress before the step; both are in the unit of `x`.
 #[inline(always)]
 pub fn advance(stress: f64, x_increment: f64, (e, g): (f64, f64)) -> f64 {
     e * stress + g * x_increment
 }
 
-/// Relaxation element with relaxation time `τ`: theory.md (1.10).
+/// Relaxation element with relaxation time `τ`: `σ' = x' - σ/τ` (theory.md (1.10)).
 ///
-/// It has no [`Operator`](super::Operator) trait: that one feeds inputs alone, which suffices where
-/// only their sequence counts. This element must also be told how much time has passed, and to hide
-/// a fixed time step in it would be wrong for every record that is not evenly sampled.
+/// It does not implement [`Operator`](super::Operator), whose input is a sequence of values without times. A
+/// fixed time step would be wrong for records that are not evenly sampled.
 ///
 /// ```
 /// use hysid_core::operator::Relaxation;
@@ -64,8 +64,8 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// A virgin element with relaxation time `tau`, in the unit of time of the steps. With `tau`
-    /// infinite it is a spring.
+    /// A virgin element with relaxation time `tau`, in the unit of time of the steps. With an infinite `tau`
+    /// it is a spring.
     ///
     /// # Errors
     ///
@@ -79,19 +79,19 @@ impl Relaxation {
         }
     }
 
-    /// Back to the virgin state, as if no input had been seen.
+    /// Returns to the virgin state.
     pub fn reset(&mut self) {
         self.stress = 0.0;
         self.x = 0.0;
         self.started = false;
     }
 
-    /// Takes the next input sample, `time_step` after the one before, and returns the stress there,
-    /// in the unit of `x`.
+    /// Advances to the next sample of the input, `time_step` after the previous one, and returns the stress
+    /// there, in the unit of `x`.
     ///
-    /// The first sample counts as an instantaneous load, so its `time_step` does not matter and the
-    /// stress is `x`. A `time_step` that is 0 is a jump of the input, and so is one that is
-    /// negative or NaN. `x` must be finite (see the [module of operators](super)).
+    /// The first sample is an instantaneous load: the stress is `x`, and its `time_step` is ignored. A
+    /// `time_step` that is 0, negative or NaN is a jump of the input. `x` must be finite (see the [module of
+    /// operators](super)).
     pub fn step(&mut self, x: f64, time_step: f64) -> f64 {
         if !is_usable(x) {
             return f64::NAN;
@@ -103,16 +103,15 @@ impl Relaxation {
         self.stress
     }
 
-    /// The stresses at all samples of a whole signal from the virgin state: resets first, and
-    /// leaves the element in the state after the last sample. Equal successive times are a jump of
-    /// the input.
+    /// Runs over a whole signal from the virgin state and returns the stress at each sample, in the unit of
+    /// `x`. `time` has one value for each value of `x`; equal successive times are a jump of the input. The
+    /// element is then in the state after the last sample.
     ///
     /// # Errors
     ///
-    /// [`InvalidOperator::Lengths`] if `time` and `x` differ in length;
-    /// [`InvalidOperator::TimeNotFinite`] and [`InvalidOperator::TimeDecreases`] with the first
-    /// row, counted from 0, where `time` is NaN or infinite, or runs backwards. The element is then
-    /// as it was before.
+    /// [`InvalidOperator::Lengths`] if `time` and `x` differ in length; [`InvalidOperator::TimeNotFinite`]
+    /// and [`InvalidOperator::TimeDecreases`] with the first row, counted from 0, where `time` is not finite
+    /// or decreases. The element is then unchanged.
     pub fn run(&mut self, time: &[f64], x: &[f64]) -> Result<Vec<f64>, InvalidOperator> {
         if time.len() != x.len() {
             return Err(InvalidOperator::Lengths { times: time.len(), inputs: x.len() });

@@ -1,4 +1,4 @@
-//! Relay: a switch with two thresholds, the atom of the Preisach model.
+//! Relay: a switch with two thresholds, the elementary operator of the Preisach model.
 //!
 //! ```text
 //!        +1             if x_k >= s + r
@@ -8,28 +8,31 @@
 //! virgin: R = -1 if s > 0, else +1
 //! ```
 //!
-//! The point `(r, s)`, half-width and centre, is the relay's place in the Preisach half-plane. A
-//! relay says on which side of it the memory curve `r -> P_r[x]` runs: `R = +1` if and only if the
-//! [play](super::play) `P_r[x] > s`.
+//! `x_k` is sample `k` of the input, `r > 0` the half-width and `s` the centre of the relay, all in the unit
+//! of `x`. The output is a pure number.
+//!
+//! `(r, s)` is a point of the Preisach half-plane. The relay is `+1` where the [play](super::play) `p` of the
+//! same `r` is above `s`, and `-1` where it is below. The plays of all `r` together are therefore the whole
+//! memory of a Preisach model.
 
 use super::{InvalidOperator, Operator, checked_threshold, is_usable};
 
-/// Output of a virgin relay with centre `s`: -1 above, +1 below the demagnetised memory curve `P_r
-/// = 0`: theory.md (1.1).
+/// The output of a virgin relay with centre `s`: -1 if `s > 0`, else +1 (theory.md (1.1)).
 #[inline(always)]
 pub fn virgin(s: f64) -> f64 {
     if s > 0.0 { -1.0 } else { 1.0 }
 }
 
-/// Output of a relay after input `x`, given its `output` before (-1 or +1): theory.md (1.1) with
-/// `lower = s - r` and `upper = s + r`, all in the unit of `x`.
+/// The output of a relay at input `x`: +1 if `x >= upper`, -1 if `x <= lower`, else its previous `output`, -1
+/// or +1 (theory.md (1.1)). `lower = s - r` and `upper = s + r` are in the unit of `x`.
 #[inline(always)]
 pub fn switch(output: f64, x: f64, lower: f64, upper: f64) -> f64 {
     let output = if x >= upper { 1.0 } else { output };
     if x <= lower { -1.0 } else { output }
 }
 
-/// Relay with thresholds `s - r` and `s + r`: theory.md (1.1).
+/// Relay with half-width `r` and centre `s`: switches to +1 at the input `s + r` and to -1 at `s - r`
+/// (theory.md (1.1)).
 ///
 /// ```
 /// use hysid_core::operator::{Operator, Relay};

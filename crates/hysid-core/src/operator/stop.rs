@@ -1,29 +1,35 @@
-//! Stop: a spring and a slider in series; elastic up to the threshold, then sliding at constant
-//! force.
+//! Stop: a spring in series with a slider, elastic up to the threshold and then sliding at constant force.
 //!
 //! ```text
 //! ε_k = clip(ε_{k-1} + x_k - x_{k-1}; -r, r)                 theory.md (1.3)
-//! ε_k + p_k = x_k      with the play p of the same r         theory.md (1.4)
+//! ε_k = x_k - p_k      with the play p of the same r         theory.md (1.4)
 //!
 //! virgin: ε_0 = clip(x_0; -r, r)
 //! ```
 //!
-//! Computed as `x - p`: the sum of increments of (1.3) would gather a rounding error with every
-//! sample, the [play] gathers none.
+//! `x_k` is sample `k` of the input, `r > 0` the threshold, `ε_k` the output; all have the unit of `x`.
+//! `clip(a; l, u) = min(u, max(l, a))`.
 //!
-//! A cycle of amplitude `V > r` encloses the area `4 r (V - r)` in the plane of input and output:
-//! theory.md (1.7).
+#![doc = "<figure>"]
+#![doc = include_str!("stop.svg")]
+#![doc = "</figure>"]
+//!
+//! The output is computed as `x - p` with the [play] `p`. The sum in the first equation would accumulate a
+//! rounding error with each sample; the play does not.
+//!
+//! A cycle of amplitude `V > r` encloses the area `4 r (V - r)` in the plane of input and output (theory.md
+//! (1.7)).
 
 use super::{InvalidOperator, Operator, checked_threshold, is_usable, play};
 
-/// Elongation of the stop's spring at input `x`, when the `play` of the same threshold has already
-/// followed there: `x - play`, theory.md (1.4). In the unit of `x`.
+/// The output of a stop at input `x`, from the `play` of the same threshold at the same sample: `x - play`
+/// (theory.md (1.4)). In the unit of `x`.
 #[inline(always)]
 pub fn elongation(x: f64, play: f64) -> f64 {
     x - play
 }
 
-/// Stop with threshold `r`: theory.md (1.3).
+/// Stop with threshold `r`: `ε_k = clip(ε_{k-1} + x_k - x_{k-1}; -r, r)` (theory.md (1.3)).
 ///
 /// ```
 /// use hysid_core::operator::{Operator, Stop};
@@ -40,7 +46,7 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// A virgin stop with threshold `r` in the unit of `x`, the largest output it can give.
+    /// A virgin stop with threshold `r` in the unit of `x`: the largest magnitude of its output.
     ///
     /// # Errors
     ///

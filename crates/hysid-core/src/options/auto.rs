@@ -1,4 +1,4 @@
-//! What can be decided of the automatic model.
+//! Options of `auto`, which cross-validates candidates and combines the best.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,26 +15,26 @@ pub enum Automatic {
     Auto,
 }
 
-/// What the user can decide; what is `None` is decided by validation.
+/// Options of `auto`. Cross-validation chooses what is `None`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AutoOptions {
-    /// Marks the request in model files.
+    /// The name `auto`, which identifies these options in model files.
     pub model: Automatic,
-    /// A model to make an ensemble of; `None` for all candidates.
+    /// The only model of the ensemble; `None` for all candidates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub only: Option<Box<FitSpec>>,
-    /// Members at most; 1 for a single model.
+    /// Largest number of members; 1 for a single model.
     pub members: usize,
-    /// Starts of a random candidate, on all data.
+    /// Starts of a randomly initialized candidate, on all data.
     pub starts: usize,
-    /// How the rate of the first input is found; `None` for candidates that do not see it.
+    /// Method of the rate of the first input; `None` for candidates without rate.
     pub rate: Option<RateMethod>,
-    /// No candidate without the rate.
+    /// True if all candidates use the rate.
     pub always_rate: bool,
     /// Whether stops deteriorate.
     pub deterioration: Option<bool>,
-    /// Relaxation neurons of candidates that have any; 0 for none at all.
+    /// Relaxation neurons of candidates that have them; 0 for candidates without.
     pub relaxation: Option<usize>,
     /// Stops of a network.
     pub stops: Option<usize>,
@@ -44,19 +44,19 @@ pub struct AutoOptions {
     pub operators: Option<usize>,
     /// Epochs of a search.
     pub epochs: Option<usize>,
-    /// Whether the input is companded.
+    /// Whether the input is companded, `asinh(x / s)`.
     pub companding: Option<bool>,
-    /// Whether largest input and path so far are inputs.
+    /// Whether running peak and travelled path are inputs.
     pub history: Option<bool>,
-    /// Rows at the beginning of each record that drive the memory and are not trained on.
+    /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
     pub warm_up: Option<usize>,
-    /// λ and κ of theory.md (3.1), the penalties of networks.
+    /// λ: penalty `½ λ ‖c‖²` on the output weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ridge: Option<f64>,
-    /// See `ridge`.
+    /// κ: penalty `½ κ ‖θ‖²` on the other weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decay: Option<f64>,
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
@@ -85,5 +85,5 @@ impl Default for AutoOptions {
     }
 }
 
-/// Most members of an ensemble.
+/// Largest number of members of an ensemble.
 pub const MOST_MEMBERS: usize = 200;

@@ -1,4 +1,4 @@
-//! What to be aware of before a fit: data that the model is not made for.
+//! Cautions before a fit: data that do not suit the model.
 
 use crate::data::record::Dataset;
 use crate::data::warning::Warning;
@@ -10,7 +10,7 @@ use crate::significant::Significant;
 const FAR: f64 = 2.0;
 
 impl FitSpec {
-    /// What to be aware of when this is fitted to these data, in sentences.
+    /// Cautions for a fit of this model to these data, in sentences.
     pub fn cautions(&self, data: &Dataset) -> Vec<String> {
         let model = self.model();
         let mut cautions = Vec::new();
@@ -24,7 +24,7 @@ impl FitSpec {
 }
 
 impl FitSpec {
-    /// A network with more parameters than rows with an output; of other models the fitted one tells.
+    /// A network with more parameters than rows with an output; of other models there is a note after the fit.
     fn larger_than(&self, data: &Dataset) -> Option<Warning> {
         let Self::Network(options) = self else { return None };
         // Sizes that no network can have are refused by the fit.

@@ -1,5 +1,4 @@
-//! The options of a fit by their names, all of them optional: what the command line and the Python package
-//! have in common.
+//! The options of a fit by name, all optional: the common set of the command line and the Python package.
 
 use std::str::FromStr;
 
@@ -16,8 +15,8 @@ use crate::options::network::{FitOptions, Trainer};
 use crate::options::table::{FitOption, OPTIONS, Values, check};
 use crate::options::{FitSpec, ModelName};
 
-/// What was asked for; `None` is the default of the model or its trainer. What each option means is in its row of
-/// [`OPTIONS`].
+/// Options of a fit; `None` stands for the default of the model or its trainer. [`OPTIONS`] gives the meaning
+/// of each.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[allow(missing_docs, reason = "each field is the option of its name")]
@@ -54,10 +53,10 @@ pub struct NamedOptions {
 }
 
 impl NamedOptions {
-    /// The options that a map of names and values asks for; `null` is the default.
+    /// Options from a map of names and values; `null` is the default.
     ///
     /// # Errors
-    /// A name that is no option, a value that the option cannot have, or one that this model cannot have.
+    /// An unknown name, an invalid value, or one that is invalid for this model.
     pub fn of(mut named: Map<String, Value>) -> Result<Self> {
         named.retain(|_, value| !value.is_null());
         check(named.iter().map(|(name, value)| (name.as_str(), value.clone())))?;
@@ -67,7 +66,7 @@ impl NamedOptions {
         Ok(options)
     }
 
-    /// Refuses more than the model that was named can have.
+    /// Rejects values beyond the limits of the named model.
     fn check(&self) -> Result<()> {
         let ModelName::Classical(rival) = self.model() else { return Ok(()) };
         for &(option, most) in rival.facts().limits {
@@ -84,13 +83,13 @@ impl NamedOptions {
         Ok(())
     }
 
-    /// Which model is asked for.
+    /// The model.
     pub fn model(&self) -> ModelName {
         self.model.unwrap_or(ModelName::AUTO)
     }
 
-    /// The library's request, with the rate decided; `always_rate` if the user has, and wants no model
-    /// without it.
+    /// The specification of the fit. `rate` is the method of the rate; `always_rate` is true if the user
+    /// chose it and wants no model without it.
     pub fn request(&self, rate: Option<RateMethod>, always_rate: bool) -> FitSpec {
         let used = self.used();
         let alone = match self.model() {
@@ -210,7 +209,7 @@ impl NamedOptions {
         self.training.unwrap_or_default()
     }
 
-    /// Options that were asked for and that the model, or the trainer of a network, ignores.
+    /// Options that were set and that the model, or the trainer of a network, ignores.
     pub fn ignored(&self) -> Vec<Ignored> {
         let Ok(Value::Object(named)) = serde_json::to_value(self) else {
             unreachable!("the options are a map")
@@ -231,7 +230,7 @@ impl NamedOptions {
     }
 }
 
-/// An option that was asked for and changes nothing.
+/// An option that was set and is ignored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ignored {
     /// Its name, in words joined by underscores.
@@ -240,10 +239,10 @@ pub struct Ignored {
     pub by: &'static str,
 }
 
-/// What is asked of the rate of the first input.
+/// Choice of the rate of the first input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RateChoice {
-    /// Central differences if there is time and the model has a use for them.
+    /// Central differences, if there are time stamps and the model uses a rate.
     #[default]
     Auto,
     /// No rate.

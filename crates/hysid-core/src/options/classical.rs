@@ -1,4 +1,4 @@
-//! The models that are no networks of the family, and what can be chosen of each.
+//! The models other than networks and `auto`, and their options.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinski
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
-/// What is true of random stops.
+/// Facts about random stops.
 const RANDOM_STOPS: Facts = Facts {
     name: "random-stops",
     rate: Rate::Optional,
@@ -33,7 +33,7 @@ const RANDOM_STOPS: Facts = Facts {
 
 macro_rules! rival {
     ($($law:ident),* $(,)?) => {
-        /// The models that are no networks of the family.
+        /// A model other than a network and `auto`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum ClassicalModel {
@@ -65,12 +65,12 @@ impl ClassicalModel {
         self.facts().name
     }
 
-    /// True if the model can make use of the rate of the input.
+    /// True if the model can use the rate of the input.
     pub fn uses_rate(self) -> bool {
         self.facts().rate != Rate::Ignored
     }
 
-    /// True if there is no such model without a rate.
+    /// True if the model always needs the rate.
     pub fn needs_rate(self) -> bool {
         self.facts().rate == Rate::Needed
     }
@@ -80,14 +80,14 @@ impl ClassicalModel {
         self == Self::RandomStops
     }
 
-    /// True if it is found by a search from several starts; otherwise by linear least squares.
+    /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
     pub fn is_searched(self) -> bool {
         self.facts().identification == Identification::Search
     }
 }
 
-/// What the user can choose; every field has the name of its command-line option. What a model has no use
-/// for is left alone.
+/// Options of such a model. Each field has the name of its command-line option. A model ignores the options
+/// that it does not use.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClassicalOptions {
@@ -103,34 +103,35 @@ pub struct ClassicalOptions {
     pub sign: Option<Sign>,
     /// Dead zones on each side of a modified Prandtl-Ishlinskii model; its own default if `None`.
     pub dead_zones: Option<usize>,
-    /// A weight for each play in place of an exponential law; the model's own default if `None`.
+    /// Whether each play has a free weight, instead of an exponential law; the model's own default if `None`.
     pub free_weights: Option<bool>,
-    /// Thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the rate.
+    /// True if the thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the
+    /// rate.
     pub logarithmic_thresholds: bool,
-    /// Bouc-Wen with the degradation and pinching of Baber and Noori.
+    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori.
     pub degradation: bool,
-    /// Jiles-Atherton in its differential form of 1992 in place of that of 1986.
+    /// True for a Jiles-Atherton law in the form of 1992, false for that of 1986.
     pub differential_form: bool,
     /// Tanh neurons of a neuro-Madelung model or beside random stops.
     pub hidden: Option<usize>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
-    /// How the rate is found; `None` for no rate.
+    /// Method of the rate; `None` for no rate.
     pub rate: Option<RateMethod>,
-    /// What the model sees of the input.
+    /// Input transform.
     #[serde(default, skip_serializing_if = "InputOptions::is_none")]
     pub shaping: InputOptions,
     /// Starts of a search; the model's own default if `None`.
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
     pub epochs: Option<usize>,
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
 impl ClassicalOptions {
-    /// The option that adds a term to a law or takes another form of it.
+    /// The field of the option that selects a variant of the law: a further term, or another form.
     pub fn variant(&mut self, option: &str) -> Option<&mut bool> {
         match option {
             "degradation" => Some(&mut self.degradation),
@@ -163,7 +164,7 @@ impl ClassicalOptions {
     }
 }
 
-/// Sign that weights may have.
+/// Sign constraint of weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sign {
@@ -171,8 +172,8 @@ pub enum Sign {
     Any,
     /// At least 0: the output lags behind the input, as that of magnets and actuators.
     NonNegative,
-    /// At most 0, beside a reversible part that rises: the output runs ahead, as a force behind a
-    /// displacement does where energy is lost.
+    /// At most 0, with a rising reversible part: the output leads the input, as a force leads the
+    /// displacement where energy is dissipated.
     NonPositive,
 }
 

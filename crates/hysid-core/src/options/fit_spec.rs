@@ -1,4 +1,4 @@
-//! What is to be identified, and how.
+//! Specification of a fit: the model and its options.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::network::{ENSEMBLE_PENALTIES, FitOptions};
 
-/// What is to be identified, and how.
+/// Specification of a fit: the model and its options.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FitSpec {
@@ -17,12 +17,12 @@ pub enum FitSpec {
     Network(FitOptions),
     /// Another model.
     Classical(ClassicalOptions),
-    /// What validation chooses.
+    /// The best of many models, chosen by cross-validation.
     Auto(AutoOptions),
 }
 
 impl FitSpec {
-    /// A model with its defaults, and this rate if it has a use for one.
+    /// A model with its default options, and with this rate if it uses one.
     pub fn of(model: ModelName, rate: Option<RateMethod>, seed: u64) -> Self {
         let rate = rate.filter(|_| model.uses_rate());
         match model {
@@ -52,7 +52,7 @@ impl FitSpec {
         if variant.is_empty() { name.into() } else { format!("{name} ({})", variant.join(", ")) }
     }
 
-    /// What is not the model's default, in a few words.
+    /// The options that differ from the model's default, in a few words.
     fn variant(&self) -> Vec<String> {
         let (shaping, mut variant) = match self {
             Self::Network(options) => (
@@ -90,7 +90,7 @@ impl FitSpec {
         variant
     }
 
-    /// How the rate is found.
+    /// Method of the rate; `None` for no rate.
     pub fn rate(&self) -> Option<RateMethod> {
         match self {
             Self::Network(options) => options.rate,
@@ -99,7 +99,7 @@ impl FitSpec {
         }
     }
 
-    /// Starts of the search that was asked for; 1 where the model's own default is taken.
+    /// Number of requested starts; 1 if the model's own default is taken.
     pub fn starts(&self) -> usize {
         match self {
             Self::Network(options) => options.starts,

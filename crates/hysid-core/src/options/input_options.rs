@@ -1,4 +1,4 @@
-//! What a model sees of its input, as it is asked for.
+//! Options of the input transform.
 
 use std::ops::RangeInclusive;
 
@@ -8,22 +8,24 @@ use serde_json::json;
 use crate::error::Result;
 use crate::options::table::check;
 
-/// What is asked for, in shares of what the data show.
+/// Options of the [input transform](crate::model::input_transform), relative to the data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputOptions {
-    /// `s` of theory.md (11.1) as a share of the largest magnitude of the first input; `None` for an input
-    /// as it is.
+    /// Companding of the first input, `asinh(x / s)`: `s` as a share of the largest magnitude of the input;
+    /// `None` for none (theory.md (11.1)).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub companding: Option<f64>,
-    /// `s'` as a share of the rate that 99.5 % of all rows stay below.
+    /// Companding of the rate, `asinh(x' / s')`: `s'` as a share of the rate that 99.5 % of all rows stay
+    /// below; `None` for none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rate_companding: Option<f64>,
-    /// The largest magnitude and the path of the first input so far are inputs too, theory.md (11.2).
+    /// True if running peak and travelled path of the first input, `max |x| so far` and `ln(1 + 10 path so
+    /// far / P)`, are inputs too (theory.md (11.2)).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub history: bool,
-    /// Rows at the beginning of each record that drive the memory and are not trained on: a record that
-    /// does not begin in the virgin state comes to its own memory there.
+    /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
+    /// A record that does not begin in the virgin state reaches its own memory in these rows.
     #[serde(skip_serializing_if = "is_zero")]
     pub warm_up: usize,
 }
@@ -32,19 +34,19 @@ fn is_zero(rows: &usize) -> bool {
     *rows == 0
 }
 
-/// Shares that spread something, and not everything.
+/// Valid shares.
 pub const SHARES: RangeInclusive<f64> = 1e-6..=1e3;
 
-/// Inputs that a summary of the past adds.
+/// Number of inputs that the history adds.
 pub const HISTORY_INPUTS: usize = 2;
 
 impl InputOptions {
-    /// True if nothing is asked for.
+    /// True if the input is not transformed and there is no warm-up.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Refuses shares that spread nothing, or everything.
+    /// Rejects invalid shares.
     pub(crate) fn check(&self) -> Result<()> {
         let shares = [("companding", self.companding), ("rate_companding", self.rate_companding)];
         check(shares.into_iter().filter_map(|(name, share)| Some((name, json!(share?)))))

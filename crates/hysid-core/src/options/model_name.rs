@@ -1,4 +1,4 @@
-//! Models by their names.
+//! Names of models.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::network::Family;
 use crate::options::auto::Automatic;
 use crate::options::classical::ClassicalModel;
 
-/// A model by its name.
+/// The name of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ModelName {
@@ -17,7 +17,7 @@ pub enum ModelName {
     Network(Family),
     /// Another model.
     Classical(ClassicalModel),
-    /// What validation chooses, alone or together.
+    /// `auto`: the best of many models, chosen by cross-validation.
     Auto(Automatic),
 }
 
@@ -25,7 +25,7 @@ impl ModelName {
     /// The automatic model.
     pub const AUTO: ModelName = ModelName::Auto(Automatic::Auto);
 
-    /// All models that there are, the networks first; [`ModelName::AUTO`] chooses among them.
+    /// All models, the networks first, without [`ModelName::AUTO`].
     pub fn all() -> impl Iterator<Item = ModelName> {
         Family::ALL
             .into_iter()
@@ -42,7 +42,7 @@ impl ModelName {
         }
     }
 
-    /// True if the model can make use of the rate of the input.
+    /// True if the model can use the rate of the input.
     pub fn uses_rate(self) -> bool {
         match self {
             Self::Network(family) => family.uses_rate(),
@@ -60,10 +60,10 @@ impl ModelName {
         }
     }
 
-    /// Refuses data that the model cannot be fitted to.
+    /// Checks that the model can be fitted to the data.
     ///
     /// # Errors
-    /// Several inputs for a model that takes one, or no rate for a law that is about it.
+    /// Several inputs for a model that takes one, or no rate for a law that needs it.
     pub fn check_data(self, data: &Dataset, rate: Option<RateMethod>) -> Result<()> {
         let found = data.names().inputs.len();
         if found > 1 && !self.takes_further_inputs() {

@@ -1,4 +1,4 @@
-//! What the user can choose of a fit.
+//! Options of the fit of a network.
 
 use std::ops::RangeInclusive;
 
@@ -28,7 +28,7 @@ pub enum Trainer {
     Subgradient,
 }
 
-/// A way to lower the objective.
+/// An optimization method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
@@ -58,7 +58,7 @@ impl Trainer {
         }
     }
 
-    /// Starts unless the user says otherwise: the paper trains one network.
+    /// Default number of starts: 1 for the trainers of the paper, which trains one network.
     pub fn default_starts(self) -> usize {
         match self {
             Trainer::LevenbergMarquardt => 8,
@@ -66,7 +66,7 @@ impl Trainer {
         }
     }
 
-    /// Epochs unless the user says otherwise.
+    /// Default number of epochs.
     pub fn default_epochs(self) -> usize {
         match self {
             Trainer::LevenbergMarquardt => 40,
@@ -74,7 +74,7 @@ impl Trainer {
         }
     }
 
-    /// True if it breeds a population.
+    /// True if it uses a genetic algorithm.
     pub fn is_genetic(self) -> bool {
         matches!(self, Trainer::Hybrid | Trainer::Genetic)
     }
@@ -103,7 +103,7 @@ impl std::str::FromStr for Trainer {
     }
 }
 
-/// What the user can choose; every field has the name of its command-line option.
+/// Options of the fit of a network. Each field has the name of its command-line option.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitOptions {
     /// The network family.
@@ -111,21 +111,21 @@ pub struct FitOptions {
     /// Numbers of neurons.
     #[serde(flatten)]
     pub sizes: Sizes,
-    /// Stops do not deteriorate, whatever the family.
+    /// True for stops that do not deteriorate, in any family.
     pub no_deterioration: bool,
-    /// How the rate is found; `None` for no rate.
+    /// Method of the rate; `None` for no rate.
     pub rate: Option<RateMethod>,
-    /// What the network sees of the input.
+    /// Input transform.
     #[serde(default, skip_serializing_if = "InputOptions::is_none")]
     pub shaping: InputOptions,
     /// The trainer.
     #[serde(default)]
     pub training: Trainer,
-    /// Random networks, or populations, to start from. Of several, the one with the lowest objective is taken,
-    /// and a few of them are cross-validated.
+    /// Number of random networks, or populations, to start from. The one with the lowest objective becomes
+    /// the model, and a few of them are cross-validated.
     pub starts: usize,
-    /// Epochs of each start: Levenberg-Marquardt iterations, generations or outer iterations of the
-    /// sub-gradient method; a hybrid shares them out in halves.
+    /// Epochs of each start: Levenberg-Marquardt iterations, generations, or outer iterations of the
+    /// sub-gradient method. In a hybrid each of its two methods has half of them.
     pub epochs: usize,
     /// Individuals of the genetic algorithm.
     #[serde(default = "default_population")]
@@ -136,18 +136,19 @@ pub struct FitOptions {
     pub stall: usize,
     /// Seed of the random starts.
     pub seed: u64,
-    /// Share of the data held out to validate the fit on; `None` for the folds of a cross-validation.
+    /// Share of the data that is held out for the validation error; `None` for cross-validation.
     #[serde(default)]
     pub validation: Option<f64>,
-    /// λ of theory.md (3.1), on the output weights, in scaled units; `None` for the default, which is left
-    /// out where cross-validation finds it does harm.
+    /// λ: penalty `½ λ ‖c‖²` on the output weights `c`, in scaled units (theory.md (3.1)). `None` for the
+    /// default, which is left out if cross-validation gives a smaller error without it.
     #[serde(default)]
     pub ridge: Option<f64>,
-    /// κ of theory.md (3.1), on the weights of stops and tanh neurons; `None` as for `ridge`.
+    /// κ: penalty `½ κ ‖θ‖²` on the weights of stops, linear neuron and tanh neurons (theory.md (3.1)).
+    /// `None` as for `ridge`.
     #[serde(default)]
     pub decay: Option<f64>,
-    /// Scored rows that early iterations use at most; the memory runs through every row, and the last
-    /// iterations see all.
+    /// Largest number of scored rows of early iterations. All rows advance the memory, and the last
+    /// iterations use all scored rows.
     pub thin: usize,
 }
 
@@ -187,7 +188,7 @@ impl FitOptions {
         }
     }
 
-    /// The network that the options ask for on these data.
+    /// The architecture for these data.
     ///
     /// # Errors
     /// Sizes or a number of inputs that the family does not have.
@@ -199,7 +200,7 @@ impl FitOptions {
         Ok(architecture)
     }
 
-    /// The penalties that were asked for, or the defaults.
+    /// The requested penalties, or the defaults.
     pub fn penalties(&self) -> Regularisation {
         let defaults = Regularisation::default();
         Regularisation {
@@ -208,7 +209,7 @@ impl FitOptions {
         }
     }
 
-    /// True if the penalties stay as they were asked for.
+    /// True if the requested penalties must not be changed.
     pub fn keeps_penalties(&self) -> bool {
         self.ridge.is_some() || self.decay.is_some()
     }
@@ -218,7 +219,7 @@ impl FitOptions {
         !self.no_deterioration && self.model.deteriorates()
     }
 
-    /// Refuses options outside their meaning.
+    /// Rejects invalid options.
     pub fn check(&self) -> Result<()> {
         check([
             ("starts", json!(self.starts)),
@@ -239,24 +240,25 @@ impl FitOptions {
     }
 }
 
-/// The seed of every fit that was given none.
+/// Default seed.
 pub const SEED: u64 = 1;
 
-/// Fewest and most individuals.
+/// Smallest and largest population.
 pub const POPULATIONS: RangeInclusive<usize> = 4..=100_000;
 
-/// Most epochs of a start.
+/// Largest number of epochs of a start.
 pub const MOST_EPOCHS: usize = 1_000_000;
 
-/// Most starts.
+/// Largest number of starts.
 pub const MOST_STARTS: usize = 10_000;
 
-/// Penalties on the weights, in scaled units.
+/// Penalties on the weights, in scaled units: the terms `½ λ ‖c‖² + ½ κ ‖θ‖²` of the objective (theory.md
+/// (3.1)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Regularisation {
-    /// λ of theory.md (3.1), on the output weights.
+    /// λ, on the output weights `c`.
     pub ridge: f64,
-    /// κ of theory.md (3.1), on the weights of stops and tanh neurons.
+    /// κ, on the weights `θ` of stops, linear neuron and tanh neurons.
     pub decay: f64,
 }
 
@@ -266,11 +268,10 @@ impl Default for Regularisation {
     }
 }
 
-/// Penalties of networks that are combined with others. Chosen on measured and generated cases:
-/// docs/accuracy.md.
+/// Default penalties of networks in ensembles. Chosen on measured and generated cases: docs/accuracy.md.
 pub const ENSEMBLE_PENALTIES: Regularisation = Regularisation { ridge: 3e-4, decay: 1e-7 };
 
-/// Penalties that can be asked for.
+/// Valid penalties.
 pub const PENALTIES: RangeInclusive<f64> = 0.0..=1e6;
 
 impl Regularisation {

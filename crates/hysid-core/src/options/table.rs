@@ -16,26 +16,26 @@ use crate::options::network::{MOST_EPOCHS, MOST_STARTS, PENALTIES, POPULATIONS, 
 pub struct FitOption {
     /// Its name, in words joined by underscores, as in Python; the command line joins them by hyphens.
     pub name: &'static str,
-    /// Where it is listed.
+    /// The group in which it is listed.
     pub group: Group,
-    /// What it does, in a sentence without a full stop.
+    /// Its effect, in a sentence without a full stop.
     pub meaning: &'static str,
-    /// The values that it can have.
+    /// Its valid values.
     pub values: Values,
-    /// What happens without it, in words; empty where the meaning says so.
+    /// The default, in words; empty if the meaning states it.
     pub default: &'static str,
     /// Whether a network, or `auto`, uses it. A classical model lists its options itself.
     used_by: fn(ModelName, Trainer) -> bool,
 }
 
-/// Where an option is listed.
+/// A group of options.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
-    /// Of most models.
+    /// Options of most models.
     Model,
-    /// Of the training of networks and of searches.
+    /// Options of the training of networks and of searches.
     Training,
-    /// Of classical models.
+    /// Options of classical models.
     Classical,
 }
 
@@ -53,7 +53,7 @@ impl Group {
     }
 }
 
-/// The values that an option can have.
+/// The valid values of an option.
 #[derive(Debug, Clone, Copy)]
 pub enum Values {
     /// Whole numbers from the first to the second.
@@ -78,7 +78,7 @@ pub enum Values {
 
 use Group::{Classical, Model, Training};
 
-/// Numbers of neurons or operators that can be asked for.
+/// Valid numbers of neurons or operators.
 const NEURONS: Values = Values::Count(1, 1000);
 
 /// A penalty on weights.
@@ -353,10 +353,10 @@ fn of_none(_: ModelName, _: Trainer) -> bool {
 /// Options of every model, whatever it is.
 const OF_EVERY_MODEL: [&str; 5] = ["model", "members", "companding", "warm_up", "seed"];
 
-/// Refuses values that their options cannot have.
+/// Checks values of options.
 ///
 /// # Errors
-/// A name that is no option, or a value that the option cannot have: the first of them.
+/// An unknown name, or an invalid value: the first of them.
 pub fn check<'a>(values: impl IntoIterator<Item = (&'a str, Value)>) -> Result<()> {
     for (name, value) in values {
         let Some(option) = FitOption::named(name) else {
@@ -390,18 +390,18 @@ impl FitOption {
         std::iter::once(ModelName::AUTO).chain(ModelName::all()).filter(is_used).collect()
     }
 
-    /// Refuses a value that it cannot have.
+    /// Checks a value.
     ///
     /// # Errors
-    /// What is needed, in words.
+    /// The valid values, in words.
     pub fn check(&self, value: &Value) -> std::result::Result<(), String> {
         if self.values.hold(value) { Ok(()) } else { Err(self.values.needed()) }
     }
 
-    /// A value from its text on a command line.
+    /// Reads a value from its text on a command line.
     ///
     /// # Errors
-    /// What is needed, in words.
+    /// The valid values, in words.
     pub fn read(&self, text: &str) -> std::result::Result<Value, String> {
         let value = self.values.read(text).ok_or_else(|| self.values.needed())?;
         self.check(&value).map(|()| value)
@@ -423,7 +423,7 @@ impl Values {
         }
     }
 
-    /// What stands for a value in a usage.
+    /// Placeholder of the value in a usage line.
     pub fn placeholder(&self) -> &'static str {
         match self {
             Self::Count(..) | Self::Whole => "N",

@@ -1,4 +1,4 @@
-//! The variants of a law: the same equations with and without a term that not every specimen needs.
+//! Variants of a law: its equations with and without an optional term, or in another form.
 
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -9,9 +9,9 @@ impl FitSpec {
         if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
     }
 
-    /// The same in all variants of its law, the simplest first: Bouc-Wen with and without degradation,
-    /// Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its thresholds, and
-    /// laws that can leave out the rate with and without it. A network has one variant.
+    /// This specification in all variants of its law, the simplest first: Bouc-Wen with and without
+    /// degradation, Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its
+    /// thresholds, and laws with an optional rate with and without it. A network has one variant.
     pub fn variants(&self) -> Vec<Self> {
         match self {
             Self::Classical(options) => variants(options).into_iter().map(Self::Classical).collect(),

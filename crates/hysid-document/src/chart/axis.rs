@@ -1,4 +1,4 @@
-//! An axis: its range, its ticks at round numbers, and what is written at them.
+//! Axes of charts: range, ticks at round numbers, and their texts.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ const MOST_DECADES: f64 = 9.0;
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// What is measured along it, with its unit.
+    /// Label: the quantity with its unit.
     pub label: String,
     logarithmic: bool,
     low: f64,

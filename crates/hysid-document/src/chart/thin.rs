@@ -1,6 +1,6 @@
-//! Thinning: as few points as a picture needs, with every extreme kept.
+//! Thinning: reduces the points of a curve to those needed for a picture, with all extremes.
 
-/// A point in the user's units; a coordinate that is not finite interrupts the curve.
+/// A point in the units of the axes; a coordinate that is not finite interrupts the curve.
 pub type Point = (f64, f64);
 
 /// Points kept of each bucket: smallest and largest x and y.
@@ -16,9 +16,9 @@ pub fn thin(points: &[Point], most: usize) -> Vec<Point> {
     points.chunks(points.len().div_ceil(buckets)).flat_map(extremes).collect()
 }
 
-/// The outline of the area between two curves over the same places, which rise: there along the upper one and
-/// back along the lower, at about `most` places. Neighbours are joined to what contains them, so that no part of
-/// the area is lost.
+/// The outline of the area between two curves over the same rising `places`, at about `most` places: along
+/// the upper curve and back along the lower. Neighbours are replaced by their envelope, so no part of the
+/// area is lost.
 pub fn outline(places: &[f64], low: &[f64], high: &[f64], most: usize) -> Vec<Point> {
     let size = places.len().div_ceil(most.max(1)).max(1);
     let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -51,9 +51,9 @@ const STRETCHES: usize = 12;
 /// Share of a column's range that a path must move by to be drawn on.
 const VISIBLE: f64 = 0.0025;
 
-/// Rows to draw of a path through several columns, at most about `most`, in order: those that move
-/// visibly. If these are still too many, stretches of neighbours from all over the path, each
-/// followed by `None`, a gap; so every stretch is true to shape.
+/// Rows to draw of a path through several columns, at most about `most`, in order: those at which a column
+/// has changed visibly. If these are still too many, sections of neighbouring rows from the whole path, each
+/// followed by `None`, a gap. Each section has the true shape.
 pub fn thin_path(columns: &[&[f64]], most: usize) -> Vec<Option<usize>> {
     let rows = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     if rows <= most {

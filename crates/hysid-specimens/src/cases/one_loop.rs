@@ -1,4 +1,4 @@
-//! Cases of one loop: what most magnetics laboratories measure, and what says nothing of smaller loops.
+//! Cases of one loop, as most magnetics laboratories measure it, without information on smaller loops.
 
 use crate::path;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};
@@ -24,8 +24,8 @@ const REVERSALS: [f64; 4] = [0.8, 0.6, 0.4, 0.2];
 /// Turning points of a path by chance.
 const BY_CHANCE: usize = 8;
 
-/// Cases whose training data are one loop, run through up to three times, and whose test data are smaller loops and
-/// reversal curves inside it. The laws are those of [`super::generated`] that do not ask for time.
+/// Cases whose training data are one loop, repeated up to three times, and whose test data are smaller loops
+/// and reversal curves inside it. The laws are those of [`super::generated`] that need no time.
 ///
 /// # Errors
 /// As [`super::generated`].

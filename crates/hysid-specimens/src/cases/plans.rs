@@ -18,7 +18,7 @@ pub(super) enum Design {
     Pairs(Band),
     Random(Band),
     Halves(Band),
-    /// A random history of a specimen that does not ask for time.
+    /// A random history of a specimen that needs no time.
     SlowRandom,
 }
 

@@ -118,7 +118,7 @@ pub(super) fn random(draw: &mut Draw, subject: &Subject, band: Band) -> Result<P
     })
 }
 
-/// The same without time, for a specimen that does not ask for it.
+/// The same without time, for a specimen that needs none.
 pub(super) fn slow_random(draw: &mut Draw, subject: &Subject) -> Result<Parts> {
     let [train, test] = histories(draw, subject, SLOW_BAND).map(|History { mut motion, blank }| {
         motion.output[..blank].fill(f64::NAN);

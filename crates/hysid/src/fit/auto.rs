@@ -1,17 +1,26 @@
-//! The automatic model: candidates are cross-validated, and the best are combined.
+//! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`].
 //! 2. *Candidates*: networks, random stops and all classical laws, with and without rate, deterioration,
-//!    relaxation and companding. Each is fitted to every fold, from several starts where it has any; its
-//!    prediction is the median of its starts. Laws whose parameters are searched are fitted in haste first,
-//!    and dropped if they stay far behind.
-//! 3. *Weights*: candidates of a kind are weighted by the mean logarithm of their errors on the folds, and the
-//!    best three are combined by their weighted median; the kinds in the same way. Rows inside the trained
-//!    range and beyond it are weighted apart.
-//! 4. *Fit on everything* of all that have a weight: an [`Ensemble`](crate::model::Ensemble), or one small model.
-//! 5. *Band*, calibrated on the folds.
+//!    relaxation and companding. Each is fitted to every fold, from several starts if it is random; its
+//!    prediction is the median of its starts. Laws with searched parameters are first fitted with few epochs,
+//!    and dropped if their errors are far above the best.
+//! 3. *Weights*: candidates of a kind are weighted by their scores, and the best three are combined by their
+//!    weighted median; the kinds likewise. Rows inside and outside the trained range have separate scores.
+//! 4. *Fit to all data* of the candidates with a weight: an [`Ensemble`](crate::model::Ensemble), or one
+//!    small model.
+//! 5. *Prediction band*, calibrated on the folds.
 //!
-//! Which settings were tried, on which cases, and what they gave: docs/accuracy.md.
+//! ```text
+//! S = mean over the folds f of ln(rmse_f / σ_f)                                             theory.md (11.5)
+//! w = (e^S / e^{S_best})^{-p},    p = 8 among the best three of a kind, 3 among kinds       theory.md (11.6)
+//! ```
+//!
+//! `S` is the score of a candidate, `rmse_f` its error on fold `f`, `σ_f` the standard deviation of the
+//! output there, and `w` its weight.
+//!
+//! docs/accuracy.md of the repository reports the settings that were compared, on which cases, and the
+//! errors.
 
 mod candidates;
 mod combination;
@@ -65,7 +74,7 @@ pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
     wanted(data, options).iter().map(|candidate| candidate.request(0)).collect()
 }
 
-/// The candidates: all that suit the data, or the one model that was asked for.
+/// The candidates: all that suit the data, or the one requested model.
 fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     match &options.only {
         Some(request) => vec![Candidate::alone(request)],
@@ -73,10 +82,10 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     }
 }
 
-/// Identifies by cross-validation.
+/// Identifies a model by cross-validation of candidates.
 ///
 /// # Errors
-/// Data that nothing can be identified from, and decisions that leave no candidate.
+/// Data from which no model can be identified, and options that leave no candidate.
 pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     data.check_identifiable(FEWEST_ROWS)?;
     check([("members", json!(options.members))])?;
@@ -146,7 +155,7 @@ struct Chosen<'w, 'o, 'a> {
 }
 
 impl Chosen<'_, '_, '_> {
-    /// The ensemble, or the single model that was asked for; `alone` where nothing was tried in time.
+    /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fit> {
         let Bench { folds, work, .. } = self.bench;
         let fit = |model| Ok(Fit { model, evaluations: work.done() });

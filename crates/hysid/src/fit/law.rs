@@ -1,4 +1,4 @@
-//! Which classical models there are, what can be chosen of each, and how each is fitted.
+//! Identification of the classical models.
 
 pub mod bouc_wen;
 pub mod generalized_prandtl_ishlinskii;
@@ -35,12 +35,12 @@ use hysid_core::for_each_law;
 
 /// A law that can be identified from data.
 pub trait Identify: Law {
-    /// Identifies a law. The observer is told after every round of a search; whatever takes long asks `stop` in its
-    /// midst, and ends with the best so far.
+    /// Identifies a law. The observer is called after every round of a search; long computations check `stop`
+    /// in between, and end with the best result so far.
     ///
     /// # Errors
-    /// Data that nothing can be identified from, options outside their meaning, a rate that cannot be computed, or a
-    /// stop before there was any law.
+    /// Data from which no model can be identified, invalid options, a rate that cannot be computed, or a stop
+    /// before there was a law.
     fn identify(
         data: &Dataset,
         options: &ClassicalOptions,
@@ -48,7 +48,7 @@ pub trait Identify: Law {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>>;
 
-    /// The same without a stop in the midst of a round.
+    /// As [`Identify::identify`], without a check within a round.
     ///
     /// # Errors
     /// As [`Identify::identify`].
@@ -61,9 +61,9 @@ pub trait Identify: Law {
     }
 }
 
-/// A law that is found by least squares from one start. Such a fit has no rounds that an observer could hear of.
+/// A law that is found by least squares from one start. There are no rounds, so the observer is not called.
 pub trait LeastSquaresLaw: Law {
-    /// The law; after a stop, the best of what was compared until then.
+    /// The law; after a stop, the best of those compared so far.
     ///
     /// # Errors
     /// As [`Identify::identify`].
@@ -84,14 +84,14 @@ impl<L: LeastSquaresLaw> Identify for L {
 
 macro_rules! fit {
     ($($law:ident),* $(,)?) => {
-        /// Fits a classical law. Of a search, the observer is told after every round; a fit without rounds that may
-        /// take long asks `stop` in its midst.
+        /// Fits a classical law. The observer is called after every round of a search; a fit without rounds
+        /// checks `stop`.
         ///
         /// # Errors
-        /// Data that nothing can be identified from, options outside their meaning.
+        /// Data from which no model can be identified, invalid options.
         ///
         /// # Panics
-        /// Random stops, which are a network.
+        /// For random stops, which are a network.
         pub(crate) fn fit(
             data: &Dataset,
             options: &ClassicalOptions,

@@ -1,8 +1,8 @@
-//! How much memory an identification takes at its peak, estimated before it is begun.
+//! Peak memory of an identification, estimated before it begins.
 //!
-//! Only what can grow large is counted: matrices as wide as a model has parameters or features, states of many
-//! starts, and copies of the data. Estimates are within a factor of three of what was measured; the tests hold
-//! them to that.
+//! Only large parts are counted: matrices as wide as the number of parameters or features, states of many
+//! starts, and copies of the data. The estimates are within a factor of three of measured values; the tests
+//! check this.
 
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
@@ -24,19 +24,19 @@ const ROWS_OF_A_SEARCH: usize = 5000;
 /// Runs on folds: three starts on each of five.
 const RUNS_ON_FOLDS: usize = 15;
 
-/// Memory at the peak of an identification, beside that of the data themselves.
+/// Peak memory of an identification, without that of the data themselves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MemoryNeed {
     /// Bytes.
     pub bytes: f64,
-    /// What takes them, in words.
+    /// What needs most of it, in words.
     pub taken_by: String,
-    /// What lowers them, in words.
+    /// What reduces it, in words.
     pub advice: &'static str,
 }
 
 impl MemoryNeed {
-    /// Refuses a need beyond what is available, in bytes.
+    /// Checks that the need is not beyond the `available` bytes.
     ///
     /// # Errors
     /// [`Error::Memory`].
@@ -54,10 +54,10 @@ impl MemoryNeed {
     }
 }
 
-/// What identifying a model takes at its peak, with so many threads.
+/// The peak memory of an identification with this number of threads.
 ///
 /// # Errors
-/// Options that make no network of these data.
+/// Options that are no valid network for these data.
 pub fn memory_need(data: &Dataset, request: &FitSpec, threads: usize) -> Result<MemoryNeed> {
     match request {
         FitSpec::Network(options) => of_network(data, options, threads),

@@ -1,8 +1,17 @@
-//! Identification: from a data set to a fitted network.
+//! Identification of networks.
 //!
-//! [`fit`] is the whole of it: scale, start from one or several random networks, let each descend by the
-//! chosen trainer, judge several on data that were held out, and train the best few on everything.
-//! [`resume`] takes up a fit where a [`Checkpoint`] left it.
+//! [`fit`] does all of it: it scales the data, trains several random networks by the chosen trainer,
+//! cross-validates some of them, and trains the best few on all data. [`resume`] continues a fit from a
+//! [`Checkpoint`].
+//!
+//! ```text
+//! F(θ) = min_c [ ½ ‖Φ(θ) c - y‖²/N + ½ λ ‖c‖² ] + ½ κ ‖θ‖²_w               theory.md (3.1)
+//! ```
+//!
+//! All trainers minimize `F`. `θ` are the parameters found by search, `c` the output weights (by least
+//! squares, for each `θ`), `Φ` the terms of the output, one row for each of the `N` scored samples, `y` the
+//! scaled measured output, `λ` and `κ` the penalties
+//! ([`Regularisation`](crate::options::network::Regularisation)).
 
 pub mod checkpoint;
 pub(crate) mod curvature;
@@ -34,18 +43,18 @@ use checkpoint::Snapshot;
 use fitting::Fitting;
 pub(crate) use shared_observer::SharedObserver;
 
-/// Where a fit is, told to the observer after every epoch, and now and then in between: the same once more, without
-/// a checkpoint, so that it may say stop.
+/// Progress of a fit. The observer gets it after every epoch; during long epochs it gets the same again
+/// without a checkpoint, so that it can stop the fit.
 #[derive(Debug, Clone)]
 pub struct Progress<'a> {
     /// The model that is being fitted.
     pub model: ModelName,
-    /// True for one fit of many: of a candidate of `auto`, or to a fold of a validation. Only `done` speaks of
-    /// the whole work then.
+    /// True for one fit of many: of a candidate of `auto`, or to a fold of a validation. Only `done` then
+    /// refers to the whole work.
     pub is_part: bool,
-    /// What is being done.
+    /// The present part of the fit.
     pub phase: Phase,
-    /// How it is being done.
+    /// The present method.
     pub method: Method,
     /// Start, counted from 0.
     pub start: usize,
@@ -55,14 +64,14 @@ pub struct Progress<'a> {
     pub evaluations: usize,
     /// Error on the training rows, in percent of the output's standard deviation; NaN while there is none.
     pub train_nrmse_percent: f64,
-    /// Share of the work done, 0 to 1, if every start takes all its epochs.
+    /// Completed share of the work, 0 to 1, if every start takes all its epochs.
     pub done: f64,
     snapshot: Option<Snapshot<'a>>,
 }
 
 impl Progress<'_> {
-    /// All that is needed to take up the fit from here; `None` for a model that has no checkpoints. It
-    /// costs a copy of the state, so it is made when it is asked for.
+    /// The state from which the fit can be resumed; `None` for a model without checkpoints. It is a copy,
+    /// which is made only on request.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
         self.snapshot.map(|snapshot| snapshot.checkpoint())
     }
@@ -117,10 +126,10 @@ impl Progress<'_> {
     }
 }
 
-/// Who is told of the progress, and may break off.
+/// A function that gets the progress of a fit and can stop it.
 pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
-/// A fitted model and how it came about.
+/// A fitted model with the number of evaluations.
 #[derive(Debug, Clone)]
 pub struct Fit {
     /// The model.
@@ -131,23 +140,22 @@ pub struct Fit {
 
 /// Identifies a network.
 ///
-/// `observer` is told of every epoch and may stop the fit by breaking: the best model so far is then
-/// returned, with [`Stopped`](crate::termination::Termination::Stopped) as the reason for its end. It is also asked
-/// in the midst of long epochs, so that it is obeyed soon; what such an epoch has not finished is thrown away. The
-/// result depends on data, options and seed only, not on the number of threads.
+/// `observer` is called after every epoch. If it returns `Break`, the fit ends with the best model so far,
+/// and with [`Stopped`](crate::termination::Termination::Stopped) as the reason. It is also called during
+/// long epochs, so that a fit stops soon; the results of an incomplete epoch are discarded. The result
+/// depends on data, options and seed only, not on the number of threads.
 ///
 /// # Errors
-/// Data that nothing can be identified from, options outside their meaning, or a stop before there was any model.
+/// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
 
-/// Goes on with a fit of the same data. What comes out is, to the last bit, what the fit would have come
-/// to without the interruption.
+/// Resumes a fit of the same data. The result is the same to the last bit as without the interruption.
 ///
 /// # Errors
-/// A checkpoint of other data, or one that contradicts itself.
+/// A checkpoint of other data, or one that is inconsistent.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
     let (options, state) = checkpoint.for_data(data)?;
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;

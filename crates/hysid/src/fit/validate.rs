@@ -7,12 +7,12 @@ use crate::fit::network::{Observer, Progress};
 use crate::options::FitSpec;
 use crate::validation::{CrossValidation, CrossValidator};
 
-/// Identifies a model on each fold and judges it on what was held out. The observer is as in
-/// [`identify`]; its share of the work done is that of all folds. After it has said stop, the fold under way is
-/// judged with its best model so far, and no further one is begun.
+/// Cross-validates a model: identifies it on each fold and evaluates it on the held-out data. The observer is
+/// as in [`identify`]; `done` is the share of all folds. If it stops, the present fold is evaluated with its
+/// best model so far, and no further fold begins.
 ///
 /// # Errors
-/// Data too few for two folds, and as [`identify`].
+/// Too few data for two folds, and as [`identify`].
 pub fn cross_validate(
     data: &Dataset,
     request: &FitSpec,

@@ -1,5 +1,5 @@
-//! A real-coded genetic algorithm: tournament selection, simulated binary crossover, polynomial
-//! mutation, elitism. It minimises any function over a box.
+//! A real-coded genetic algorithm: tournament selection, simulated binary crossover, polynomial mutation,
+//! elitism. It minimises any function within bounds of its variables.
 //!
 //! ```text
 //! crossover  β = (2u)^{1/(η+1)} if u <= ½, else (2(1-u))^{-1/(η+1)};  child = ½[(1±β) a + (1∓β) b]
@@ -7,8 +7,11 @@
 //!                                                                              theory.md (3.6)
 //! ```
 //!
-//! Every individual has a random generator of its own, seeded by (seed, generation, index), so that
-//! the result does not depend on who computes which.
+//! `a` and `b` are the values of a gene in two parents, `x` its value in a child, `low` and `high` its
+//! bounds, `u` a random number uniform on (0, 1), and `η = 20` the distribution index.
+//!
+//! Every individual has its own random generator, seeded by (seed, generation, index), so the result does not
+//! depend on the number of threads.
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -42,18 +45,18 @@ pub struct Individual {
     pub cost: f64,
 }
 
-/// What a genetic search works on.
+/// A minimisation problem with bounds.
 pub struct Problem<'a> {
     /// Lowest and highest value of each gene.
     pub bounds: &'a [(f64, f64)],
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// The function to be minimised.
     pub cost: &'a (dyn Fn(&[f64]) -> f64 + Sync),
 }
 
-/// The state of a genetic search: a population and what it took so far. It can be stored and taken up
-/// again, to the last bit.
+/// The state of a genetic search: a population and the numbers of generations and evaluations. It can be
+/// stored and resumed, to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Genetic {
     population: Vec<Individual>,
@@ -97,7 +100,7 @@ impl Genetic {
             && self.generation.max(self.evaluations) <= MOST_COUNTED
     }
 
-    /// Breeds the next generation.
+    /// Computes the next generation.
     pub fn advance(&mut self, problem: &Problem) {
         self.generation += 1;
         let size = self.population.len();
@@ -126,7 +129,7 @@ impl Genetic {
         &self.population
     }
 
-    /// Generations bred so far.
+    /// Number of generations so far.
     pub fn generation(&self) -> usize {
         self.generation
     }

@@ -1,12 +1,16 @@
-//! Levenberg-Marquardt descent, theory.md (3.5), for every model that is fitted by it: networks, laws that are searched,
-//! neuro-Madelung and modified Prandtl-Ishlinskii models.
+//! Levenberg-Marquardt descent, for networks, laws found by search, neuro-Madelung and modified
+//! Prandtl-Ishlinskii models.
 //!
 //! ```text
-//! (B + μD) δ = -g,    F(w + δ) < F(w) or μ grows;    D_i = max(m D_i, B_ii, s max B)
+//! (B + μD) δ = -g,    F(w + δ) < F(w) or μ increases;    D_i = max(m D_i, B_ii, s max B)      theory.md (3.5)
 //! ```
 //!
-//! A [`Problem`] gives the function `F`, half a mean or a sum of squares, with its gradient and Gauss-Newton matrix, and
-//! solves for the step as its bounds ask for. What is searched here is the damping.
+//! `F` is half a mean or a sum of squares of the parameters `w`, `g` its gradient, `B` its Gauss-Newton
+//! matrix, `δ` the step, `μ` the damping and `D` a positive diagonal scaling; `m` and `s` are
+//! [`Rules::curvature_memory`] and [`Rules::least_curvature`].
+//!
+//! A [`Problem`] gives `F`, `g` and `B`, and solves for the step within its bounds. The descent controls the
+//! damping.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,24 +24,26 @@ const FIRST_DAMPING: f64 = 1e-2;
 /// Iterations in a row without a noticeable fall that end the search.
 const PATIENCE: usize = 3;
 
-/// What a descent goes by.
+/// Settings of a descent.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules {
-    /// Smallest damping, and that at which the search gives up.
+    /// Smallest damping, and the damping at which the search ends.
     pub damping: (f64, f64),
-    /// Share of the largest curvature seen in a direction that is left after an iteration; 0 for the present one only.
+    /// `m`: share of the largest earlier curvature in a direction that is kept after an iteration; 0 for the
+    /// present curvature only.
     pub curvature_memory: f64,
-    /// Smallest curvature assumed, as a share of the largest of all directions: a direction without slope is not run
-    /// along.
+    /// `s`: least curvature in any direction, as a share of the largest. It limits steps in directions
+    /// without slope.
     pub least_curvature: f64,
-    /// A gradient vanishes if no component is larger.
+    /// Largest component of a gradient that counts as 0.
     pub least_gradient: f64,
-    /// Relative fall of the function that counts as none.
+    /// Relative decrease of the function that counts as none.
     pub stall: f64,
 }
 
 impl Rules {
-    /// For smooth functions of many parameters: steps are held by curvature seen before, and small falls count.
+    /// For smooth functions of many parameters: earlier curvature limits the steps, and small decreases
+    /// count.
     pub const SMOOTH: Self = Self {
         damping: (1e-12, 1e12),
         curvature_memory: 0.9,
@@ -46,7 +52,7 @@ impl Rules {
         stall: 1e-6,
     };
 
-    /// For laws with kinks and regions without slope, in any unit: what was seen elsewhere says little.
+    /// For laws with kinks and regions without slope, in any unit: earlier curvature is not used.
     pub const KINKED: Self = Self {
         damping: (1e-10, 1e10),
         curvature_memory: 0.0,
@@ -56,15 +62,15 @@ impl Rules {
     };
 }
 
-/// Slope and curvature at a point.
+/// Gradient and curvature at a point.
 pub struct Slope<C> {
     /// Gradient of the function.
     pub gradient: Vec<f64>,
     /// Diagonal of the curvature.
     pub diagonal: Vec<f64>,
-    /// What the step is computed from: the Gauss-Newton matrix, as the problem keeps it.
+    /// The Gauss-Newton matrix, in the form of the problem.
     pub curvature: C,
-    /// Evaluations that it took.
+    /// Number of evaluations for it.
     pub evaluations: usize,
 }
 
@@ -81,7 +87,7 @@ impl Slope<Symmetric> {
     }
 }
 
-/// A function to be lowered.
+/// A function to be minimised.
 pub trait Problem {
     /// The function at a point, with what its slope can be computed from.
     type Value;
@@ -90,28 +96,27 @@ pub trait Problem {
     /// How the descent goes.
     const RULES: Rules;
 
-    /// The function at a point; infinite if it was broken off.
+    /// The function at a point; infinite if the evaluation was stopped.
     fn value(&self, parameters: &[f64]) -> Self::Value;
 
-    /// The number to be lowered, half a mean or a sum of squares.
+    /// The number to be minimised: half a mean or a sum of squares.
     fn objective(value: &Self::Value) -> f64;
 
-    /// Slope and curvature at a point with its value; `None` once asked to stop.
+    /// Gradient and curvature at a point with its value; `None` once stopped.
     fn slope(&self, parameters: &[f64], value: &Self::Value) -> Option<Slope<Self::Curvature>>;
 
-    /// The step to where gradient and curvature, with `damping` added to its diagonal, have their minimum; `None` if
-    /// there is none, or once asked to stop.
+    /// The step that minimises the quadratic model with `damping` added to the diagonal of the curvature;
+    /// `None` if there is none, or once stopped.
     fn step(&self, slope: &Slope<Self::Curvature>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>>;
 
-    /// Takes parameters back within their bounds.
+    /// Moves parameters into their bounds.
     fn limit(&self, parameters: &mut [f64]);
 
-    /// What breaks the search off.
+    /// The check whether to stop.
     fn stop(&self) -> StopCheck<'_>;
 }
 
-/// The step of a problem whose bounds do not enter it: `(B + damping) δ = -g`. `None` unless positive definite, and once
-/// asked to stop.
+/// The step without bounds: `(B + damping) δ = -g`. `None` unless positive definite, and once stopped.
 pub fn damped_step(
     matrix: &Symmetric,
     gradient: &[f64],
@@ -125,8 +130,9 @@ pub fn damped_step(
     Some(step)
 }
 
-/// The step of a problem with bounds: what stands at one and would leave stays there, and the others step without it.
-/// `leaves` tells that of a parameter and its step. `None` as [`damped_step`], and if nothing can move.
+/// The step with bounds: a parameter at a bound that the step would cross stays there, and the step of the
+/// others is solved without it. `leaves` is true for a parameter and a step that would cross a bound. `None`
+/// as for [`damped_step`], and if no parameter can move.
 pub fn step_within(
     matrix: &Symmetric,
     gradient: &[f64],
@@ -154,7 +160,7 @@ pub fn step_within(
     }
 }
 
-/// The state of a descent. It can be stored and taken up again, to the last bit.
+/// The state of a descent. It can be stored and resumed, to the last bit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct LevenbergMarquardt<V> {
@@ -179,7 +185,7 @@ impl<V> LevenbergMarquardt<V> {
         Self { parameters, value: Some(value), damping: Damping::new(), stalled: 0, evaluations: 0 }
     }
 
-    /// True if a descent with these rules can go on from here: a state that was read is not trusted.
+    /// True if a descent with these rules can continue from this state, which may have been read from a file.
     pub(crate) fn is_sound(&self, rules: &Rules, are_parameters: impl Fn(&[f64]) -> bool) -> bool {
         let Damping { mu, growth, scale } = &self.damping;
         let (smallest, largest) = rules.damping;
@@ -192,27 +198,27 @@ impl<V> LevenbergMarquardt<V> {
             && self.evaluations <= MOST_COUNTED
     }
 
-    /// Where the descent is.
+    /// The present parameters.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// Evaluations of the function so far, with those for slopes.
+    /// Evaluations of the function so far, including those for gradients.
     pub fn evaluations(&self) -> usize {
         self.evaluations
     }
 
-    /// The function where the descent is.
+    /// The function at the present parameters.
     pub fn value<P: Problem<Value = V>>(&mut self, problem: &P) -> &V {
         self.value.get_or_insert_with(|| problem.value(&self.parameters))
     }
 
-    /// The function where a descent is that was not stored.
+    /// The function at the present parameters; `None` in a state that was stored.
     pub fn known_value(&self) -> Option<&V> {
         self.value.as_ref()
     }
 
-    /// One iteration, which lowers the function unless it tells that there is no way on.
+    /// One iteration. It decreases the function, or returns why the descent ends.
     pub fn advance<P: Problem<Value = V>>(&mut self, problem: &P) -> Option<Termination> {
         let Self { parameters, value, damping, stalled, evaluations } = self;
         let here = value.get_or_insert_with(|| problem.value(parameters));
@@ -234,9 +240,9 @@ impl<V> LevenbergMarquardt<V> {
     }
 }
 
-/// μ and D of theory.md (3.5). D is the largest curvature seen lately in each direction (Moré), so that a
-/// parameter that matters little now is not thrown far away; it fades, because curvature seen far away
-/// would hold the parameter for ever.
+/// Damping `μ` and scaling `D` of the step `(B + μD) δ = -g` (theory.md (3.5)). `D` is the largest recent
+/// curvature in each direction (Moré), which limits the step in a parameter of little present influence. It
+/// decays, because curvature far away would limit the parameter without end.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Damping {
     mu: f64,

@@ -1,7 +1,8 @@
-//! A search from several starts side by side: all go on round by round, and those that fall behind are given up.
+//! A search from several starts in parallel: all advance round by round, and those with the worst results are
+//! dropped.
 //!
-//! The result does not depend on the number of threads: a start goes on by itself, and the starts are compared in
-//! their order. Starts of networks are not given up, and a fit of them is stored between rounds: see
+//! The result does not depend on the number of threads: starts advance independently and are compared in
+//! their order. Starts of networks are not dropped, and their fit is stored between rounds: see
 //! `fit/network/fitting.rs`.
 
 use std::cmp::Ordering;
@@ -50,8 +51,8 @@ impl<S: Start> MultiStart<S> {
         Self { starts, given_up: 0 }
     }
 
-    /// Advances all starts in rounds, counted from 1, until all have ended or `tell`, which hears of every round, breaks
-    /// off.
+    /// Advances all starts in rounds, counted from 1, until all have ended or `tell`, which is called after every
+    /// round, returns `Break`.
     pub fn run(
         &mut self,
         plan: Plan,

@@ -1,9 +1,11 @@
-//! Convex quadratic functions, and where they are lowest when some of the variables have a sign: non-negative least
-//! squares on the normal equations.
+//! Convex quadratic functions and their minima with sign constraints: non-negative least squares on the
+//! normal equations.
 //!
 //! ```text
 //! w = argmin ½ wᵀMw - bᵀw,   w_i ≥ 0 for some i                        theory.md (7.1)
 //! ```
+//!
+//! `M = A + λP` is positive semi-definite.
 
 use std::ops::Range;
 
@@ -68,13 +70,13 @@ impl Quadratic {
         }
     }
 
-    /// The minimum; `None` once asked to stop. Where rounding makes the matrix indefinite, a ridge is added
+    /// The minimum; `None` once stopped. Where rounding makes the matrix indefinite, a ridge is added
     /// until it is not.
     pub fn minimum(&self, stop: StopCheck<'_>) -> Option<Vec<f64>> {
         minimum(&self.matrix, self.right.clone(), stop)
     }
 
-    /// The minimum within bounds, from a guess near it (or none: an empty one); `None` once asked to stop.
+    /// The minimum within bounds, from a guess near it (or none: an empty one); `None` once stopped.
     pub fn minimum_within(mut self, bounds: &Bounds, guess: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         if !bounds.bounded.contains(&true) {
             return self.minimum(stop);
@@ -96,7 +98,7 @@ impl Quadratic {
         self.minimum_within(bounds, &[], stop).ok_or(Error::Stopped)
     }
 
-    /// Minima with each of several factors of a penalty, in their order (rising); `None` once asked to stop.
+    /// Minima with each of several factors of a penalty, in their order (rising); `None` once stopped.
     pub fn path(
         &self,
         penalty: &Penalty,
@@ -131,7 +133,7 @@ impl Quadratic {
     }
 
     /// The minimum with `w_i ≥ 0` for all `i` with `bounded[i]`, from a guess which of them are positive
-    /// (all, if it is empty); `None` once asked to stop. Block principal pivoting (Portugal, Júdice and Vicente 1994): variables
+    /// (all, if it is empty); `None` once stopped. Block principal pivoting (Portugal, Júdice and Vicente 1994): variables
     /// change sides all at once while that lowers the number of those on the wrong side, else one at
     /// a time (Murty), which ends for a positive definite matrix.
     pub fn non_negative_minimum(
@@ -191,7 +193,7 @@ const QUICKLY_SOLVED: usize = 500;
 /// Wrong sides up to this, relative to the largest, are rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// The minimum; of a matrix that is not finite, all zeros; `None` once asked to stop.
+/// The minimum; of a matrix that is not finite, all zeros; `None` once stopped.
 fn minimum(matrix: &Symmetric, right: Vec<f64>, stop: StopCheck<'_>) -> Option<Vec<f64>> {
     match factor_with_ridge(matrix, right.len(), 0.0, 0, stop) {
         Ok((factor, _)) => {

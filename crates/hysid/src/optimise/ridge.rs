@@ -14,7 +14,7 @@ const SMALLEST: f64 = 1e-14;
 /// Why there is no factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NoFactor {
-    /// Asked to stop.
+    /// Stopped.
     Stopped,
     /// The matrix is not finite.
     NotFinite,

@@ -1,4 +1,4 @@
-//! Shor's sub-gradient methods with space dilatation: they minimise functions that need not be smooth.
+//! Shor's sub-gradient methods with space dilatation, which minimise functions that need not be smooth.
 //!
 //! ```text
 //! R_γ(ξ) = I + (γ - 1) ξ ξᵀ,  |ξ| = 1
@@ -6,12 +6,16 @@
 //! ξ ∝ Bᵀ(g⁺ - g)  in the r-algorithm,  ξ ∝ Bᵀg  in the sub-gradient method       theory.md (3.8)
 //! ```
 //!
-//! Each dilatation shortens the steps in a direction across which the sub-gradient jumps, so that a
-//! narrow valley becomes round. The matrix `B` holds the square of the number of variables; a step
-//! costs about six times that, beside the function.
+//! `x` are the variables, `g` is a sub-gradient of the function before and `g⁺` after the steps along the
+//! direction `d`, `h` the step, `B` the transformation of the space and `α > 1` the coefficient of
+//! dilatation.
 //!
-//! [`minimise`] serves anyone; training goes step by step with [`SpaceDilatation`], whose whole state can
-//! be stored.
+//! Each dilatation shortens the steps in a direction across which the sub-gradient jumps, so that a narrow
+//! valley becomes round. `B` has the square of the number of variables as elements; one step costs about six
+//! operations for each, in addition to the function.
+//!
+//! [`minimise`] minimises any function. Training advances step by step with [`SpaceDilatation`], whose whole
+//! state can be stored.
 
 use serde::{Deserialize, Serialize};
 
@@ -49,17 +53,17 @@ pub struct DilatationOptions {
     /// Along what the space is dilated.
     #[serde(rename = "dilation")]
     pub dilatation: Dilatation,
-    /// α, by which the space is dilated; above 1, usually 2 to 4.
+    /// `α`: coefficient of dilatation, above 1, usually 2 to 4.
     pub coefficient: f64,
-    /// h0, the first step: about the distance to the minimum.
+    /// First step `h`, about the distance to the minimum in units of the scales.
     pub first_step: f64,
-    /// q1, by which the step is multiplied when one inner step was enough: 1 for a function that is
-    /// not smooth (less lets the steps shrink faster than the space dilates), 0.8 to 0.95 for a smooth
+    /// `q1`: factor of the step after an iteration with a single inner step. 1 for a function that is not
+    /// smooth (a smaller factor shortens steps faster than the space is dilated), 0.8 to 0.95 for a smooth
     /// one.
     pub shrinkage: f64,
-    /// q2, by which the step is multiplied at every third inner step.
+    /// `q2`: factor of the step at every third inner step.
     pub growth: f64,
-    /// A value that the function does not fall below, for [`Dilatation::Subgradient`].
+    /// A lower bound of the function, for [`Dilatation::Subgradient`].
     pub lower_bound: f64,
 }
 
@@ -101,11 +105,11 @@ const MOST_HALVINGS: usize = 100;
 /// A transformed vector this much shorter than rounding allows for is noise: the space begins anew.
 const NOISE: f64 = 1e-13;
 
-/// The state of a minimisation; it can be stored and taken up again, to the last bit.
+/// The state of a minimisation. It can be stored and resumed, to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpaceDilatation {
     options: DilatationOptions,
-    /// Length of each variable's unit; `B` begins as the diagonal matrix of these.
+    /// Typical length of each variable; `B` begins as the diagonal matrix of these.
     scales: Vec<f64>,
     x: Vec<f64>,
     value: f64,
@@ -121,9 +125,9 @@ pub struct SpaceDilatation {
 /// The lowest point found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Minimum {
-    /// Where it is.
+    /// The variables there.
     pub x: Vec<f64>,
-    /// The function there.
+    /// The value of the function there.
     pub value: f64,
     /// Outer iterations so far.
     pub iterations: usize,
@@ -132,12 +136,10 @@ pub struct Minimum {
 }
 
 impl SpaceDilatation {
-    /// Begins at `x`. `scales` are typical lengths, one for each variable: steps are measured in
-    /// them.
+    /// Begins at `x`. `scales` are typical lengths, one for each variable, which are the units of the steps.
     ///
     /// # Errors
-    /// Options outside their meaning, no variable, scales that are not positive, a function that is
-    /// no number at `x`.
+    /// Invalid options, no variable, scales that are not positive, a function that is not finite at `x`.
     pub fn new(
         x: Vec<f64>,
         scales: Vec<f64>,
@@ -194,8 +196,8 @@ impl SpaceDilatation {
         &self.best
     }
 
-    /// One outer iteration: steps along one direction, then a dilatation. Tells why if there is no
-    /// way on.
+    /// One outer iteration: steps along one direction, then a dilatation. Returns why the minimisation ends,
+    /// if it does.
     pub fn advance(&mut self, f: &mut impl Subdifferentiable) -> Option<Termination> {
         self.best.iterations += 1;
         let n = self.x.len();
@@ -333,14 +335,15 @@ impl SpaceDilatation {
     }
 }
 
-/// When [`minimise`] ends.
+/// Limits of [`minimise`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Most outer iterations.
+    /// Largest number of outer iterations.
     pub iterations: usize,
-    /// A value that is low enough.
+    /// The value of the function at which it ends.
     pub target: f64,
-    /// Iterations in a row without a relative fall of 1e-4 that end it; 0 for no such rule.
+    /// Number of successive iterations without a relative decrease of 1e-4 after which it ends; 0 for no such
+    /// limit.
     pub stall: usize,
 }
 

@@ -1,22 +1,23 @@
-//! Records that are one measurement: given twice, copied with rounded numbers or other time stamps, or cut out of a
-//! longer one. What is held out is not unseen if a copy of it is trained on.
+//! Records that are one measurement: given twice, copied with rounded numbers or other time stamps, or cut
+//! out of a longer record. Held-out data are not unseen if a copy of them is in the training data.
 
 use std::collections::HashMap;
 use std::fmt;
 
 use super::Record;
 
-/// Root mean square difference of two columns that are one, as a share of the standard deviation: three digits are left
-/// of rounded numbers, and a repeated measurement differs by its noise.
+/// Largest root mean square difference of two columns that count as one, as a share of the standard
+/// deviation. It allows for numbers rounded to three digits; repeated measurements differ more, by their
+/// noise.
 const NEARLY: f64 = 2e-3;
 
-/// Single values that are compared first are one within this share of the range.
+/// Largest difference of single values that are compared first, as a share of the range.
 const LOOSELY: f64 = 0.02;
 
 /// Rows that are compared before all others.
 const PROBES: usize = 8;
 
-/// Fewer scored rows in common are no measurement.
+/// Least number of common scored rows.
 const FEWEST: usize = 10;
 
 /// Share of the scored rows of the shorter record that must be scored in the longer one too.
@@ -25,15 +26,16 @@ const SHARED: f64 = 0.9;
 /// How many times longer one unit of time is than another.
 const UNITS_OF_TIME: [f64; 5] = [1.0, 60.0, 3600.0, 1e3, 1e6];
 
-/// Places at which records are looked for in others; of more of them only equal records are found.
+/// Largest number of places at which records are searched for in others; beyond it, only equal records are
+/// found.
 const MOST_PLACES: usize = 5_000_000;
 
-/// How a record is like another.
+/// Similarity of a record to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Likeness {
     /// The same numbers.
     Equal,
-    /// The same numbers but for rounding, or little noise.
+    /// The same numbers except for rounding or little noise.
     NearlyEqual,
     /// Equal or nearly equal to some rows of the other.
     Part,
@@ -52,18 +54,18 @@ impl fmt::Display for Likeness {
     }
 }
 
-/// Two records that are one measurement, by their places.
+/// Two records that are one measurement, by their indices.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Copy {
     /// The copy; the shorter one if they differ in length, otherwise the later one.
     pub copy: usize,
-    /// What it is a copy of.
+    /// The record that it is a copy of.
     pub of: usize,
-    /// How like they are.
+    /// How similar they are.
     pub likeness: Likeness,
 }
 
-/// All copies among records; of each record at most one that it is a copy of.
+/// All copies among records, at most one for each record.
 pub fn copies(records: &[Record]) -> Vec<Copy> {
     let pairs = || (1..records.len()).flat_map(|later| (0..later).map(move |earlier| (later, earlier)));
     let mut places = 0;
@@ -101,7 +103,7 @@ fn equal_ones(records: &[Record]) -> Vec<Copy> {
     records.iter().enumerate().filter_map(copy).collect()
 }
 
-/// How a record is like one that is at least as long; `None` if they are two measurements.
+/// Similarity of a record to one that is at least as long; `None` if they are two measurements.
 pub fn likeness(short: &Record, long: &Record) -> Option<Likeness> {
     Sought::new(short).likeness_to(long)
 }
@@ -219,7 +221,7 @@ impl Compared<'_> {
     }
 }
 
-/// The records by measurements: the places of each measurement's records, the longest first.
+/// The records grouped by measurement: the indices of the records of each measurement, the longest first.
 pub fn measurements(records: &[Record]) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..records.len()).collect();
     for Copy { copy, of, .. } in copies(records) {

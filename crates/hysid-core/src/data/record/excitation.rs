@@ -1,4 +1,4 @@
-//! What drives a model, borrowed: a free run copies no column.
+//! The inputs of a simulation, borrowed: no column is copied.
 
 use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, Result};
 
@@ -6,7 +6,7 @@ use crate::error::{Channel, DataError, DataProblem, Error, LARGEST_VALUE, Result
 /// run is not noticeably longer for it.
 const CHUNK: usize = 1024;
 
-/// The inputs of a record with all that goes with them, read where they lie.
+/// The inputs of a record with time stamps and given rate, borrowed.
 #[derive(Debug, Clone)]
 pub struct Excitation<'a> {
     pub(super) name: &'a str,
@@ -16,7 +16,7 @@ pub struct Excitation<'a> {
 }
 
 impl<'a> Excitation<'a> {
-    /// An excitation from its input channels, each of the same length, in the user's units.
+    /// An excitation from its inputs: one slice of values for each, all of one length, in the user's units.
     ///
     /// # Errors
     /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
@@ -44,10 +44,10 @@ impl<'a> Excitation<'a> {
         Self { name, time, inputs, given_rate }
     }
 
-    /// The same with time stamps, strictly increasing.
+    /// The same with strictly increasing time stamps, one a row.
     ///
     /// # Errors
-    /// Another length, not finite, or not increasing.
+    /// Another length, a value that is not finite, or time stamps that do not increase.
     pub fn with_time(mut self, time: &'a [f64]) -> Result<Self> {
         self.check_column(Channel::Time, time, false)?;
         let (before, after) = (&time[..time.len() - 1], &time[1..]);
@@ -64,10 +64,10 @@ impl<'a> Excitation<'a> {
         Ok(self)
     }
 
-    /// The same with a measured or otherwise given rate of the first input.
+    /// The same with a given rate of the first input, one value a row, in its unit divided by that of time.
     ///
     /// # Errors
-    /// Another length or not finite.
+    /// Another length, or a value that is not finite.
     pub fn with_given_rate(mut self, rate: &'a [f64]) -> Result<Self> {
         self.check_column(Channel::Rate, rate, false)?;
         self.given_rate = Some(rate);
@@ -111,7 +111,7 @@ impl<'a> Excitation<'a> {
         self.len() == 0
     }
 
-    /// The input channels, each with one value a row.
+    /// The inputs, each with one value a row.
     pub fn inputs(&self) -> &[&'a [f64]] {
         &self.inputs
     }

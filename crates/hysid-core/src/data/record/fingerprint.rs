@@ -1,7 +1,7 @@
-//! A short number by which a record is known again.
+//! Fingerprints by which records are recognized.
 
-/// A hash of the rows of a record that have an output: inputs and output, bit by bit, whatever the record is called and
-/// whatever its time stamps are.
+/// A hash of the scored rows of a record: the bits of inputs and output, independent of names and time
+/// stamps.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fingerprint {
     /// FNV-1a, <https://datatracker.ietf.org/doc/html/rfc9923>: the same on every machine.
@@ -15,11 +15,11 @@ impl Default for Fingerprint {
     }
 }
 
-/// Fewer rows than these are alike by chance.
+/// Least number of rows: fewer may be equal by chance.
 const FEWEST: usize = 10;
 
 impl Fingerprint {
-    /// Takes the next row; one with a blank output (NaN) is passed over.
+    /// Adds the next row; a row with a blank output (NaN) is skipped.
     pub fn add(&mut self, inputs: impl IntoIterator<Item = f64>, output: f64) {
         if output.is_nan() {
             return;
@@ -33,7 +33,7 @@ impl Fingerprint {
         }
     }
 
-    /// Sixteen hexadecimal digits; `None` for too few rows to know a record by.
+    /// The hash as sixteen hexadecimal digits; `None` for too few rows.
     pub fn text(&self) -> Option<String> {
         (self.rows >= FEWEST).then(|| format!("{:016x}", self.hash))
     }

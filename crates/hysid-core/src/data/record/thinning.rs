@@ -1,9 +1,10 @@
-//! Which of many rows are compared with the measured output, so that the cost has a bound.
+//! Selection of scored rows, so that the cost of a fit is bounded.
 
 use crate::random::mix;
 
-/// Keeps `most` of `rows` rows: one from each of `most` intervals of equal length, at a place that a fixed
-/// hash picks. Rows at a fixed distance would meet a periodic record at the same few phases of its cycle.
+/// A selection of `most` of `rows` rows: one from each of `most` intervals of equal length, at a position
+/// given by a fixed hash. Rows at constant distances would always hit the same few phases of a periodic
+/// record.
 #[derive(Debug, Clone, Copy)]
 pub struct Thinning {
     rows: u128,
@@ -11,12 +12,12 @@ pub struct Thinning {
 }
 
 impl Thinning {
-    /// Of fewer rows than `most` all are kept.
+    /// A selection of at most `most` of `rows` rows.
     pub fn new(rows: usize, most: usize) -> Self {
         Self { rows: rows as u128, most: most.max(1) as u128 }
     }
 
-    /// True if the row at `place`, counted from 0, is kept.
+    /// True if row `place`, counted from 0, is selected.
     pub fn keeps(&self, place: usize) -> bool {
         if self.rows <= self.most {
             return true;
@@ -28,7 +29,7 @@ impl Thinning {
         place as u128 == first + picked
     }
 
-    /// Blanks the outputs that are not kept; gives the number of those that are.
+    /// Blanks the outputs that are not selected and returns the number of those that are.
     pub fn blank<'y>(&self, outputs: impl Iterator<Item = &'y mut f64>) -> usize {
         let mut kept = 0;
         for (place, y) in outputs.filter(|y| !y.is_nan()).enumerate() {

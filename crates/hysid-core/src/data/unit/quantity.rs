@@ -27,12 +27,12 @@ const FLUX: Dimension = [2, 1, -2, -1, 0, 0];
 const FLUX_DENSITY: Dimension = [0, 1, -2, -1, 0, 0];
 const FIELD: Dimension = [-1, 0, 0, 1, 0, 0];
 
-/// How many of the SI's base units a unit is.
+/// A unit as a multiple of SI base units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Quantity {
-    /// In base units of the SI; an angle in radians.
+    /// Value in SI base units; an angle in radians.
     pub factor: f64,
-    /// Of which quantity it is a unit.
+    /// Dimension of the quantity.
     pub dimension: Dimension,
 }
 
@@ -44,7 +44,7 @@ impl Quantity {
         parts.try_fold(above, |whole, below| Some(whole.times(below?, -1)))
     }
 
-    /// The part that a quantity with this unit mostly has in hysteresis, if it has one.
+    /// The usual role of a quantity with this unit in hysteresis, if it has one.
     pub fn part(&self) -> Option<Part> {
         use Domain::{Electricity, Magnetism, Mechanics};
         let part = match self.dimension {

@@ -1,11 +1,14 @@
 //! Degradation and pinching of a Bouc-Wen element after Baber and Noori.
 //!
 //! ```text
-//! de  = (z/z_u) dx/z_u                                                      theory.md (8.8)
-//! A = max(0, 1 - δA e),   ν = 1 + δν e,   η = 1 + δη e                      theory.md (8.9)
-//! h   = 1 - ζ1 exp(-(z/z_u sgn(dx) - q ν^{-1/n})²/ζ2²)                      theory.md (8.10)
-//! ζ1  = ζs (1 - e^{-pe}),   ζ2 = (ψ0 + δψ e)(λ + ζ1)                        theory.md (8.11)
+//! de = (z/z_u) dx/z_u                                                       theory.md (8.8)
+//! A  = max(0, 1 - δA e),   ν = 1 + δν e,   η = 1 + δη e                     theory.md (8.9)
+//! h  = 1 - ζ1 exp(-(z/z_u sgn(dx) - q ν^{-1/n})²/ζ2²)                       theory.md (8.10)
+//! ζ1 = ζs (1 - e^{-pe}),   ζ2 = (ψ0 + δψ e)(λ + ζ1)                         theory.md (8.11)
 //! ```
+//!
+//! `e` is the dissipated energy, divided by `(1 - α) k z_u²`; `A` and `ν` determine the strength, `η` the
+//! stiffness, and `h` the pinching in [`BoucWen`](super::BoucWen). All are pure numbers.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +16,7 @@ use crate::law::{Dimension, Parameter};
 
 use super::Inner;
 
-/// Largest energy counted: what has taken up so much is long without strength.
+/// Largest energy; the element has no strength left far below it.
 const LARGEST_ENERGY: f64 = 1e9;
 
 /// An element so much quicker than when untouched follows its yield force, which sinks slowly, closely.
@@ -27,26 +30,27 @@ pub(super) fn limited(e: f64) -> f64 {
     e.clamp(0.0, LARGEST_ENERGY)
 }
 
-/// How the element changes with the energy `e` that it has taken up, which is counted in yield forces
-/// times yield displacements. All are pure numbers.
+/// How a Bouc-Wen element changes with its dissipated energy `e`, which is counted in yield forces times
+/// yield displacements. All fields are pure numbers; the equations are those of the [module of the
+/// law](super).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Degradation {
-    /// `δA`: loss of tangent stiffness.
+    /// `δA`: loss of tangent stiffness and strength, `A = max(0, 1 - δA e)`.
     pub delta_a: f64,
-    /// `δν`: loss of strength.
+    /// `δν`: loss of strength, `ν = 1 + δν e`.
     pub delta_nu: f64,
-    /// `δη`: loss of stiffness.
+    /// `δη`: loss of stiffness, `η = 1 + δη e`.
     pub delta_eta: f64,
-    /// `ζs`: pinching in the end, 0 (none) to 0.99 (nearly no stiffness at its centre).
+    /// `ζs`: final pinching, 0 (none) to 0.99 (nearly no stiffness at its centre).
     pub zeta_s: f64,
-    /// `p`: how fast pinching begins.
+    /// `p`: rate at which pinching develops with `e`.
     pub p: f64,
     /// `q`: centre of the pinched range, as a share of the ultimate `z`.
     pub q: f64,
     /// `ψ0`: width of the pinched range.
     pub psi_0: f64,
-    /// `δψ`: its growth.
+    /// `δψ`: growth of that width with `e`.
     pub delta_psi: f64,
     /// `λ`: width while pinching is slight.
     pub lambda: f64,
@@ -92,7 +96,7 @@ impl Degradation {
         Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda }
     }
 
-    /// The properties of an element that has taken up the energy `e`.
+    /// The properties of an element after the dissipated energy `e`.
     pub(super) fn at(&self, n: f64, e: f64) -> Properties {
         let e = limited(e);
         let nu = 1.0 + self.delta_nu * e;

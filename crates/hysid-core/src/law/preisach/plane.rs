@@ -1,4 +1,4 @@
-//! The Preisach plane in cells: how much of each cell a swing of the input switches.
+//! The Preisach plane divided into cells: how much of each cell a swing of the input switches.
 //!
 //! ```text
 //! a swing between b and a ≥ b switches the relays with b ≤ β ≤ α ≤ a                theory.md (7.9)
@@ -6,11 +6,11 @@
 //! virgin, down to h:   those with β ≥ h and α + β < 0
 //! ```
 //!
-//! `α` is the input at which a relay switches up, `β ≤ α` the one at which it switches down. Lines cut
-//! both axes at the same places, so cell `(i, j)`, `i ≥ j`, is a rectangle, or for `i = j` a triangle at
-//! the edge of the plane. Within a cell relays are spread evenly. All shares are exact.
+//! `α` is the input at which a relay switches up, `β ≤ α` the one at which it switches down. Lines divide
+//! both axes at the same inputs, so cell `(i, j)`, `i > j`, is a rectangle, and cell `(i, i)` a triangle at
+//! the edge of the plane. The relays are spread evenly over a cell. All shares are exact.
 
-/// Lines that cut the Preisach plane into cells.
+/// A Preisach plane divided into cells by lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plane {
     /// Rising; one more than there are intervals.
@@ -18,17 +18,17 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// A plane cut along these inputs, rising.
+    /// A plane divided at these inputs, which rise.
     pub fn new(lines: Vec<f64>) -> Self {
         Self { lines }
     }
 
-    /// The inputs along which it is cut.
+    /// The inputs at which it is divided.
     pub fn lines(&self) -> &[f64] {
         &self.lines
     }
 
-    /// Intervals `N` of each axis.
+    /// Number of intervals `N` of each axis.
     pub fn intervals(&self) -> usize {
         self.lines.len() - 1
     }
@@ -70,8 +70,8 @@ impl Plane {
         }
     }
 
-    /// Share of a cell that the virgin curve from 0 to `h` switches; `h` of either sign, infinite for
-    /// all that is ever switched on that side.
+    /// Share of a cell that the virgin curve from 0 to `h` switches; `h` may be negative, and infinite for
+    /// everything that can be switched on its side.
     pub fn virgin_share(&self, i: usize, j: usize, h: f64) -> f64 {
         let (alpha, beta) = ((self.lines[i], self.lines[i + 1]), (self.lines[j], self.lines[j + 1]));
         // The virgin curve downwards is the one upwards of the plane mirrored at α + β = 0.

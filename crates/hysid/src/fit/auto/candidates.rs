@@ -1,6 +1,6 @@
-//! What is tried: networks, random stops and classical models of plays and relays, each with the ways of
-//! seeing the input that may serve it. The list depends on what the data have (time, further inputs) and
-//! on what the user has decided, never on the numbers in them.
+//! The candidates: networks, random stops and classical models, each with the input transforms that may suit
+//! it. The list depends on the columns of the data (time, further inputs) and on the options, never on the
+//! values.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::options::network::{FitOptions, Regularisation};
 use crate::options::variants::variants;
 use crate::options::{FitSpec, ModelName};
 
-/// Candidates of one kind, which agree among themselves before they answer.
+/// A kind of candidates, which are combined with each other first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Trained networks.

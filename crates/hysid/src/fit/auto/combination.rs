@@ -1,6 +1,5 @@
-//! How candidates are combined: the weighted median of kinds, each the weighted median of its best candidates.
-//! The same tree of weights predicts what was held out and, with members in the place of candidates, becomes
-//! the ensemble.
+//! Combination of candidates: the weighted median of kinds, each the weighted median of its best candidates.
+//! The same tree of weights predicts held-out data and, with members instead of candidates, is the ensemble.
 
 use crate::data::metrics::Errors;
 use crate::error::Result;
@@ -13,7 +12,8 @@ use crate::model::{
 };
 use crate::validation::PooledErrors;
 
-/// Power of theory.md (11.6) among candidates of a kind, and how many of them count.
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates of a kind (theory.md (11.6)), and the
+/// number of candidates with a weight.
 const POWER_IN_KIND: f64 = 8.0;
 const MOST_IN_KIND: usize = 3;
 

@@ -1,10 +1,10 @@
-//! What is known of candidates where the data cannot tell them apart.
+//! Prior weights of candidates that the data cannot distinguish.
 //!
-//! One loop between two ends, run through however often, shows nothing of what lies inside it. Candidates that
-//! predict the loop equally well then differ by factors on smaller loops, and so do their errors there from those
-//! that the folds show. How much they do was found on generated cases: one loop to learn from, smaller loops and
-//! reversal curves to predict (docs/accuracy.md). Records of one loop at several speeds tell which candidates hold the
-//! speed, and are judged by the folds alone.
+//! Data of one loop between two ends contain no information about smaller loops inside it. Candidates with
+//! equal errors on the loop then differ by factors on smaller loops. The ratios of both errors were measured
+//! on generated cases: training data of one loop, test data of smaller loops and reversal curves
+//! (docs/accuracy.md). Records of one loop at several speeds do distinguish candidates, by their rate
+//! dependence; only the folds count then.
 
 use crate::data::record::{Dataset, Record};
 use crate::data::turning_points::turning_points;
@@ -26,7 +26,7 @@ const OTHER_SPEED: f64 = 1.5;
 /// How much wider a band is for data of one loop, on the generated cases.
 pub(super) const WIDER_BAND: f64 = 1.6;
 
-/// Power of theory.md (11.6) among kinds for data of one loop.
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among kinds for data of one loop (theory.md (11.6)).
 pub(super) const POWER_OF_KINDS: f64 = 8.0;
 
 /// Whether the data tell candidates apart.

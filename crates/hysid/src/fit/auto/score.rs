@@ -1,4 +1,9 @@
-//! How well a candidate predicts data held out, and what it weighs for it: theory.md (11.5) and (11.6).
+//! Scores of candidates on held-out data, and the weights that follow.
+//!
+//! ```text
+//! S = mean over the folds f of ln(rmse_f / σ_f)                            theory.md (11.5)
+//! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
+//! ```
 
 use crate::fit::auto::trial::HeldOut;
 use crate::model::Weights;
@@ -15,8 +20,8 @@ const OWN_CLASS: f64 = 0.75;
 /// Errors that scores tell apart, as shares of the standard deviation.
 const ERRORS: (f64, f64) = (1e-12, 1e150);
 
-/// Mean over the folds of the logarithm of the error, theory.md (11.5): rows inside the trained range and
-/// rows beyond it apart. The logarithm, so that one fold that goes far beyond the others does not decide.
+/// Mean over the folds of `ln(rmse_f / σ_f)`, separately for rows inside and outside the trained range
+/// (theory.md (11.5)). With the logarithm, one fold with a large error does not dominate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Score {
     pub inside: f64,
@@ -96,7 +101,8 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Weights by scores, theory.md (11.6): (score / best)^-power, and 0 behind the best `most` in either class.
+/// Weights by scores, `(score / best)^-power` (theory.md (11.6)), and 0 after the best `most` in either
+/// class.
 pub(super) fn weights(scores: &[Score], power: f64, most: usize) -> Vec<Weights> {
     let of_class = |score: fn(&Score) -> f64| -> Vec<f64> {
         let best = scores.iter().map(score).fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! What was tried and how it did, for the model file.
+//! Cross-validation results for the model file.
 
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::score::Score;

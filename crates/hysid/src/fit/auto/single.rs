@@ -1,6 +1,6 @@
-//! One small model in the place of many: distilled from the ensemble, or fitted to the data alone, whichever
-//! predicts better what was held out. Both are validated as what they are: on each fold a model is distilled
-//! from the ensemble of that fold.
+//! One small model instead of an ensemble: distilled from the ensemble, or fitted to the data alone,
+//! whichever has the smaller error on held-out data. Both are validated as such: on each fold a model is
+//! distilled from the ensemble of that fold.
 
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
-//! The order of the work. Whenever the observer asks to stop, there is the best that the time allowed: a few
-//! candidates at a time are tried on all folds and fitted to everything, those that are usually good or quick
-//! before the others; more starts and further members come last. Candidates that stay far behind are dropped
-//! after their first folds.
+//! The order of the work, such that at each stop there is the best model that the time allows. A few
+//! candidates at a time are fitted to all folds and to all data, those that are usually good or fast first;
+//! further starts and members come last. Candidates with errors far above the best are dropped after their
+//! first folds.
 
 use rayon::prelude::*;
 

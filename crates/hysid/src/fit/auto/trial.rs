@@ -1,4 +1,4 @@
-//! Candidates tried on folds: what each start of each candidate predicts of data held out.
+//! Candidates on folds: the predictions of each start of each candidate for held-out data.
 
 use rayon::prelude::*;
 

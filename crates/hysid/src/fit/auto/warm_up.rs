@@ -1,4 +1,5 @@
-//! Whether the records begin in the virgin state: if not, their first rows had better not be trained on.
+//! Warm-up: decides whether the records begin in the virgin state. If not, their first rows are not scored in
+//! training.
 
 use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;

@@ -1,4 +1,5 @@
-//! The observer of a fit that consists of many, some of them side by side, and how much of it is done.
+//! The observer of a fit that consists of many fits, some of them in parallel, and the completed share of the
+//! work.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -34,7 +35,7 @@ impl<'o, 'a> Work<'o, 'a> {
         }
     }
 
-    /// True once the observer has asked to stop.
+    /// True once the observer has stopped the work.
     pub fn is_stopped(&self) -> bool {
         self.observer.is_over()
     }

@@ -1,5 +1,5 @@
-//! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are searched, the stiffnesses,
-//! the offset and the damping follow.
+//! Identification of a Bouc-Wen law: `z_u`, `b`, `n` and the degradation are found by search, and for each of
+//! their values stiffnesses, offset and damping by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -16,10 +16,10 @@ use crate::stop_check::StopCheck;
 use crate::fit::law::Identify;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 8;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 40;
 
 /// Elementary operations of a row, roughly: it may take some hundred steps.
@@ -50,7 +50,7 @@ impl Identify for BoucWen {
     }
 }
 
-/// Bouc-Wen elements as the search sees them.
+/// Bouc-Wen elements, in the form of the search.
 struct Elements {
     degradation: bool,
     variables: Vec<Variable>,

@@ -1,9 +1,9 @@
-//! Identification of a generalized Prandtl-Ishlinskii model: envelopes and thresholds are searched, the
-//! weights and the level of the output follow.
+//! Identification of a generalized Prandtl-Ishlinskii model: envelopes and thresholds are found by search,
+//! and for each of their values weights and offset by least squares.
 //!
-//! The law is not changed when both envelopes and the thresholds are scaled by one factor and the
-//! weights by its inverse, nor when both envelopes are raised and `c` lowered. The search fixes both:
-//! `γ_l` goes from 0 to 1 over the range of the input.
+//! The law does not change if both envelopes and the thresholds are multiplied by one factor and the weights
+//! divided by it, or if both envelopes are raised and `c` is lowered. The search therefore fixes `γ_l` at 0
+//! and 1 at the ends of the input range.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -27,13 +27,13 @@ use crate::law::generalized_prandtl_ishlinskii::{
 /// it would leap where the input leaves the range.
 const SMALLEST_SHARE: f64 = 0.1;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 10;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 32;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 60;
 
 impl Identify for GeneralizedPrandtlIshlinskii {
@@ -71,7 +71,7 @@ impl Identify for GeneralizedPrandtlIshlinskii {
     }
 }
 
-/// Generalized plays as the search sees them.
+/// Generalized plays, in the form of the search.
 struct Plays {
     low: f64,
     high: f64,

@@ -4,8 +4,8 @@ use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::lowest;
 use crate::law::thresholds::check_thresholds;
 
-/// `count` thresholds spread over the range of the input, theory.md (7.5): `r_i = X (i/(n+1))^e` for
-/// the largest magnitude `X` of the input.
+/// `count` thresholds over the range of the input, `r_i = X (i/(n+1))^e`, with the largest magnitude `X` of
+/// the input and an exponent `e` (theory.md (7.5)).
 ///
 /// # Errors
 /// No operator, or more than 1000.

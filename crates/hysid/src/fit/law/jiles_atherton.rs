@@ -1,5 +1,5 @@
-//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s` and `c` are searched, the saturation, the
-//! offset and the share of the field follow.
+//! Identification of a Jiles-Atherton law: `a`, `k`, `α M_s` and `c` are found by search, and for each of
+//! their values saturation, offset and the share of the field by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -15,10 +15,10 @@ use crate::stop_check::StopCheck;
 use crate::fit::law::Identify;
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 8;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 40;
 
 impl Identify for JilesAtherton {
@@ -45,7 +45,7 @@ impl Identify for JilesAtherton {
     }
 }
 
-/// Jiles-Atherton laws as the search sees them.
+/// Jiles-Atherton laws, in the form of the search.
 struct Materials {
     form: JilesAthertonForm,
     variables: [Variable; 4],

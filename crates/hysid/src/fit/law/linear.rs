@@ -1,13 +1,16 @@
-//! What all models that are linear in their weights share: sums over rows of features, least squares
-//! with penalties, and the choice of a penalty by cross-validation.
+//! Identification of models that are linear in their weights: least squares with a penalty, chosen by
+//! cross-validation.
 //!
 //! ```text
-//! w = argmin ½ wᵀ(A + P) w - bᵀw,    A = ΦᵀΦ/N,  b = Φᵀy/N           theory.md (7.1)
+//! w = argmin ½ wᵀ(A + λP) w - bᵀw,    A = ΦᵀΦ/N,  b = Φᵀy/N          theory.md (7.1)
 //! ```
 //!
-//! Features are computed once over whole records, so that memory carries over from one block of rows
-//! to the next; each block's sums are kept apart, and what is trained on is the sum of all blocks less
-//! the one held out. A row with a blank output enters nowhere.
+//! `Φ` has one row of features for each of the `N` scored rows, and does not depend on the weights `w`; `y`
+//! is the measured output, `P` a penalty and `λ` its factor.
+//!
+//! Features are computed once over whole records, so that memory continues from one block of rows to the
+//! next. The sums of each block are separate; the training sum of a fold is the total minus the held-out
+//! block. Rows with a blank output are not used.
 
 use std::ops::Range;
 
@@ -83,7 +86,7 @@ impl Sums {
         sum.max(1e-14 * self.gram.at(n, n)) / self.rows.max(1) as f64
     }
 
-    /// The quadratic form of theory.md (7.1), without penalty.
+    /// The quadratic form `½ wᵀAw - bᵀw`, without penalty (theory.md (7.1)).
     pub fn quadratic(&self) -> Quadratic {
         let (n, rows) = (self.features, self.rows.max(1) as f64);
         Quadratic {
@@ -235,7 +238,7 @@ impl<'a> Gatherer<'a> {
         }
     }
 
-    /// Counts the operations of one more row; true once asked to stop.
+    /// Counts the operations of one more row; true once stopped.
     pub fn is_over(&mut self, operations: usize) -> bool {
         self.pace.is_over(operations)
     }

@@ -1,5 +1,5 @@
-//! Identification of a LuGre law: presliding displacement, Stribeck effect and velocity are searched; the spring, the
-//! friction, the damping and the offset follow.
+//! Identification of a LuGre law: presliding displacement, Stribeck effect and Stribeck velocity are found by
+//! search, and for each of their values spring, friction, damping and offset by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -14,10 +14,10 @@ use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 8;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 40;
 
 /// Elementary operations of a row, roughly.
@@ -45,7 +45,7 @@ impl Identify for Lugre {
     }
 }
 
-/// LuGre laws as the search sees them.
+/// LuGre laws, in the form of the search.
 struct Contacts {
     variables: [Variable; 3],
 }

@@ -1,4 +1,4 @@
-//! Fitting a model by Masing's rule: linear least squares on each of several grids of thresholds.
+//! Identification of a model by Masing's rule: linear least squares on each of several grids of thresholds.
 
 use crate::data::record::Dataset;
 use crate::error::Result;
@@ -17,7 +17,7 @@ use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 30;
 
 /// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.

@@ -1,13 +1,13 @@
-//! Fitting plays and dead zones together.
+//! Identification of a modified Prandtl-Ishlinskii model: plays `H` and dead zones `S` together.
 //!
 //! ```text
 //! 1.  min ‖H[x] - S'(y)‖²,   S'(y) = y + Σ_j d_j hat_j(y)         convex        theory.md (7.7)
 //! 2.  min ‖S(H[x]) - y‖² + penalty       Levenberg-Marquardt from there, slopes of S positive
 //! ```
 //!
-//! Step 1 is Kuhnen's: the inverse of `S` is a polygon too, and linear in its parameters. The hats vanish
-//! at the ends of the range of `y`, which keeps the trivial solution away. It compares before the dead
-//! zones; step 2 compares outputs.
+//! Step 1 is Kuhnen's: the inverse `S'` of `S` is a polygon too, and linear in its parameters `d_j`. `hat_j`
+//! is 1 at knot `j` and 0 at all others. There is no hat at the ends of the range of `y`, which excludes the
+//! trivial solution. Step 1 minimizes the error before the dead zones, step 2 that of the output.
 
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
@@ -29,10 +29,10 @@ use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 use rayon::prelude::*;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 20;
 
-/// Dead zones on each side unless the user says otherwise.
+/// Default number of dead zones on each side.
 const DEAD_ZONES: usize = 6;
 
 /// Most dead zones on each side.

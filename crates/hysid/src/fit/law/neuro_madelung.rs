@@ -1,12 +1,13 @@
-//! Training of a neuro-Madelung model: from random networks, first with the measured output at every
-//! turning point (teacher forcing), then in free run, where the model's own errors at the turning points
-//! go on into the branches. A free run of data held out judges the starts, since a network that fits well
-//! may still let those errors grow; the best is trained on everything for a few epochs more.
+//! Identification of a neuro-Madelung model, from random networks: first with the measured output at every
+//! turning point (teacher forcing), then in free run, in which errors at turning points propagate into the
+//! branches. The error of a free run on held-out data selects the start, because a network with a small
+//! training error may amplify such errors. The best is trained on all data for a few further epochs.
 //!
 //! ```text
 //! dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ                 theory.md (8.21)
 //! ```
 //!
+//! `θ` are the parameters, `N` the network and `(x_t, y_t)` the turning point at which the branch began.
 //! `dy_t/dθ` is stored with each turning point, so the derivative of the free run is exact.
 
 use std::cmp::Ordering;
@@ -38,13 +39,13 @@ const DECAY: f64 = 1e-5;
 const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
-/// Tanh neurons unless the user says otherwise.
+/// Default number of tanh neurons.
 const HIDDEN: usize = 8;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 16;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 60;
 
 impl Identify for NeuroMadelung {
@@ -135,7 +136,7 @@ impl<'a> Training<'a> {
         Ok(Identified { law, train_nrmse_percent, evaluations, termination })
     }
 
-    /// Half of the epochs teacher forced, then the others in free run; the observer hears of `rounds` in all.
+    /// Half of the epochs teacher forced, then the others in free run; the observer is called for `rounds` in all.
     fn epochs(
         &mut self,
         rounds: usize,
@@ -214,7 +215,7 @@ struct Reached {
     by_parameters: Vec<f64>,
 }
 
-/// Residuals, and the derivatives by each parameter if asked for.
+/// Residuals, and the derivatives by each parameter on request.
 struct Sweep {
     residual: Vec<f64>,
     jacobian: Vec<Vec<f64>>,
@@ -279,7 +280,7 @@ impl<'a> Task<'a> {
         measured.min_by(|a, b| a.0.x.abs().total_cmp(&b.0.x.abs())).map_or(0.0, |(_, y)| *y)
     }
 
-    /// Runs over all records, unless it is asked to stop; `forced` takes the measured output at turning points where there is one.
+    /// Runs over all records, unless stopped; `forced` takes the measured output at turning points where there is one.
     fn sweep(&self, parameters: &[f64], forced: bool, slopes: bool) -> Sweep {
         let law = self.law(parameters);
         let branch = law.branch();
@@ -328,7 +329,8 @@ impl<'a> Task<'a> {
     }
 }
 
-/// The output and its derivatives, theory.md (8.21).
+/// The output and its derivatives, `dy/dθ = (x - x_t) ∂N/∂θ + [1 + (x - x_t) ∂N/∂y_t] dy_t/dθ` (theory.md
+/// (8.21)).
 fn derivatives(branch: Branch<'_>, inputs: &[f64], at_turning_point: &[f64]) -> Reached {
     let run = branch.run();
     let neurons = branch.output.len() - 1;

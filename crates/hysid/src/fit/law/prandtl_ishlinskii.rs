@@ -1,4 +1,4 @@
-//! Fitting a Prandtl-Ishlinskii model: linear least squares on each of several grids of thresholds.
+//! Identification of a Prandtl-Ishlinskii model: linear least squares on each of several grids of thresholds.
 
 use crate::data::record::Dataset;
 use crate::error::Result;
@@ -15,7 +15,7 @@ use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 30;
 
 /// Linear least squares with a ridge penalty chosen by cross-validation.

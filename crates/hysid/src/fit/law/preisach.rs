@@ -1,10 +1,13 @@
-//! Fitting a Preisach plane: where its lines go, and how smooth its weights are.
+//! Identification of a Preisach model: positions of the lines of its plane, and least squares with a
+//! smoothness penalty.
 //!
 //! ```text
 //! min Σ_k (y_k - ŷ_k)²/N + λ (‖D²w‖² + ε‖w‖²),     w ≥ 0 on request                theory.md (7.12)
 //! ```
 //!
-//! `D²` takes second differences along both axes of the plane, in the numbers of the intervals.
+//! `y_k` is the measured and `ŷ_k` the simulated output at row `k` of `N`, and `w` are the weights of the
+//! cells. `D²` takes second differences along both axes of the plane, counted in cells. Cross-validation
+//! chooses `λ`.
 
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
@@ -20,7 +23,7 @@ use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
-/// Intervals of each axis unless the user says otherwise.
+/// Default number of intervals of each axis.
 const INTERVALS: usize = 30;
 
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.

@@ -1,5 +1,5 @@
-//! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are
-//! searched, the weights follow.
+//! Identification of a rate-dependent Prandtl-Ishlinskii model: the thresholds and their growth are found by
+//! search, and for each of their values the weights by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -21,19 +21,19 @@ use crate::law::rate_dependent_prandtl_ishlinskii::{
 /// Which form the thresholds have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ThresholdForm {
-    /// theory.md (8.16).
+    /// `r_i = α i + β |x'|` (theory.md (8.16)).
     Linear,
-    /// theory.md (8.17).
+    /// `r_i = α i max(0, ln(β + λ |x'|^ε))` (theory.md (8.17)).
     Logarithmic,
 }
 
-/// Plays unless the user says otherwise.
+/// Default number of plays.
 const OPERATORS: usize = 10;
 
-/// Starts of the search unless the user says otherwise.
+/// Default number of starts of the search.
 const STARTS: usize = 16;
 
-/// Iterations of each start unless the user says otherwise.
+/// Default number of iterations of each start.
 const EPOCHS: usize = 40;
 
 impl Identify for RateDependentPrandtlIshlinskii {
@@ -68,7 +68,7 @@ impl Identify for RateDependentPrandtlIshlinskii {
     }
 }
 
-/// Rate-dependent plays as the search sees them.
+/// Rate-dependent plays, in the form of the search.
 struct Plays {
     /// Largest magnitudes of input and rate.
     input: f64,

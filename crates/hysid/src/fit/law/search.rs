@@ -1,15 +1,19 @@
-//! Identification of laws with few parameters: Levenberg-Marquardt from several starts, with the
-//! parameters that enter linearly projected out.
+//! Identification of laws with few parameters: Levenberg-Marquardt from several starts, with the linear
+//! parameters found by least squares at each step (variable projection).
 //!
 //! ```text
 //! y_k ≈ Σ_i c_i φ_i,k(θ)          φ: features of a free run, c by least squares    theory.md (8.1)
 //! θ_j = l + (h - l) u_j   or   l (h/l)^{u_j},   0 ≤ u_j ≤ 1                        theory.md (8.2)
-//! (JᵀJ + μ D) du = -Jᵀ r,   r(u) the residual that the best c leaves               theory.md (8.3)
+//! (JᵀJ + μ D) du = -Jᵀ r,   r(u) the residual with the best c                      theory.md (8.3)
 //! ```
 //!
-//! Laws of hysteresis have kinks, regions without slope and several minima, so many random points are
-//! looked at first, the best that lie apart are walked from, and those that fall behind are given up.
-//! The Jacobian is that of the whole residual by finite differences, so it knows that `c` follows.
+//! `y_k` is the measured output at row `k`, `θ_j` a parameter found by search within the bounds `l` and `h`,
+//! `J` the derivative of `r` by `u`, `D = diag(JᵀJ)` and `μ` the damping.
+//!
+//! Laws of hysteresis have kinks, regions without slope and several minima. Many random points are therefore
+//! evaluated first; the search starts from the best of them that are far enough apart, and drops starts with
+//! large errors. The Jacobian is that of the whole residual by finite differences, so it includes the
+//! dependence of `c` on `u`.
 
 mod descent;
 mod projection;
@@ -68,7 +72,7 @@ impl Variable {
         Self { low, high, logarithmic: true }
     }
 
-    /// theory.md (8.2).
+    /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
     fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
             self.low * (self.high / self.low).powf(u)
@@ -89,7 +93,7 @@ impl Variable {
     }
 }
 
-/// A family of laws as the search sees it.
+/// A family of laws, in the form of the search.
 pub(crate) trait Family: Sync {
     /// The parameters that are searched.
     fn variables(&self) -> &[Variable];
@@ -107,28 +111,29 @@ pub(crate) trait Family: Sync {
     }
 }
 
-/// Where a search is, told after every round.
+/// Progress of a search, after every round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchProgress {
-    /// Iterations done by every start that is still walking.
+    /// Iterations of every remaining start.
     pub round: usize,
-    /// Rounds at most.
+    /// Largest number of rounds.
     pub rounds: usize,
     /// Free runs of the law so far, all starts together.
     pub evaluations: usize,
-    /// Error of the best start in a free run, in percent of the output's standard deviation; NaN while it has none.
+    /// Error of the best start in free run, in percent of the standard deviation of the output; NaN before
+    /// there is one.
     pub train_nrmse_percent: f64,
 }
 
-/// Who is told of the progress, and may break off.
+/// A function that gets the progress of a search and can stop it.
 pub type SearchObserver<'a> = dyn FnMut(SearchProgress) -> ControlFlow<()> + 'a;
 
-/// An identified law and how it came about.
+/// An identified law with the result of its search.
 #[derive(Debug, Clone)]
 pub struct Identified<L> {
     /// The law.
     pub law: L,
-    /// Error over the rows that were searched on, in percent of the output's standard deviation.
+    /// Error over the training rows, in percent of the standard deviation of the output.
     pub train_nrmse_percent: f64,
     /// Free runs of the law, all starts together.
     pub evaluations: usize,

@@ -7,11 +7,10 @@ use crate::error::{Error, Result};
 use crate::fit::network::fitting::State;
 use crate::options::network::FitOptions;
 
-/// First bytes of a checkpoint, with the version of its layout. A checkpoint is read only by the
-/// program that wrote it, or one with the same layout: it is no archive.
+/// First bytes of a checkpoint, with the version of its layout. Only a program with the same layout reads it.
 const MAGIC: &[u8] = b"hysid checkpoint 3\n";
 
-/// All that is needed to go on with a fit, save the data themselves.
+/// The state of an unfinished fit, without the data.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Checkpoint {
     options: FitOptions,
@@ -50,7 +49,7 @@ impl Checkpoint {
     /// Reads the bytes of a checkpoint file.
     ///
     /// # Errors
-    /// Bytes that are cut off, damaged, of another version, or no checkpoint at all.
+    /// Bytes that are truncated, damaged, of another version, or no checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let refused = |text: &str| Err(Error::Checkpoint(format!("{text}: begin the fit anew")));
         if bytes.is_empty() {

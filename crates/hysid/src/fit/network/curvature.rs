@@ -40,7 +40,7 @@ impl Curvature {
     }
 
     /// The step to where gradient and curvature, with `damping` added to its diagonal, see the minimum; `None` if
-    /// it is not positive definite, or asked to stop.
+    /// it is not positive definite, or once stopped.
     pub fn step(&self, gradient: &[f64], damping: &[f64], stop: StopCheck<'_>) -> Option<Vec<f64>> {
         match self {
             Self::Matrix(matrix) => damped_step(matrix, gradient, damping, stop),
@@ -109,7 +109,7 @@ impl Rows {
         dot(column, column) + self.decay[parameter]
     }
 
-    /// Gradient of the objective, theory.md (3.3), with decay.
+    /// Gradient of the objective, `Jᵀr/N + κ θ_w` (theory.md (3.3)).
     pub fn gradient(&self) -> Vec<f64> {
         let of = |(index, pull): (usize, &f64)| dot(self.column(index), &self.residual) + pull;
         self.pull.iter().enumerate().map(of).collect()

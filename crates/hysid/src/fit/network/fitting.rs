@@ -307,7 +307,7 @@ impl<'a> Fitting<'a> {
         Ok(validation)
     }
 
-    /// The parts that are held out in turn: those of a cross-validation, or the share that was asked for.
+    /// The parts that are held out in turn: those of a cross-validation, or the share that was requested.
     fn folds(&self) -> Vec<Fold> {
         let Some(share) = self.asked.validation else { return folds(self.measured, MOST_FOLDS) };
         let split = self.measured.split_for_validation(share);

@@ -1,5 +1,9 @@
-//! Output weights by ridge least squares, from the Gram matrix of features, target and (maybe)
-//! Jacobian, theory.md (3.2) to (3.4).
+//! Output weights by ridge least squares, from the Gram matrix of features `Φ`, target and optionally
+//! Jacobian.
+//!
+//! ```text
+//! (ΦᵀΦ/N + λI) c = Φᵀy/N                                                   theory.md (3.2)
+//! ```
 
 use crate::linear_algebra::{Cholesky, Gram, Symmetric};
 use crate::optimise::ridge::factor_with_ridge;
@@ -12,7 +16,7 @@ pub struct OutputProblem<'a> {
     pub features: usize,
     /// Rows that went into the Gram matrix.
     pub rows: f64,
-    /// λ of theory.md (3.1).
+    /// λ: ridge on the output weights, `½ λ ‖c‖²` (theory.md (3.1)).
     pub ridge: f64,
     /// The first feature is the constant, which bears no penalty.
     pub constant: bool,
@@ -47,9 +51,9 @@ impl OutputSolution {
 }
 
 impl OutputProblem<'_> {
-    /// Solves theory.md (3.2). Where rounding makes the matrix indefinite (more features than rows, or
-    /// features all but equal), the ridge is raised until it is not. Asked to stop, and for features
-    /// that are not finite, the objective is infinite.
+    /// Solves `(ΦᵀΦ/N + λI) c = Φᵀy/N` (theory.md (3.2)). Where rounding makes the matrix indefinite (more
+    /// features than rows, or nearly equal features), the ridge is raised until it is definite. Once stopped,
+    /// and for features that are not finite, the objective is infinite.
     pub fn solve(&self) -> OutputSolution {
         let m = self.features;
         let matrix = Symmetric::from_fn(m, |i, j| self.gram.at(i, j) / self.rows);

@@ -1,5 +1,15 @@
-//! The one objective of all trainers, theory.md (3.1): value, gradient, Gauss-Newton matrix. Output
-//! weights follow from the other parameters by least squares (variable projection).
+//! The objective of all trainers: value, gradient, Gauss-Newton matrix.
+//!
+//! ```text
+//! F(θ) = min_c [ ½ ‖Φ(θ) c - y‖²/N + ½ λ ‖c‖² ] + ½ κ ‖θ‖²_w               theory.md (3.1)
+//! g    = Jᵀr/N + κ θ_w,    r = Φc - y,    J = (∂Φ/∂θ) c                     theory.md (3.3)
+//! B    = JᵀJ/N - JᵀΦ (ΦᵀΦ + λN I)⁻¹ ΦᵀJ/N                                   theory.md (3.4)
+//! ```
+//!
+//! `θ` are the parameters found by search and `θ_w` the weights among them; `c` are the output weights, found
+//! by least squares for each `θ` (variable projection), with the constant exempt from `λ`. `Φ` has one row
+//! for each of the `N` scored samples and one column for each output weight; `y` is the scaled measured
+//! output.
 
 use std::borrow::Cow;
 
@@ -29,12 +39,13 @@ pub struct Objective<'a> {
     is_long: bool,
 }
 
-/// The objective at a point.
+/// The objective at a point, with the output weights there.
 #[derive(Debug, Clone)]
 pub struct Value {
-    /// F of theory.md (3.1).
+    /// The objective `F`, in scaled units.
     pub objective: f64,
-    /// Mean square residual in scaled units: the square of NRMSE (of std) if the training set is whole.
+    /// Mean square residual in scaled units; if all data are the training set, the square of NRMSE (of the
+    /// standard deviation).
     pub mean_square: f64,
     solution: OutputSolution,
 }
@@ -77,8 +88,8 @@ impl<'a> Objective<'a> {
         })
     }
 
-    /// The same, whose evaluations are broken off once asked to stop, if they take long: a value is infinite then, and a
-    /// gradient means nothing.
+    /// The same objective, whose long evaluations check whether to stop. A value is then infinite, and a
+    /// gradient invalid.
     pub(crate) fn until(self, stop: StopCheck<'a>) -> Self {
         let columns = self.layout.len() + self.architecture.output_weights();
         // Rows without a target are run through, but not gathered.
@@ -93,12 +104,12 @@ impl<'a> Objective<'a> {
         self.is_long
     }
 
-    /// Rows that are compared.
+    /// Number of scored rows.
     pub fn scored(&self) -> usize {
         self.rows
     }
 
-    /// The same objective on at most `most` rows. The memory still runs through every row.
+    /// The same objective on at most `most` scored rows. All rows advance the memory.
     pub fn thinned(&self, most: usize) -> Objective<'_> {
         let mut targets = self.targets.clone();
         let rows = Thinning::new(self.rows, most).blank(targets.iter_mut().flatten());
@@ -124,8 +135,7 @@ impl<'a> Objective<'a> {
         &self.layout
     }
 
-    /// Shortest and longest span of time that the records tell of: a mean time step and the longest
-    /// record; `None` without time.
+    /// Mean time step and duration of the longest record, in the unit of time; `None` without time stamps.
     pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
         let durations = self.drives.iter().map(|drive| drive.steps.iter().sum::<f64>());
         let longest = durations.clone().fold(0.0, f64::max);
@@ -158,7 +168,7 @@ impl<'a> Objective<'a> {
         }
     }
 
-    /// Gradient of F by the parameters, at a point with its value.
+    /// Gradient `g` of `F`, at a point with its value.
     pub fn gradient(&self, parameters: &[f64], value: &Value) -> Vec<f64> {
         let sums = GradientOverRecords {
             architecture: &self.architecture,
@@ -223,7 +233,7 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// Gradient of F, theory.md (3.3), and Gauss-Newton matrix with decay, (3.4).
+/// Gradient `g` of `F` and Gauss-Newton matrix `B` with decay, `B + κI` (theory.md (3.3), (3.4)).
 fn slope(gradient: Vec<f64>, curvature: Curvature) -> Slope<Curvature> {
     let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
     Slope { gradient, diagonal, curvature, evaluations: 1 }

@@ -1,13 +1,18 @@
-//! Random deteriorating stops with a ridge readout: no search at all.
+//! Random stops: a network of random deteriorating stops whose output weights alone are fitted, by ridge
+//! regression.
 //!
 //! ```text
 //! y = c_0 + d_0 a·u + Σ_j d_j DS_{1,β_j}[w_j·u] (+ Σ_i c_i h_i),    w, β (and the tanh layer) random
 //! d = argmin ‖Φd - y‖²/N + λ‖d‖²                                            theory.md (7.1), (7.14)
 //! ```
 //!
-//! The result is a [`Network`] like any other. One Gram matrix for each fold serves all penalties `λ`.
-//! Source: an extreme learning machine of deteriorating stops, after Farrokh, Ghasemi, Noori, Wang and
-//! Sarhosis (2022), with a ridge in place of their support vector machine.
+//! `u` are the scaled inputs, `DS` is a [deteriorating stop](crate::operator::deteriorating_stop) of
+//! threshold 1 and capacity `β_j`, `h_i` a random tanh neuron, and `Φ` the matrix of the terms of the output,
+//! one row for each of the `N` scored samples.
+//!
+//! The result is a [`Network`] like any other. Source: an extreme learning machine of deteriorating stops,
+//! after Farrokh, Ghasemi, Noori, Wang and Sarhosis (2022), with a ridge instead of their support vector
+//! machine.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,16 +29,16 @@ use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
-/// How random stops are fitted.
+/// Options of random stops.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RandomStopsOptions {
     /// Stops, 1 to 1000.
     pub stops: usize,
-    /// Random tanh neurons beside the direct path from the stops to the output, 0 to 1000; none or 100,
-    /// chosen by cross-validation, if `None`.
+    /// Number of random tanh neurons beside the direct path from the stops to the output, 0 to 1000. `None`
+    /// for 0 or 100, chosen by cross-validation.
     pub hidden: Option<usize>,
-    /// How the rate of the first input is found; `None` for stops that do not see it.
+    /// Method of the rate of the first input; `None` for no rate.
     pub rate: Option<RateMethod>,
     /// Whether the stops deteriorate; chosen by cross-validation if `None`.
     pub deterioration: Option<bool>,
@@ -52,12 +57,12 @@ impl Default for RandomStopsOptions {
 pub struct RandomStops {
     /// The network, in scaled units.
     pub network: Network,
-    /// Factors between the user's units and the network's.
+    /// Scale factors between the user's units and the network's.
     pub scaling: Scaling,
     /// The penalty `λ` that cross-validation chose.
     pub ridge: f64,
-    /// Root mean square error on rows held out, in percent of the output's standard deviation; the
-    /// geometric mean over the folds.
+    /// Root mean square error on held-out rows, in percent of the standard deviation of the output: geometric
+    /// mean over the folds.
     pub validation_nrmse_percent: f64,
 }
 
@@ -70,8 +75,7 @@ const CAPACITIES: Capacities = Capacities { typical: 300.0, spread: 2.0 };
 /// Fits random stops.
 ///
 /// # Errors
-/// Data that nothing can be identified from, options outside their meaning, a rate that cannot be
-/// computed.
+/// Data from which no model can be identified, invalid options, a rate that cannot be computed.
 pub fn fit_random_stops(data: &Dataset, options: &RandomStopsOptions) -> Result<RandomStops> {
     fit_random_stops_until(data, options, StopCheck::never())
 }

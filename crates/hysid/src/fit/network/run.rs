@@ -1,5 +1,5 @@
-//! One training run: a start on its way through the methods of a trainer, one epoch at a time. Its
-//! state can be stored and taken up again, to the last bit.
+//! One training run: a start that passes through the methods of a trainer, one epoch at a time. Its state can
+//! be stored and resumed, to the last bit.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,5 @@
-//! The one way to share an observer among threads: told of progress between rounds or fits, and asked in their midst
-//! whether to stop.
+//! An observer that is shared among threads: called with the progress between rounds or fits, and in between
+//! to check whether to stop.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,5 +1,5 @@
-//! Whether the state of a fit that was read from a file is one that a fit can go on from: every number finite and
-//! where it may be, every length that of the network. A checksum tells damage, not malice or mistake.
+//! Validity of the state of a fit that was read from a file: every number finite and within its bounds, every
+//! length that of the network. A checksum detects damage, but not edited files.
 
 use crate::error::{Error, Result};
 use crate::network::{Architecture, Layout};

@@ -16,7 +16,7 @@ const RATE_WEIGHT: f64 = 0.3;
 /// Capacities that stops are drawn with: ln β is normal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Capacities {
-    /// Median of β.
+    /// Median of `β`.
     pub typical: f64,
     /// Standard deviation of ln β.
     pub spread: f64,

@@ -1,4 +1,4 @@
-//! One start of a search on its way: Levenberg-Marquardt within a box, theory.md (8.3).
+//! One start of a search: Levenberg-Marquardt within bounds, `(JᵀJ + μ D) du = -Jᵀ r` (theory.md (8.3)).
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! Weights of features by least squares, some of them not negative: theory.md (8.1).
+//! Weights of features by least squares, some of them not negative: `argmin_c Σ_k (Σ_i c_i φ_i,k - y_k)²`
+//! (theory.md (8.1)).
 
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::non_negative::Quadratic;
@@ -22,7 +23,7 @@ impl<'a> Columns<'a> {
         Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
     }
 
-    /// Counts the operations of one more row; true once asked to stop, and the columns are of no use then.
+    /// Counts the operations of one more row; true once stopped, and the columns are of no use then.
     pub fn is_over(&mut self, operations: usize) -> bool {
         self.pace.is_over(operations)
     }
