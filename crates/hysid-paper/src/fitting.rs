@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::fit::identify;
-use hysid::fit::network::Fit;
+use hysid::fit::network::Fitted;
 use hysid::network::{Family, Sizes};
 use hysid::options::FitSpec;
 use hysid::options::network::{FitOptions, Trainer};
@@ -76,7 +76,7 @@ pub fn rival(request: FitSpec, settings: Settings) -> FitSpec {
 }
 
 /// Fits a model and says so.
-pub fn fit(what: &str, data: &Dataset, request: &FitSpec, observer: &dyn Observer) -> Result<Fit> {
+pub fn fit(what: &str, data: &Dataset, request: &FitSpec, observer: &dyn Observer) -> Result<Fitted> {
     let began = observer.clock();
     let fit = identify(data, request, &mut |_| match observer.is_stopped() {
         true => ControlFlow::Break(()),

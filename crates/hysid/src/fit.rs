@@ -10,7 +10,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
-use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
+use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::Transformed;
@@ -29,7 +29,7 @@ pub use validate::cross_validate;
 ///
 /// # Errors
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
-pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fit> {
+pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) -> Result<Fitted> {
     match request {
         FitSpec::Network(options) => network::fit(data, options, observer),
         FitSpec::Auto(options) => auto::fit(data, options, observer),
@@ -40,7 +40,7 @@ pub fn identify(data: &Dataset, request: &FitSpec, observer: &mut Observer<'_>) 
     }
 }
 
-fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let defaults = RandomStopsOptions::default();
     let wanted = RandomStopsOptions {
         stops: options.operators.unwrap_or(defaults.stops),
@@ -59,7 +59,7 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
     finished(data, options, &seen, body, 1, observer.termination(Termination::Converged), Vec::new())
 }
 
-fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let mut history = Vec::new();
     let seen = Transformed::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
@@ -99,7 +99,7 @@ fn finished(
     evaluations: usize,
     termination: Termination,
     runs: Vec<Run>,
-) -> Result<Fit> {
+) -> Result<Fitted> {
     let request = FitSpec::Classical(options.clone());
     let found = Found {
         options: request,
@@ -110,5 +110,8 @@ fn finished(
         runs,
         selection: None,
     };
-    Ok(Fit { model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?, evaluations })
+    Ok(Fitted {
+        model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?,
+        evaluations,
+    })
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
-use hysid::fit::network::{Checkpoint, Fit, Progress, fit, resume};
+use hysid::fit::network::{Checkpoint, Fitted, Progress, fit, resume};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::options::network::{FitOptions, Method, Trainer};
@@ -44,7 +44,7 @@ fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-fn whole(options: &FitOptions) -> (Fit, usize) {
+fn whole(options: &FitOptions) -> (Fitted, usize) {
     let mut calls = 0;
     let fitted = fit(&data(), options, &mut |_| {
         calls += 1;
@@ -71,7 +71,7 @@ fn cut_at(
     Checkpoint::from_bytes(&bytes.unwrap_or_else(|| panic!("call {call} never came"))).unwrap()
 }
 
-fn resumed(checkpoint: Checkpoint) -> Fit {
+fn resumed(checkpoint: Checkpoint) -> Fitted {
     resume(&data(), checkpoint, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 

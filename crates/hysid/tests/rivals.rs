@@ -10,7 +10,7 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::Error;
 use hysid::fit::identify;
 use hysid::fit::law::Identify;
-use hysid::fit::network::Fit;
+use hysid::fit::network::Fitted;
 use hysid::law::lugre::Lugre;
 use hysid::law::series::samples;
 use hysid::law::{Classical, Dimension, Sample};
@@ -32,7 +32,7 @@ fn data() -> Dataset {
     Dataset::new(names, vec![record(180, "a"), record(120, "b")]).unwrap()
 }
 
-fn quietly(request: &FitSpec) -> Fit {
+fn quietly(request: &FitSpec) -> Fitted {
     identify(&data(), request, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 

@@ -6,7 +6,7 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::error::{DataProblem, Error};
 use hysid::fit::cross_validate;
-use hysid::fit::network::{Fit, Progress, fit};
+use hysid::fit::network::{Fitted, Progress, fit};
 use hysid::model::history::{Phase, Run};
 use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{DeterioratingStop, Operator, Stop};
@@ -56,16 +56,16 @@ fn small(model: Family, stops: usize, hidden: usize) -> FitOptions {
     FitOptions { model, sizes, starts: 3, epochs: 15, ..FitOptions::default() }
 }
 
-fn quietly(data: &Dataset, options: &FitOptions) -> Fit {
+fn quietly(data: &Dataset, options: &FitOptions) -> Fitted {
     fit(data, options, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
-fn nrmse(fit: &Fit, data: &Dataset) -> f64 {
+fn nrmse(fit: &Fitted, data: &Dataset) -> f64 {
     fit.model.evaluate(data).unwrap().nrmse_std_percent.unwrap()
 }
 
 /// Parameters and output weights, to the last bit.
-fn bits(fit: &Fit) -> Vec<u64> {
+fn bits(fit: &Fitted) -> Vec<u64> {
     let network = fit.model.network().unwrap();
     network.parameters().iter().chain(network.output()).map(|value| value.to_bits()).collect()
 }
@@ -195,7 +195,7 @@ fn the_observer_sees_the_share_of_the_work_grow() {
 }
 
 /// Stops after so many calls, with one thread, so that the calls come start by start.
-fn stopped_after(calls: usize, data: &Dataset, options: &FitOptions) -> (Fit, usize) {
+fn stopped_after(calls: usize, data: &Dataset, options: &FitOptions) -> (Fitted, usize) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let mut seen = 0;
     let fitted = pool.install(|| {

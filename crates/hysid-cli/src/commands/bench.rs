@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::network::objective::Objective;
-use hysid::fit::network::{Fit, fit};
+use hysid::fit::network::{Fitted, fit};
 use hysid::network::scaling::Scaling;
 use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
@@ -171,7 +171,7 @@ fn record(samples: usize) -> Result<Record> {
 }
 
 /// A fit from one start, and the milliseconds of an iteration.
-fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fit, f64)> {
+fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fitted, f64)> {
     let options = FitOptions { starts: 1, ..options.clone() };
     let mut iterations = 0usize;
     let began = Instant::now();
@@ -191,7 +191,7 @@ struct PaperTrainer {
     hybrid_s: f64,
 }
 
-fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fit) -> Result<PaperTrainer> {
+fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fitted) -> Result<PaperTrainer> {
     let scaling = Scaling::of(data, options.rate)?;
     let objective = Objective::new(data, &scaling, options.architecture(data)?, options)?;
     let parameters = network(fitted)?.parameters();
@@ -233,12 +233,12 @@ fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fit) -> Result<P
     })
 }
 
-fn network(fitted: &Fit) -> Result<&Network> {
+fn network(fitted: &Fitted) -> Result<&Network> {
     fitted.model.network().context("a network was fitted")
 }
 
 /// The network alone: scaled inputs and rates in, scaled outputs out.
-fn network_ns(fitted: &Fit) -> Result<f64> {
+fn network_ns(fitted: &Fitted) -> Result<f64> {
     let x = record(SAMPLES)?.inputs()[0].clone();
     let rate: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
     let mut y = vec![0.0; SAMPLES];
@@ -252,7 +252,7 @@ fn network_ns(fitted: &Fit) -> Result<f64> {
 }
 
 /// All that a record takes: rates by central differences, units, a new output.
-fn record_ns(fitted: &Fit) -> Result<f64> {
+fn record_ns(fitted: &Fitted) -> Result<f64> {
     let record = record(SAMPLES)?;
     median(|| {
         black_box(fitted.model.simulate(black_box(&record))?);
@@ -260,7 +260,7 @@ fn record_ns(fitted: &Fit) -> Result<f64> {
     })
 }
 
-fn step_ns(fitted: &Fit) -> Result<f64> {
+fn step_ns(fitted: &Fitted) -> Result<f64> {
     let record = record(SAMPLES / 10)?;
     let time = record.time().context("the record has time stamps")?;
     median(|| {

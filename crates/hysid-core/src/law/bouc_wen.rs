@@ -23,7 +23,7 @@ mod degradation;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Rate};
 use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -248,14 +248,9 @@ impl Law for BoucWen {
     type State = BoucWenState;
 
     const FACTS: Facts = Facts {
-        name: "bouc-wen",
         rate: Rate::Optional,
-        origin: Origin::OfData,
-        identification: Identification::Search,
-        options: &["degradation", "starts", "epochs", "rate_companding"],
-        limits: &[],
         variant: Some("degradation"),
-        log_error_inside: 0.15,
+        ..Facts::searched("bouc-wen", &["degradation", "starts", "epochs", "rate_companding"], 0.15)
     };
 
     fn virgin(&self) -> BoucWenState {

@@ -22,6 +22,31 @@ pub struct Facts {
     pub log_error_inside: f64,
 }
 
+impl Facts {
+    /// A law that linear least squares finds, without a rate, limits or variants.
+    pub const fn linear(name: &'static str, options: &'static [&'static str], log_error_inside: f64) -> Self {
+        Self {
+            name,
+            rate: Rate::Ignored,
+            origin: Origin::OfData,
+            identification: Identification::LeastSquares,
+            options,
+            limits: &[],
+            variant: None,
+            log_error_inside,
+        }
+    }
+
+    /// A law that a search finds, without a rate, limits or variants.
+    pub const fn searched(
+        name: &'static str,
+        options: &'static [&'static str],
+        log_error_inside: f64,
+    ) -> Self {
+        Self { identification: Identification::Search, ..Self::linear(name, options, log_error_inside) }
+    }
+}
+
 /// Whether the rate of the input is in the equations of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rate {

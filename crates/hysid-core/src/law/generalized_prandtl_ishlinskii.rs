@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
@@ -114,16 +114,11 @@ impl Law for GeneralizedPrandtlIshlinskii {
     /// The plays `S_j`.
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts {
-        name: "generalized-prandtl-ishlinskii",
-        rate: Rate::Ignored,
-        origin: Origin::OfData,
-        identification: Identification::Search,
-        options: &["operators", "free_weights", "starts", "epochs"],
-        limits: &[],
-        variant: None,
-        log_error_inside: 0.15,
-    };
+    const FACTS: Facts = Facts::searched(
+        "generalized-prandtl-ishlinskii",
+        &["operators", "free_weights", "starts", "epochs"],
+        0.15,
+    );
 
     fn virgin(&self) -> Vec<f64> {
         vec![self.initial; self.weights.plays()]

@@ -20,7 +20,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Origin};
 use crate::law::interval::Interval;
 use crate::law::properties::ODD;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -166,14 +166,9 @@ impl Law for JilesAtherton {
     type State = JilesAthertonState;
 
     const FACTS: Facts = Facts {
-        name: "jiles-atherton",
-        rate: Rate::Ignored,
         origin: Origin::Zero,
-        identification: Identification::Search,
-        options: &["differential_form", "starts", "epochs"],
-        limits: &[],
         variant: Some("differential_form"),
-        log_error_inside: 0.15,
+        ..Facts::searched("jiles-atherton", &["differential_form", "starts", "epochs"], 0.15)
     };
 
     fn virgin(&self) -> JilesAthertonState {

@@ -18,7 +18,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Rate};
 use crate::law::interval::Interval;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
@@ -26,7 +26,7 @@ use crate::property::Property;
 /// Bounds of `F_S/F_C - 1`.
 pub const STRIBECK_BOUNDS: (f64, f64) = (0.0, 10.0);
 
-/// A LuGre law in the user's units: `y = c0 + σ0 z + σ1 dz/dt + σ2 v` (theory.md (8.27)).
+/// A LuGre law in the user's units: `y = c0 + k x + σ0 z + σ1 dz/dt + σ2 v` (theory.md (8.27)).
 ///
 /// ```
 /// use hysid_core::law::lugre::Lugre;
@@ -119,14 +119,8 @@ impl Law for Lugre {
     type State = LugreState;
 
     const FACTS: Facts = Facts {
-        name: "lugre",
         rate: Rate::Needed,
-        origin: Origin::OfData,
-        identification: Identification::Search,
-        options: &["starts", "epochs", "rate_companding"],
-        limits: &[],
-        variant: None,
-        log_error_inside: 0.15,
+        ..Facts::searched("lugre", &["starts", "epochs", "rate_companding"], 0.15)
     };
 
     fn virgin(&self) -> LugreState {

@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
@@ -109,16 +109,7 @@ impl Law for Masing {
     /// Turning points with the output there, without the constant.
     type State = TurningPointStack<f64>;
 
-    const FACTS: Facts = Facts {
-        name: "masing",
-        rate: Rate::Ignored,
-        origin: Origin::OfData,
-        identification: Identification::LeastSquares,
-        options: &["operators", "thresholds", "sign"],
-        limits: &[],
-        variant: None,
-        log_error_inside: 0.85,
-    };
+    const FACTS: Facts = Facts::linear("masing", &["operators", "thresholds", "sign"], 0.85);
 
     fn virgin(&self) -> Self::State {
         TurningPointStack::default()

@@ -16,7 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::law::properties::WIPES_OUT;
@@ -156,16 +156,11 @@ impl Law for ModifiedPrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts {
-        name: "modified-prandtl-ishlinskii",
-        rate: Rate::Ignored,
-        origin: Origin::OfData,
-        identification: Identification::LeastSquares,
-        options: &["operators", "thresholds", "sign", "dead_zones"],
-        limits: &[],
-        variant: None,
-        log_error_inside: 1.05,
-    };
+    const FACTS: Facts = Facts::linear(
+        "modified-prandtl-ishlinskii",
+        &["operators", "thresholds", "sign", "dead_zones"],
+        1.05,
+    );
 
     fn virgin(&self) -> Vec<f64> {
         self.hysteresis.virgin()

@@ -21,7 +21,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Rate};
 use crate::law::interval::Interval;
 use crate::law::turning_point_stack::TurningPointStack;
 use crate::law::{Dimension, Law, Parameter, Sample};
@@ -134,14 +134,9 @@ impl Law for NeuroMadelung {
     type State = TurningPointStack<f64>;
 
     const FACTS: Facts = Facts {
-        name: "neuro-madelung",
         rate: Rate::Optional,
-        origin: Origin::OfData,
-        identification: Identification::Search,
-        options: &["hidden", "starts", "epochs", "rate_companding"],
         limits: &[("hidden", MOST_HIDDEN)],
-        variant: None,
-        log_error_inside: 1.25,
+        ..Facts::searched("neuro-madelung", &["hidden", "starts", "epochs", "rate_companding"], 1.25)
     };
 
     fn virgin(&self) -> TurningPointStack<f64> {

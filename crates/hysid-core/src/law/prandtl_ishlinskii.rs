@@ -14,7 +14,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
 use crate::law::thresholds::{check_thresholds, check_weights, limited};
@@ -103,16 +103,7 @@ impl Law for PrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts {
-        name: "prandtl-ishlinskii",
-        rate: Rate::Ignored,
-        origin: Origin::OfData,
-        identification: Identification::LeastSquares,
-        options: &["operators", "thresholds", "sign"],
-        limits: &[],
-        variant: None,
-        log_error_inside: 0.85,
-    };
+    const FACTS: Facts = Facts::linear("prandtl-ishlinskii", &["operators", "thresholds", "sign"], 0.85);
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]

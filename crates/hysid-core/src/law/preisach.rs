@@ -20,7 +20,7 @@ pub mod plane;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::law::properties::{CONGRUENT, WIPES_OUT};
 use crate::law::thresholds::{check_weights, limited};
@@ -146,14 +146,8 @@ impl Law for Preisach {
     type State = TurningPointStack<f64>;
 
     const FACTS: Facts = Facts {
-        name: "preisach",
-        rate: Rate::Ignored,
-        origin: Origin::OfData,
-        identification: Identification::LeastSquares,
-        options: &["operators", "sign"],
         limits: &[("operators", MOST_INTERVALS)],
-        variant: None,
-        log_error_inside: 0.85,
+        ..Facts::linear("preisach", &["operators", "sign"], 0.85)
     };
 
     fn virgin(&self) -> Self::State {

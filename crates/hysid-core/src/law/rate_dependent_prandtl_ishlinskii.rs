@@ -17,7 +17,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LARGEST_VALUE, Result};
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Rate};
 use crate::law::interval::Interval;
 pub use crate::law::play_weights::PlayWeights;
 use crate::law::properties::{CONGRUENT, MASING, ODD, WIPES_OUT};
@@ -110,21 +110,13 @@ impl Law for RateDependentPrandtlIshlinskii {
     type State = Vec<f64>;
 
     const FACTS: Facts = Facts {
-        name: "rate-dependent-prandtl-ishlinskii",
         rate: Rate::Needed,
-        origin: Origin::OfData,
-        identification: Identification::Search,
-        options: &[
-            "operators",
-            "free_weights",
-            "logarithmic_thresholds",
-            "starts",
-            "epochs",
-            "rate_companding",
-        ],
-        limits: &[],
         variant: Some("logarithmic_thresholds"),
-        log_error_inside: 0.15,
+        ..Facts::searched(
+            "rate-dependent-prandtl-ishlinskii",
+            &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> Vec<f64> {

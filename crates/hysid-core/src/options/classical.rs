@@ -6,7 +6,7 @@ use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
 use crate::law::bouc_wen::BoucWen;
-use crate::law::facts::{Facts, Identification, Origin, Rate};
+use crate::law::facts::{Facts, Identification, Rate};
 use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
 use crate::law::jiles_atherton::JilesAtherton;
 use crate::law::lugre::Lugre;
@@ -21,14 +21,12 @@ use crate::options::network::SEED;
 
 /// Facts about random stops.
 const RANDOM_STOPS: Facts = Facts {
-    name: "random-stops",
     rate: Rate::Optional,
-    origin: Origin::OfData,
-    identification: Identification::LeastSquares,
-    options: &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
-    limits: &[],
-    variant: None,
-    log_error_inside: 1.25,
+    ..Facts::linear(
+        "random-stops",
+        &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
+        1.25,
+    )
 };
 
 macro_rules! rival {

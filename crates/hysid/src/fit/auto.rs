@@ -7,7 +7,7 @@
 //!    and dropped if their errors are far above the best.
 //! 3. *Weights*: candidates of a kind are weighted by their scores, and the best three are combined by their
 //!    weighted median; the kinds likewise. Rows inside and outside the trained range have separate scores.
-//! 4. *Fit to all data* of the candidates with a weight: an [`Ensemble`](crate::model::Ensemble), or one
+//! 4. *Fitted to all data* of the candidates with a weight: an [`Ensemble`](crate::model::Ensemble), or one
 //!    small model.
 //! 5. *Prediction band*, calibrated on the folds.
 //!
@@ -39,7 +39,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
-use crate::fit::network::{Fit, Observer};
+use crate::fit::network::{Fitted, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
 use crate::model::selection::WarmUp;
@@ -86,7 +86,7 @@ fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
 ///
 /// # Errors
 /// Data from which no model can be identified, and options that leave no candidate.
-pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     data.check_identifiable(FEWEST_ROWS)?;
     check([("members", json!(options.members))])?;
     let candidates = wanted(data, options);
@@ -125,7 +125,7 @@ fn without_folds(
     candidate: &Candidate,
     alone: Model,
     work: &Work,
-) -> Result<Fit> {
+) -> Result<Fitted> {
     let mut trials = [Trial::of(candidate.clone())];
     let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
     fit_members(&mut trials, &[starts], few, work);
@@ -133,14 +133,14 @@ fn without_folds(
     if trial.members.is_empty() || options.members == 1 {
         let model = trial.members.into_iter().next().unwrap_or(alone);
         let provenance = provenance_of(&model, None, None, work);
-        return Ok(Fit { model: model.with_provenance(provenance), evaluations: work.done() });
+        return Ok(Fitted { model: model.with_provenance(provenance), evaluations: work.done() });
     }
     let combination = Combination::alone(candidate.kind, 0);
     let trials = [trial];
     let members = |_: usize| trials[0].members.clone();
     let body = Predictor::Ensemble(combination.ensemble(&trials, members, data.input_range(0))?);
     let model = ensemble(body, data, options, None, None, work)?;
-    Ok(Fit { model, evaluations: work.done() })
+    Ok(Fitted { model, evaluations: work.done() })
 }
 
 /// What was tried, from which the model is made.
@@ -156,9 +156,9 @@ struct Chosen<'w, 'o, 'a> {
 
 impl Chosen<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
-    fn fit(mut self, alone: Model) -> Result<Fit> {
+    fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { folds, work, .. } = self.bench;
-        let fit = |model| Ok(Fit { model, evaluations: work.done() });
+        let fit = |model| Ok(Fitted { model, evaluations: work.done() });
         let Some(all) = Combination::of(&self.trials, folds, self.evidence, |_| true) else {
             let model = self.without_validation(alone);
             let provenance = provenance_of(&model, None, None, work);

@@ -131,7 +131,7 @@ pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
 /// A fitted model with the number of evaluations.
 #[derive(Debug, Clone)]
-pub struct Fit {
+pub struct Fitted {
     /// The model.
     pub model: Model,
     /// Evaluations of the objective, all starts together, gradients included.
@@ -147,7 +147,7 @@ pub struct Fit {
 ///
 /// # Errors
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
-pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fit> {
+pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
 }
@@ -156,7 +156,7 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 ///
 /// # Errors
 /// A checkpoint of other data, or one that is inconsistent.
-pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fit> {
+pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fitted> {
     let (options, state) = checkpoint.for_data(data)?;
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state)?.run(observer)

@@ -19,7 +19,7 @@ use crate::fit::network::checkpoint::Snapshot;
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{Frame, require};
-use crate::fit::network::{Fit, Observer, Progress, SharedObserver};
+use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::Phase;
 use crate::model::input_transform::{InputTransform, Transformed};
@@ -184,7 +184,7 @@ impl<'a> Fitting<'a> {
     ///
     /// # Errors
     /// A stop before there was any network.
-    pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fit> {
+    pub fn run(mut self, observer: &mut Observer<'_>) -> Result<Fitted> {
         let observer = &SharedObserver::new(observer, Some(Progress::of_beginning(&self.asked)));
         let penalties = self.asked.penalties();
         self.train_on_everything(penalties, observer)?;
@@ -212,7 +212,7 @@ impl<'a> Fitting<'a> {
         };
         let body = Predictor::Network { network, scaling };
         let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
-        Ok(Fit { model, evaluations })
+        Ok(Fitted { model, evaluations })
     }
 
     /// All starts on everything, thinned if it is much.
