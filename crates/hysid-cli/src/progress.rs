@@ -94,7 +94,7 @@ impl Follower {
             && !std::mem::replace(&mut self.failed, true)
         {
             // The fit is worth more than its checkpoint.
-            warning(format_args!("the fit goes on without checkpoint: {error}"));
+            warning(format_args!("the fit continues without a checkpoint: {error}"));
         }
         if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -130,7 +130,7 @@ fn time_steps(summary: &Summary, unit: &str) -> String {
     let shortest = steps().map(|step| step.0).fold(f64::INFINITY, f64::min);
     let longest = steps().map(|step| step.2).fold(0.0, f64::max);
     if longest == 0.0 {
-        "one sample a record".into()
+        "one sample per record".into()
     } else if longest - shortest <= 1e-3 * longest {
         format!("steps of {:.4}{unit}", Significant(longest))
     } else {

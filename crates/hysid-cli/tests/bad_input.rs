@@ -66,7 +66,7 @@ fn headers() {
         (
             "output alone",
             b"t,y\n0,1\n".into(),
-            ": no column is left for the input beside output \"y\" (columns: t, y)",
+            ": no column is left for the input besides output \"y\" (columns: t, y)",
         ),
     ]);
 }
@@ -110,7 +110,8 @@ fn rows_and_cells() {
         (
             "thousands",
             german(";").replacen(";0,", ";1.000,", 1).into(),
-            ", line 2, column \"x\": \"1.000,000000\" has more than one decimal sign (leave out thousands separators)",
+            ", line 2, column \"x\": \"1.000,000000\" has more than one decimal sign (remove thousands \
+             separators)",
         ),
         (
             "n/a output",

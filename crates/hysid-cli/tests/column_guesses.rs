@@ -63,7 +63,7 @@ fn what_no_input_is_is_set_aside_and_told() {
         "ignored  note: text",
         "ignored  room: constant",
         "ignored  n: counts the rows",
-        "guessed  input and output, from names and values (--input and --output decide)",
+        "guessed  input and output, from names and values (set them with --input and --output)",
     ];
     told(data.clone(), "", &lines);
     told(data.clone(), "--input x --input sample", &["input    sample: ", "ignored  room: constant"]);

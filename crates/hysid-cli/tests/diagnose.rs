@@ -68,7 +68,7 @@ fn text_tells_every_property_and_fits_a_terminal() {
         assert!(lines[row + 1].starts_with("    "), "a statement: {}", lines[row + 1]);
     }
     assert!(ran.stdout.contains("\ndeterioration      yes "), "{}", ran.stdout);
-    assert!(ran.stdout.contains("\nto tell what could not be tested\n"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nexperiments for what could not be tested\n"), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nenergy, kN mm "), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nsecant stiffness, kN/mm "), "{}", ran.stdout);
     assert!(ran.stderr.starts_with("file     joint.csv\nsamples  1901, all scored"), "{}", ran.stderr);
@@ -300,7 +300,7 @@ fn bad_input_gets_one_line() {
             "output alone",
             "t,y\n0,1\n".into(),
             1,
-            ": no column is left for the input beside output \"y\" (columns: t, y)",
+            ": no column is left for the input besides output \"y\" (columns: t, y)",
         ),
         (
             "unsorted",

@@ -43,8 +43,8 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     for words in [
         "The ensemble",
         "ns per sample",
-        "all together",
-        "Held out in turn: 5",
+        "whole ensemble",
+        "Folds: 5 parts",
         "The prediction band",
         "90 % band",
     ] {
@@ -55,8 +55,8 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     let told = bench.run(&format!("fit good.csv -o e.json {QUICK}"));
     assert_narrow(&told.stdout);
     for words in [
-        "\nchosen the weighted median of 3 networks",
-        "\nwhy    cross-validated error, geometric mean of 5 folds",
+        "\nchosen ensemble of 3 networks",
+        "\nwhy    cross-validation error (geometric mean over 5 folds",
         "auto with ",
     ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);
@@ -172,7 +172,7 @@ fn folds_are_told_one_by_one_and_together() {
     let heading: Vec<&str> = lines[0].split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
     assert_eq!(heading, ["held out", "train %", "unseen %", "train RMSE", "unseen RMSE"]);
     assert!(lines[5].starts_with("35 to 65 %, from the rest"), "{}", ran.stdout);
-    assert!(lines[6].starts_with("all together") && lines[7].starts_with("geometric mean"), "{}", ran.stdout);
+    assert!(lines[6].starts_with("all folds") && lines[7].starts_with("geometric mean"), "{}", ran.stdout);
     assert!(ran.stdout.contains("prandtl-ishlinskii: 5 folds in "), "{}", ran.stdout);
     assert!(ran.stderr.contains("fold 5 of 5: "), "{}", ran.stderr);
 

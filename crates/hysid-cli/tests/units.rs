@@ -62,8 +62,9 @@ fn other_units_are_refused_unless_they_are_said_to_be_the_same() {
     bench.put("other.csv", csv("t_s,x [ticks],force_kN", ",", "\n", &rows()));
     let asked = ["evaluate", "--input", "x [ticks]", "model.json", "other.csv", "--json"];
     let ran: Ran = bench.command("").args(asked).output().unwrap().into();
-    let told = "error: other.csv: column \"x [ticks]\" is in ticks, the model's \"disp_mm\" in mm: no factor between them \
-                is known (name another column, convert the numbers, or take them as they are with --same-units)";
+    let told = "error: other.csv: column \"x [ticks]\" is in ticks, the model's \"disp_mm\" in mm: no \
+                conversion between them is known (name another column, convert the numbers, or use them \
+                unchanged with --same-units)";
     assert_eq!((ran.status, ran.last_line()), (Some(1), told));
     let ran: Ran = bench.command("--same-units").args(asked).output().unwrap().into();
     assert_ne!(ran.status, Some(0), "an option stands behind its command");

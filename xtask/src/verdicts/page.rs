@@ -33,7 +33,7 @@ impl Page {
 
     /// The table of verdicts, what the doctor says and what is advised.
     pub fn tables(&self) -> String {
-        let doctor = self.said("What the data doctor says", |diagnosis| &diagnosis.complaints);
+        let doctor = self.said("Data quality", |diagnosis| &diagnosis.complaints);
         let advice = self.said("Advice", |diagnosis| &diagnosis.advice);
         format!("## Verdicts\n\n{}{doctor}{advice}", self.verdicts())
     }
@@ -123,8 +123,7 @@ mod tests {
         let case = |name: &str, outcome| Case { name: name.into(), outcome };
         page.cases =
             vec![case("bad", Err("no number".into())), case("steel", Ok(steel)), case("timber", Ok(timber))];
-        let expected = "\
-## Verdicts
+        let expected = "## Verdicts
 
 | case   |  masing | congruency |
 | ------ | ------: | ---------: |
@@ -138,7 +137,7 @@ Why cells are empty:
 
 1. no number
 
-## What the data doctor says
+## Data quality
 
 - **steel**: it drifts; it is short
 

@@ -55,9 +55,9 @@ impl ThousandsWatch {
         are_thousands.then(|| {
             let cell = clipped(cell);
             let problem = format!(
-                "\"{cell}\" seems to have a separator of thousands, because all numbers of this column are whole and \
-                 below 1000 or have exactly three digits behind it (leave out the separators; if they are decimals, \
-                 write the whole numbers with decimals too)"
+                "\"{cell}\" seems to have a thousands separator: all numbers of this column are whole and \
+                 below 1000, or have exactly three digits after it (remove the separators; if they are \
+                 decimal signs, write the whole numbers with decimals too)"
             );
             (*line, problem)
         })
