@@ -90,12 +90,9 @@ impl Roles {
             options.input.clone()
         };
         let guessed = match (options.input.is_empty(), options.output.is_none()) {
-            (true, true) => Some(
-                "input and output, from names and values (set them with --input and \
-                                  --output)",
-            ),
-            (true, false) => Some("input, from names and values (set it with --input)"),
-            (false, true) => Some("output, the last column (set it with --output)"),
+            (true, true) => Some("input and output, from names and values (change: --input, --output)"),
+            (true, false) => Some("input, from names and values (change: --input)"),
+            (false, true) => Some("output, the last column (change: --output)"),
             (false, false) => None,
         };
         match output {

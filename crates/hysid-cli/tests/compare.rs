@@ -72,7 +72,7 @@ fn a_fit_that_was_stopped_is_marked() {
     let row = ran.stdout.lines().find(|line| line.starts_with("xpnn+")).unwrap();
     assert!(row.contains("* "), "{}", ran.stdout);
     for text in [ran.stdout, bench.text("good-compared.html")] {
-        assert!(text.contains("* stopped before its end"), "{text}");
+        assert!(text.contains("* stopped early"), "{text}");
     }
     let whole = bench.run("compare good.csv --models prandtl-ishlinskii --no-report");
     assert!(!whole.stdout.contains('*'), "{}", whole.stdout);

@@ -95,8 +95,8 @@ fn a_band_that_is_not_there_is_refused() {
     let bench = Workbench::with_model();
     bench.put("taken.csv", csv("t,x,y_low", ",", "\n", &rows()));
     for (arguments, status, words) in [
-        ("simulate model.json good.csv --band 0.9", 1, "model.json: this model has no band"),
-        ("evaluate model.json good.csv --band 0.9", 1, "model.json: this model has no band"),
+        ("simulate model.json good.csv --band 0.9", 1, "model.json: this model has no prediction band"),
+        ("evaluate model.json good.csv --band 0.9", 1, "model.json: this model has no prediction band"),
         ("simulate model.json good.csv --band 0.3", 2, "a probability from 0.5 to 0.99 is needed"),
         ("evaluate model.json good.csv --band much", 2, "a probability from 0.5 to 0.99 is needed"),
     ] {
@@ -204,11 +204,7 @@ fn records_are_held_out_in_turn() {
     );
     let few = bench.run("validate few.csv --model pnn");
     assert_eq!(few.status, Some(1));
-    assert!(
-        few.last_line().starts_with("error: few.csv: the data are too few to hold any out"),
-        "{}",
-        few.stderr
-    );
+    assert!(few.last_line().starts_with("error: few.csv: too few data to hold any out"), "{}", few.stderr);
     assert_eq!(bench.run("validate four.csv --folds 1").status, Some(2));
 }
 
@@ -236,6 +232,6 @@ fn ctrl_c_keeps_the_folds_that_are_done() {
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let last = stderr.last().unwrap();
     let ran = Ran::from(child.wait_with_output().unwrap());
-    assert_eq!((ran.status, last.as_str()), (Some(130), "interrupted: 1 of 5 folds are done"));
+    assert_eq!((ran.status, last.as_str()), (Some(130), "interrupted: 1 of 5 folds are finished"));
     assert!(ran.stdout.contains("50 to 75 %") && !ran.stdout.contains("60 to 90 %"), "{}", ran.stdout);
 }

@@ -40,9 +40,9 @@ fn known_units_are_converted_to_the_model_s() {
     assert!((rmse(&found) / rmse(&own) - 1.0).abs() < 1e-6, "{found} {own}");
     assert_eq!(found["output"], "force_kN");
     for told in [
-        "converted: clock_ms from ms to s, the unit of the model's t_s (times 0.001)",
-        "converted: displacement_m from m to mm, the unit of the model's disp_mm (times 1000)",
-        "converted: force_N from N to kN, the unit of the model's force_kN (times 0.001)",
+        "converted: clock_ms from ms to s, the unit of the model's t_s (factor 0.001)",
+        "converted: displacement_m from m to mm, the unit of the model's disp_mm (factor 1000)",
+        "converted: force_N from N to kN, the unit of the model's force_kN (factor 0.001)",
     ] {
         assert!(ran.stderr.contains(told), "{}", ran.stderr);
     }

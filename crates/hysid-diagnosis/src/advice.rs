@@ -238,7 +238,7 @@ mod tests {
 
     /// How many statements are assumptions.
     fn assumed(advice: &Advice) -> usize {
-        advice.statement.iter().filter(|text| text.starts_with("not testable here: ")).count()
+        advice.statement.iter().filter(|text| text.starts_with("not testable with these data: ")).count()
     }
 
     #[test]
@@ -276,7 +276,7 @@ mod tests {
         let advice = advise(&findings([NotTestable; 7]), None);
         assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
         assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
-        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable here: ")));
+        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable with these data: ")));
         assert_eq!(advice.needs_rate, NotTestable);
         // What would not change the model is not mentioned.
         let advice = advise(

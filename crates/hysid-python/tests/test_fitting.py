@@ -50,7 +50,7 @@ def test_time_must_increase_within_a_record(spring_and_slider):
     with pytest.raises(ValueError, match="row 301, time: time 0 does not come after 299"):
         hysid.fit(x, y, time=stamps)
     hysid.fit(x, y, time=stamps, records=np.repeat(["a", "b"], 300), model="masing")
-    with pytest.raises(ValueError, match='record "a" goes on after another began'):
+    with pytest.raises(ValueError, match='record "a" continues after another record'):
         hysid.fit(x, y, records=np.tile(["a", "b"], 300))
     with pytest.raises(ValueError, match="one label for each of the 600 rows"):
         hysid.fit(x, y, records=["a"])

@@ -200,7 +200,7 @@ def test_members_share_out_the_whole(quick_ensemble):
 
 def test_a_single_model_has_no_members_and_no_band(quick_model, spring_and_slider):
     assert quick_model.members == () and not quick_model.has_band
-    with pytest.raises(ValueError, match="this model of xpnn\\+ has no band"):
+    with pytest.raises(ValueError, match="this model of xpnn\\+ has no prediction band"):
         quick_model.predict(spring_and_slider[0])
 
 

@@ -156,7 +156,10 @@ pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Resu
     Ok(match option {
         RateOption::Column(_) => Some(RateMethod::Given),
         RateOption::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
-            bail!("there is no time column to take the rate from (name it with --time, or use --rate none)")
+            bail!(
+                "there is no time column to compute the rate from (name it with --time, or use --rate \
+                   none)"
+            )
         }
         RateOption::Choice(choice) => choice.method(model, roles.time.is_some()),
     })

@@ -477,7 +477,7 @@ class Model:
             factor = _hysid.unit_factor(column.name, name)
             if factor is None:
                 return column
-            notes.append(f"{column.name} is converted to the unit of the model's {name} (times {factor:.6g})")
+            notes.append(f"{column.name} is converted to the unit of the model's {name} (factor {factor:.6g})")
             return Column(factor * column.values, name)
 
         pairs = zip(arranged.inputs, trained["inputs"])
