@@ -159,7 +159,7 @@ fn resuming_is_refused_with_other_options_or_data() {
         (
             format!("fit good.csv {resume} c.bin --rate savitzky-golay"),
             2,
-            "--rate is not what the checkpoint",
+            "--rate differs from that of the checkpoint",
         ),
         (format!("fit other.csv {resume} c.bin"), 1, "belongs to other data"),
         (format!("fit good.csv {resume} text.bin"), 1, "text.bin: this is not a Hysid checkpoint"),

@@ -215,7 +215,9 @@ fn attended<T: Send + 'static>(
             Ok(done) => break done,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the fit ended without a result: this is an error in Hysid, please report it"));
+                return Err(PyRuntimeError::new_err(
+                    "the fit ended without a result: this is an error in Hysid, please report it",
+                ));
             }
         }
         if let Err(error) = py.check_signals() {

@@ -4,7 +4,7 @@ use super::answer::{Diagnosis, Verdict};
 use crate::cases::{Case, Reasons, aligned, row};
 
 const KEY: &str =
-    "\nIn the cells: the verdict and the index in percent; `?` where the record does not tell.\n";
+    "\nIn the cells: the verdict and the index in percent; `?` where the record does not allow a verdict.\n";
 
 /// All that is known so far.
 pub struct Page {
@@ -131,7 +131,7 @@ mod tests {
 | steel  |   no 40 |          ? |
 | timber | yes 1.2 |   no -0.20 |
 
-In the cells: the verdict and the index in percent; `?` where the record does not tell.
+In the cells: the verdict and the index in percent; `?` where the record does not allow a verdict.
 
 Why cells are empty:
 

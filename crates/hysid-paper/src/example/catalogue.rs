@@ -81,8 +81,8 @@ impl Figure {
             Self::Unseen => "unseen, % of std".into(),
             Self::UnseenRecords(names) => format!("unseen {}, % of std", names.join(" and ")),
             Self::LargestUnseen => "largest unseen error, % of largest".into(),
-            Self::TimesBelowTraining => "MSE of the other model / MSE of the XPNN, training".into(),
-            Self::TimesBelowUnseen => "MSE of the other model / MSE of the XPNN, unseen".into(),
+            Self::TimesBelowTraining => "MSE ratio, other model / XPNN, training".into(),
+            Self::TimesBelowUnseen => "MSE ratio, other model / XPNN, unseen".into(),
         }
     }
 }
