@@ -136,7 +136,7 @@ impl Follower {
 fn part(progress: &Progress, starts: usize, best: f64) -> String {
     // One fit of many: its starts, epochs and errors say nothing of the whole.
     if progress.is_part {
-        return format!("at {}", progress.model.name());
+        return format!("fitting {}", progress.model.name());
     }
     let part = match (progress.phase, progress.method) {
         (Phase::Starts, _) => return "cross-validation".into(),

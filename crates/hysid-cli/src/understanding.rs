@@ -89,7 +89,7 @@ pub fn print(lines: &[(String, String)]) {
 /// What an automatic model chooses among, in words.
 pub fn choice(options: &AutoOptions) -> String {
     match &options.only {
-        Some(request) => format!(": {} of {}", options.members, request.model().name()),
+        Some(request) => format!(": at most {} fits of {}", options.members, request.model().name()),
         None if options.members == 1 => ": one model, chosen by cross-validation".into(),
         None => {
             format!(": at most {} models, chosen by cross-validation", options.members)

@@ -144,7 +144,7 @@ fn auto_keeps_its_time_limit_and_says_where_it_is() {
     let ran = bench.run("fit good.csv -o a.json --no-report --threads 1 --time-limit 2.5 --json");
     assert!(began.elapsed() < Duration::from_secs(12), "{:?}", began.elapsed());
     assert_eq!(json(&ran)["termination"], "stopped");
-    assert!(ran.stderr.contains(" % at "), "{}", ran.stderr);
+    assert!(ran.stderr.contains(" % fitting "), "{}", ran.stderr);
     assert_eq!(bench.run("evaluate a.json good.csv").status, Some(0));
 }
 

@@ -96,7 +96,7 @@ fn separators_of_thousands_are_no_decimal_points() {
         assert_eq!(ran.status, Some(1), "{}", ran.stderr);
         let told = ran.last_line();
         assert!(
-            told.starts_with("error: german.csv, line ") && told.contains("separator of thousands"),
+            told.starts_with("error: german.csv, line ") && told.contains("thousands separator"),
             "{told}"
         );
     }

@@ -52,8 +52,14 @@ impl Selection {
         let parts = kinds.iter().filter(|kind| count(kind) > 0);
         let parts: Vec<String> = parts.map(|kind| counted(count(kind), kind)).collect();
         let most = self.candidates.iter().max_by(|a, b| a.share.inside.total_cmp(&b.share.inside));
-        let leading = most.map_or_else(String::new, |one| format!("; largest weight: {}", one.name));
-        format!("ensemble of {}, combined by weighted medians{leading}", listed(&parts))
+        let leading = most.map_or("", |one| one.name.as_str());
+        match kinds.iter().map(|kind| count(kind)).sum() {
+            1 => format!("{}: {leading}", listed(&parts)),
+            _ => {
+                let parts = listed(&parts);
+                format!("ensemble of {parts}, combined by weighted medians; largest weight: {leading}")
+            }
+        }
     }
 
     fn why(&self, kinds: &[&str]) -> String {
@@ -194,5 +200,7 @@ mod tests {
         );
         selection.candidates.truncate(1);
         assert!(selection.summary()[0].starts_with("ensemble of 2 classical models, combined"));
+        selection.candidates[0].members = 1;
+        assert_eq!(selection.summary()[0], "1 classical model: preisach");
     }
 }
