@@ -183,7 +183,8 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
         raise ValueError(f"{what}: {error}") from None
     if numbers.ndim == 2 and 2 not in dimensions and numbers.shape[1] == 1:
         numbers = np.ascontiguousarray(numbers[:, 0])
-    if values.ndim not in dimensions and numbers.ndim not in dimensions:
+    # `ascontiguousarray` makes an array of one value from a number.
+    if values.ndim == 0 or values.ndim not in dimensions and numbers.ndim not in dimensions:
         expected = "one- or two-dimensional" if 2 in dimensions else "one-dimensional"
         raise ValueError(f"{what}: a {expected} array is needed, not one of {values.ndim} dimensions")
     return numbers
