@@ -163,7 +163,7 @@ def test_copies_and_marks_are_warned_of(spring_and_slider):
     with pytest.warns(hysid.HysidWarning, match='"y" is -999 in 3 rows'):
         hysid.fit(x, marked, model="masing")
     told = warned(lambda: hysid.fit(x[100:120], y[100:120], **{**SMALL, "stops": 20}))
-    assert any("parameters are found from 20 rows" in text for text in told)
+    assert any("parameters are fitted to 20 rows" in text for text in told)
     told = warned(lambda: hysid.compare(x, y, test=(x[100:400], y[100:400]), models=["masing"]))
     assert any("is a part of what the model was trained on" in text for text in told)
 

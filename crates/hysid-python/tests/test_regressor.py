@@ -118,7 +118,7 @@ def test_randomness_is_scikit_learn_s(spring_and_slider):
     [
         ({"time": "t"}, "time: X has no column 't'"),
         ({"record": 7}, "record: X has no column 7"),
-        ({"model": "glass"}, "model `glass` is unknown"),
+        ({"model": "glass"}, 'model "glass": choose one of auto, pnn, gpnn'),
         ({"time": "x"}, "no column left for an input"),
     ],
 )

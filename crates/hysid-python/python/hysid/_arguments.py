@@ -19,7 +19,7 @@ def real(name: str, value: Any) -> float:
     Raises
     ------
     TypeError
-        Something else; text is no number, even if it reads like one.
+        Something else, also text with a number.
     """
     if not isinstance(value, (str, bytes)):
         try:
