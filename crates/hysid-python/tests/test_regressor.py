@@ -74,6 +74,7 @@ def test_blanks_drive_and_are_not_trained_on(actuator):
     assert fitted.score(x, measured) == pytest.approx(1 - share**2, rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore:pnn ignores hidden:hysid.HysidWarning")
 def test_it_is_searched_over_records(actuator):
     _, _, frame, _ = actuator
     x, y = frame.drop(columns="displacement_um"), frame["displacement_um"]
