@@ -18,9 +18,9 @@ use hysid::specimens::Specimen;
 use crate::reproduction::Experiment;
 pub use model_options::{ModelOptions, flag};
 
-/// Identify hysteresis from measured input and output, simulate it and judge the model.
+/// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
-#[command(name = "hysid", version, arg_required_else_help = true)]
+#[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -56,30 +56,31 @@ impl Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Identify a synthetic ferromagnet: data, model, report and what to type next
+    /// Fit a model to a synthetic ferromagnet: writes data, model and report
     Demo(Demo),
     /// Identify a model from measured data
     Fit(Box<Fit>),
-    /// Simulate a model: writes the columns of the data and `<output>_model`
+    /// Simulate a model; adds the column `<output>_model` to the data
     Simulate(Simulate),
-    /// Errors of a model's free run against measured data
+    /// Compute the errors of a model on measured data
     Evaluate(Evaluate),
-    /// Cross-validate a model: its error on data that it was not fitted to, fold by fold
+    /// Cross-validate a model; gives its errors on held-out data, fold by fold
     Validate(Box<Validate>),
-    /// Fit every model to the same data and compare them on data that none has seen
+    /// Fit all models to the same data and compare their errors on unseen data
     Compare(Compare),
-    /// What kind of hysteresis is this? Properties of measured data or of a model, each with its evidence
+    /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
-    /// Run the paper's experiments and compare the results with the paper's
+    /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),
-    /// Write the data of a synthetic specimen, to train and to test on
+    /// Write training and test data of a synthetic specimen
     Generate(Generate),
-    /// Measure the speed on this machine
+    /// Measure the speed of Hysid on this machine
     Bench(Bench),
 }
 
 /// Arguments of `demo`.
 #[derive(Debug, Args)]
+#[command(after_help = DEMO_EXAMPLES)]
 pub struct Demo {
     /// Folder for the data, the model and the report
     #[arg(short, long, value_name = "DIR", default_value = "hysid-demo")]
@@ -101,28 +102,35 @@ pub struct Overwriting {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Columns")]
 pub struct ColumnOptions {
-    /// Column that tells the records apart [default: `record` or `segment`, if there is one]
+    /// Record of each row [default: `record` or `segment`]
+    ///
+    /// A column with the name of the record; the rows of a record stand together. Without such a column, each table is
+    /// one record.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
-    /// Time stamps [default: `t` or `time`, also with a unit as in `t_ms` or `Time (s)`]
+    /// Time stamps [default: `t` or `time`, also with a unit]
+    ///
+    /// Names with a unit are such as `t_ms` or `Time (s)`.
     #[arg(long, value_name = "COLUMN")]
     pub time: Option<String>,
-    /// An input; repeat for several [default: all columns that are nothing else]
+    /// Input; repeat for several [default: all other columns]
     #[arg(long, value_name = "COLUMN")]
     pub input: Vec<String>,
-    /// The output [default: the last column]
+    /// Output [default: the last column]
     #[arg(long, value_name = "COLUMN")]
     pub output: Option<String>,
-    /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column that holds it
-    #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate)]
+    /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
+    #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
 }
 
 /// How the units of a table and of a model are taken.
 #[derive(Debug, Clone, Args)]
 pub struct UnitOptions {
-    /// Use the numbers unchanged, whatever units the column names state. Otherwise known units are
-    /// converted to those of the model, and others that differ are refused
+    /// Do not convert units
+    ///
+    /// Otherwise, units in column names are converted to those of the model, and a conversion that is not known is an
+    /// error.
     #[arg(long, help_heading = "Columns")]
     pub same_units: bool,
 }
@@ -148,11 +156,64 @@ fn rate(text: &str) -> Result<RateOption, String> {
 
 const FIT_EXAMPLES: &str = "\
 Examples:
-  hysid fit data.csv                            model data.json and report data.html
-  hysid fit data.csv --members 1                one small model in place of an ensemble
-  hysid fit data.csv --model bouc-wen           one named model
+  hysid fit data.csv                     model data.json, report data.html
+  hysid fit data.csv --members 1         one small model instead of an ensemble
+  hysid fit data.csv --model bouc-wen    one named model
   hysid fit a.csv b.csv --input i --output flux -o core.json
-  hysid fit --help                              all options; docs/options.md lists them with their ranges";
+
+All options: hysid fit --help; their ranges: docs/options.md";
+
+const DEMO_EXAMPLES: &str = "\
+Examples:
+  hysid demo                     writes into the folder hysid-demo
+  hysid demo -o DIR              writes into another folder";
+
+const SIMULATE_EXAMPLES: &str = "\
+Examples:
+  hysid simulate model.json data.csv -o simulated.csv
+  hysid simulate model.json data.csv --band 0.9 -o simulated.csv
+  hysid simulate model.json data.csv > simulated.csv";
+
+const EVALUATE_EXAMPLES: &str = "\
+Examples:
+  hysid evaluate model.json test.csv
+  hysid evaluate model.json test.csv --band 0.9
+  hysid evaluate model.json test.csv --json";
+
+const VALIDATE_EXAMPLES: &str = "\
+Examples:
+  hysid validate data.csv --model xpnn+
+  hysid validate a.csv b.csv c.csv --model preisach --folds 3
+  hysid validate data.csv                the default model, auto";
+
+const COMPARE_EXAMPLES: &str = "\
+Examples:
+  hysid compare train.csv --test test.csv
+  hysid compare train.csv --test test.csv --models xpnn,preisach,bouc-wen
+  hysid compare train.csv --test test.csv --time-limit 60";
+
+const DIAGNOSE_EXAMPLES: &str = "\
+Examples:
+  hysid diagnose data.csv
+  hysid diagnose data.csv --time t --input x --output f
+  hysid diagnose model.json";
+
+const REPRODUCE_EXAMPLES: &str = "\
+Examples:
+  hysid reproduce --quick nds example1   two experiments, with less effort
+  hysid reproduce                        all experiments
+  hysid reproduce example5 -o DIR        one experiment, into another folder";
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  hysid generate --list
+  hysid generate terfenol-rod -o train.csv --test test.csv
+  hysid generate ferromagnet -o train.csv --noise 1 --seed 2";
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  hysid bench                    a table
+  hysid bench --json             one JSON object, for scripts";
 
 /// The heading of options of a run, which do not change the model.
 const RUN: &str = "Run";
@@ -164,7 +225,9 @@ pub struct Fit {
     /// Tables of measured data: CSV with a header line
     #[arg(value_name = "TRAIN.csv", required = true)]
     pub train: Vec<PathBuf>,
-    /// The model file; the report gets its name with `.html` [default: first TRAIN with `.json`, in this folder]
+    /// Model file [default: name of TRAIN with `.json`]
+    ///
+    /// The default is in the current folder and named after the first table. The report has the same name with `.html`.
     #[arg(short, long, value_name = "MODEL.json")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.
@@ -176,18 +239,20 @@ pub struct Fit {
     /// The model and its training.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// Stop the search after this time and keep the best model so far; reading and writing files is not counted
+    /// Stop after this time and keep the best model so far
+    ///
+    /// The time for reading and writing files is not counted.
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,
-    /// Store the state of the fit in this file, every few seconds and at the end; for a single network, such as
+    /// Save the state of the fit in this file every few seconds and at the end; for a single network, such as
     /// --model xpnn+
     #[arg(long, value_name = "FILE", help_heading = RUN, hide_short_help = true)]
     pub checkpoint: Option<PathBuf>,
-    /// Go on where this checkpoint left off, with the options it was made with; give the same tables and
-    /// columns. It is kept up to date unless --checkpoint names another file
+    /// Resume the fit of this checkpoint with the same options; give the same tables and columns. The checkpoint
+    /// is updated unless --checkpoint names another file
     #[arg(long, value_name = "FILE", help_heading = RUN, hide_short_help = true, conflicts_with_all = model_options::names())]
     pub resume: Option<PathBuf>,
-    /// Threads to use; the model does not depend on it [default: one for each processor]
+    /// Number of threads; the model does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as one JSON object
@@ -200,12 +265,14 @@ pub struct Fit {
 
 /// Arguments of `validate`.
 #[derive(Debug, Args)]
+#[command(after_help = VALIDATE_EXAMPLES)]
 pub struct Validate {
     /// Tables of measured data: CSV with a header line
     #[arg(value_name = "DATA.csv", required = true)]
     pub data: Vec<PathBuf>,
-    /// Maximum number of folds that the records are divided into; a single record always gives five,
-    /// cut in time
+    /// Maximum number of folds of several records
+    ///
+    /// A single record always gives five folds, cut in time.
     #[arg(long, value_name = "N", default_value = "5", value_parser = folds)]
     pub folds: usize,
     /// Which columns are what.
@@ -214,10 +281,10 @@ pub struct Validate {
     /// The model and its training.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// Time for each fold, after which its best model so far is judged
+    /// Time for each fold, after which its best model so far is evaluated
     #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,
-    /// Threads to use; the result does not depend on it [default: one for each processor]
+    /// Number of threads; the result does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as one JSON object
@@ -264,21 +331,24 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Arguments of `simulate`.
 #[derive(Debug, Args)]
+#[command(after_help = SIMULATE_EXAMPLES)]
 pub struct Simulate {
     /// A model file of `hysid fit`
     #[arg(value_name = "MODEL.json")]
     pub model: PathBuf,
-    /// Table with the model's inputs; the output may be missing
+    /// Table with the inputs of the model; the output is not needed
     #[arg(value_name = "DATA.csv")]
     pub data: PathBuf,
-    /// Where to write [default: stdout, as with `-`]
+    /// Table to write [default: stdout, as with `-`]
     #[arg(short, long, value_name = "OUT.csv")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Two further columns, `<output>_low` and `<output>_high`: between them lies the measured output with this
-    /// probability, such as 0.9, as far as the data are like those that were held out in training
+    /// Add a prediction band of this probability, such as 0.9
+    ///
+    /// The columns `<output>_low` and `<output>_high` are its edges. The band holds the measured output with this
+    /// probability if the data resemble those of the training.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
     /// Which columns are what.
@@ -291,14 +361,15 @@ pub struct Simulate {
 
 /// Arguments of `evaluate`.
 #[derive(Debug, Args)]
+#[command(after_help = EVALUATE_EXAMPLES)]
 pub struct Evaluate {
     /// A model file of `hysid fit`
     #[arg(value_name = "MODEL.json")]
     pub model: PathBuf,
-    /// Table with the model's inputs and the measured output
+    /// Table with the inputs of the model and the measured output
     #[arg(value_name = "DATA.csv")]
     pub data: PathBuf,
-    /// Tell how many of the measured outputs lie within the model's band of this probability, such as 0.9
+    /// Print the share of measured outputs within the prediction band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
     /// Which columns are what.
@@ -308,23 +379,26 @@ pub struct Evaluate {
     #[command(flatten)]
     pub units: UnitOptions,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
 }
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
+#[command(after_help = COMPARE_EXAMPLES)]
 pub struct Compare {
-    /// Tables of measured data to fit to: CSV with a header line
+    /// Tables of training data: CSV with a header line
     #[arg(value_name = "TRAIN.csv", required = true)]
     pub train: Vec<PathBuf>,
-    /// Table of measured data that no model sees; without it, errors are those of the training
+    /// Table of test data [default: the training data]
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
-    /// Models to compare, such as auto,xpnn,preisach, each in all its variants [default: auto and all others]
+    /// Models to compare, such as auto,xpnn,preisach; each in all its variants [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = model)]
     pub models: Vec<ModelName>,
-    /// The page with table and loops [default: first TRAIN with `-compared.html`, in this folder]
+    /// Page with table and loops [default: name of TRAIN with `-compared.html`]
+    ///
+    /// The default is in the current folder and named after the first table.
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.
@@ -333,30 +407,33 @@ pub struct Compare {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Time for each model, after which its search ends with what it has [default: 20, and none for auto]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    /// Time for each model, after which its best fit so far is used [default: 20, none for auto]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN)]
     pub time_limit: Option<f64>,
-    /// Seed of all randomness
-    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>)]
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = RUN)]
     pub seed: u64,
-    /// Models fitted at a time, each on one thread [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    /// Number of models fitted at the same time, each on one thread [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
     pub threads: Option<u16>,
     /// Print the result as a list of JSON objects
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
     /// Write no page
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }
 
 /// Arguments of `diagnose`.
 #[derive(Debug, Args)]
+#[command(after_help = DIAGNOSE_EXAMPLES)]
 pub struct Diagnose {
     /// Tables of measured data, CSV with a header line; or one model file of `hysid fit`
     #[arg(value_name = "DATA.csv|MODEL.json", required = true)]
     pub files: Vec<PathBuf>,
-    /// The page with pictures [default: first file with `.diagnosis.html`, in this folder]
+    /// Page with plots [default: name of the file with `.diagnosis.html`]
+    ///
+    /// The default is in the current folder and named after the first file.
     #[arg(short, long, value_name = "PAGE.html")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.
@@ -365,17 +442,17 @@ pub struct Diagnose {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Reversals of the input below this share of its range are no turning points
-    #[arg(long, value_name = "FRACTION", default_value_t = DiagnosisOptions::default().smallest_reversal, value_parser = fraction)]
+    /// Ignore reversals of the input below this share of its range
+    #[arg(long, value_name = "FRACTION", default_value_t = DiagnosisOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: f64,
-    /// Smooth noise out of branches before they are compared: true or false
-    #[arg(long, value_name = "BOOL", default_value_t = DiagnosisOptions::default().smoothing, action = ArgAction::Set)]
+    /// Smooth branches before they are compared
+    #[arg(long, value_name = "BOOL", default_value_t = DiagnosisOptions::default().smoothing, action = ArgAction::Set, help_heading = "Method", hide_short_help = true)]
     pub smoothing: bool,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
     /// Write no page
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub no_report: bool,
 }
 
@@ -388,21 +465,23 @@ impl Diagnose {
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
+#[command(after_help = REPRODUCE_EXAMPLES)]
 pub struct Reproduce {
-    /// What to run: nds, example1 to example7, table2, training [default: all, and a page of all]
+    /// Experiments to run [default: all]
     #[arg(value_name = "EXPERIMENT", value_parser = experiment())]
     pub experiments: Vec<Experiment>,
-    /// Folder for pages and tables; an experiment that was finished there with the same seed, version and
-    /// --quick is not run again
+    /// Folder for pages and tables
+    ///
+    /// An experiment that is already finished there, with the same seed, version and effort, is not run again.
     #[arg(short, long, value_name = "DIR", default_value = "hysid-reproduction")]
     pub out: PathBuf,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// A fraction of the effort, to see how it looks
+    /// Run with a fraction of the effort; results are worse
     #[arg(long)]
     pub quick: bool,
-    /// Seed of all randomness; of several repetitions that of the first
+    /// Seed of all random numbers; with several repetitions, that of the first
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     pub seed: u64,
 }
@@ -414,23 +493,24 @@ fn experiment() -> impl TypedValueParser<Value = Experiment> {
 
 /// Arguments of `generate`.
 #[derive(Debug, Args)]
+#[command(after_help = GENERATE_EXAMPLES)]
 pub struct Generate {
-    /// Which specimen; --list describes them
+    /// Specimen; --list describes all
     #[arg(value_name = "SPECIMEN", value_parser = specimen())]
     pub specimen: Option<&'static Specimen>,
-    /// Where to write the training data [default: stdout, as with `-`; not written if only --test is given]
+    /// Table of training data [default: stdout, as with `-`; none if only --test is given]
     #[arg(short, long, value_name = "TRAIN.csv")]
     pub out: Option<PathBuf>,
-    /// Where to write the test data [default: not written; `-` is stdout]
+    /// Table of test data; `-` is stdout [default: none]
     #[arg(long, value_name = "TEST.csv")]
     pub test: Option<PathBuf>,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
-    /// Deviation of Gaussian noise on the output, in percent of the output's own standard deviation
+    /// Standard deviation of Gaussian noise on the output, in percent of that of the output
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = noise)]
     pub noise: f64,
-    /// Seed of the noise; training and test data get different noise from the same seed
+    /// Seed of the noise; training and test data get different noise
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     pub seed: u64,
     /// Describe all specimens
@@ -453,6 +533,7 @@ fn noise(text: &str) -> Result<f64, String> {
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
+#[command(after_help = BENCH_EXAMPLES)]
 pub struct Bench {
     /// Print the result as one JSON object
     #[arg(long)]
@@ -466,5 +547,20 @@ mod tests {
     #[test]
     fn the_command_line_is_sound() {
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn the_short_help_of_a_command_fits_on_a_screen_and_has_examples() {
+        const LINES: usize = 40;
+        const COLUMNS: usize = 80;
+        for command in Arguments::command().get_subcommands() {
+            let name = command.get_name().to_string();
+            let typed = ["hysid", &name, "-h"];
+            let help = Arguments::try_parse_from(typed).expect_err("a request for help").to_string();
+            assert!(help.contains("\nExamples:\n"), "{name} has no examples:\n{help}");
+            assert!(help.lines().count() <= LINES, "{name} has {} lines:\n{help}", help.lines().count());
+            let widest = help.lines().map(|line| line.chars().count()).max().unwrap_or(0);
+            assert!(widest <= COLUMNS, "{name} has a line of {widest} columns:\n{help}");
+        }
     }
 }

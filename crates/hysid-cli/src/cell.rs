@@ -62,7 +62,7 @@ impl CellReader {
     fn with_comma(&mut self, text: &str, line: u64) -> Result<f64, String> {
         if text.contains('.') || text.matches(',').count() > 1 {
             return Err(format!(
-                "\"{}\" has more than one decimal sign (leave out thousands separators)",
+                "\"{}\" has more than one decimal sign (remove thousands separators)",
                 clipped(text)
             ));
         }

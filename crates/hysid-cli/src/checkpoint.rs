@@ -33,8 +33,8 @@ impl Keeper {
     pub fn new(destination: Destination) -> Result<Self> {
         let lock = Lock::acquire(destination.path()).map_err(|failure| match failure {
             Failure::InUse(path) => anyhow!(
-                "{}: another fit keeps its checkpoint in this file: wait for its end, or name another file with \
-                 --checkpoint",
+                "{}: another fit writes its checkpoint to this file: wait until it ends, or name another \
+                 file with --checkpoint",
                 path.display()
             ),
             failure => files::explained(failure),

@@ -90,9 +90,9 @@ impl Roles {
             options.input.clone()
         };
         let guessed = match (options.input.is_empty(), options.output.is_none()) {
-            (true, true) => Some("input and output, from names and values (--input and --output decide)"),
-            (true, false) => Some("input, from names and values (--input decides)"),
-            (false, true) => Some("output, as the last column (--output decides)"),
+            (true, true) => Some("input and output, from names and values (change: --input, --output)"),
+            (true, false) => Some("input, from names and values (change: --input)"),
+            (false, true) => Some("output, the last column (change: --output)"),
             (false, false) => None,
         };
         match output {
@@ -100,7 +100,7 @@ impl Roles {
                 Ok(Self { record, time, inputs, rate, output, guessed, set_aside })
             }
             output => bail!(
-                "{}: no column is left for the input beside output \"{}\" (columns: {})",
+                "{}: no column is left for the input besides output \"{}\" (columns: {})",
                 table.file,
                 clipped(&output.unwrap_or_default()),
                 listed(&table.header)

@@ -22,8 +22,8 @@ use crate::files;
 fn check_band(model: &Model, path: &Path) -> Result<()> {
     ensure!(
         model.band().is_some(),
-        "{}: this model has no band: `hysid fit` calibrates one with --model auto, or --members, where the data are \
-         enough to hold some out",
+        "{}: this model has no prediction band: `hysid fit` calibrates one with --model auto or --members, \
+         if there are enough data to hold some out",
         path.display()
     );
     Ok(())

@@ -195,7 +195,7 @@ fn stopped_note(rows: &[Row]) -> String {
     if !rows.iter().any(is_stopped) {
         return String::new();
     }
-    format!("{STOPPED} stopped before its end: the best model so far (more time: --time-limit SECONDS)")
+    format!("{STOPPED} stopped early: the best model so far (for more time: --time-limit SECONDS)")
 }
 
 const HEADINGS: [&str; 6] = ["model", "unseen %", "train %", "parameters", "fit s", "ns/sample"];
@@ -222,14 +222,14 @@ pub fn table(rows: &[Row], tested: bool) -> String {
             Err(why) => text += &format!("{:<NAME$} {}\n", row.label(), terminal::line(why)),
         }
     }
-    let data =
-        if tested { "data that no model has seen" } else { "the training data: name others with --test" };
+    let data = if tested { "the unseen data" } else { "the training data (name test data with --test)" };
     let stopped = match stopped_note(rows) {
         note if note.is_empty() => note,
         note => note + "\n",
     };
     text + &format!(
-        "\nErrors are NRMSE in % of the output's standard deviation, of free runs;\nsorted by that on {data}.\nFits ran on one thread each.\n{stopped}"
+        "\nErrors: NRMSE of free runs, in % of the standard deviation of the output.\nSorted by the error \
+         on {data}.\nEach fit ran on one thread.\n{stopped}"
     )
 }
 

@@ -131,7 +131,10 @@ impl Identified {
 
     /// Writes the report on the model, which is written already.
     pub fn write_report(&self, page: &Destination, model: &Path, sets: &[(&str, &Dataset)]) -> Result<()> {
-        files::write_page(page, &self.report(model, sets)?).context("the model is written, its report is not")
+        files::write_page(page, &self.report(model, sets)?).context(
+            "the model was written, but not its \
+                                                                     report",
+        )
     }
 
     fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
@@ -179,16 +182,14 @@ impl Identified {
         sets.extend(unseen.map(|errors| ("unseen test", errors)));
         let mut text = errors_table::errors_table(&sets);
         if let Some(selection) = &provenance.selection {
-            text += &format!(
-                "(validation: rows held out in {} folds, by models trained without them)\n",
-                selection.folds.len()
-            );
+            text +=
+                &format!("(validation: errors on the rows held out in {} folds)\n", selection.folds.len());
             text.push('\n');
             for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
                 text += &labelled(label, &line);
             }
         } else if provenance.validation.is_some() {
-            text += "(validation: rows held out, by models trained without them)\n";
+            text += "(validation: errors on held-out rows)\n";
         }
         text += &format!(
             "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
@@ -220,7 +221,7 @@ fn chosen(provenance: &Provenance) -> String {
         FitSpec::Network(options) => options,
         FitSpec::Classical(options) if options.model.is_searched() => return "multi-start search".into(),
         FitSpec::Classical(_) => return "linear least squares".into(),
-        FitSpec::Auto(_) => return "chosen by validation".into(),
+        FitSpec::Auto(_) => return "chosen by cross-validation".into(),
     };
     match options.starts {
         1 => format!("{} training", options.training.name()),

@@ -17,7 +17,7 @@ static HEARD: AtomicU8 = AtomicU8::new(0);
 
 /// From now on Ctrl-C, SIGTERM and SIGHUP ask instead of killing, and get this answer.
 pub fn listen(answer: &'static str) -> Result<()> {
-    handle(answer).context("cannot listen for Ctrl-C")
+    handle(answer).context("cannot handle Ctrl-C")
 }
 
 /// True once a signal asked to stop.

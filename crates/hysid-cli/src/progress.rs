@@ -94,7 +94,7 @@ impl Follower {
             && !std::mem::replace(&mut self.failed, true)
         {
             // The fit is worth more than its checkpoint.
-            warning(format_args!("the fit goes on without checkpoint: {error}"));
+            warning(format_args!("the fit continues without a checkpoint: {error}"));
         }
         if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -136,7 +136,7 @@ impl Follower {
 fn part(progress: &Progress, starts: usize, best: f64) -> String {
     // One fit of many: its starts, epochs and errors say nothing of the whole.
     if progress.is_part {
-        return format!("at {}", progress.model.name());
+        return format!("fitting {}", progress.model.name());
     }
     let part = match (progress.phase, progress.method) {
         (Phase::Starts, _) => return "cross-validation".into(),

@@ -28,7 +28,7 @@ impl RecordNames {
         }
         if !self.begun.insert(name.to_string()) {
             let name = clipped(name);
-            bail!("{}: record \"{name}\" goes on after another began (keep its rows together)", place());
+            bail!("{}: record \"{name}\" continues after another record (keep its rows together)", place());
         }
         self.present = Some(name.to_string());
         Ok(true)

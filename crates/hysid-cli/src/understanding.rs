@@ -89,7 +89,7 @@ pub fn print(lines: &[(String, String)]) {
 /// What an automatic model chooses among, in words.
 pub fn choice(options: &AutoOptions) -> String {
     match &options.only {
-        Some(request) => format!(": {} of {}", options.members, request.model().name()),
+        Some(request) => format!(": at most {} fits of {}", options.members, request.model().name()),
         None if options.members == 1 => ": one model, chosen by cross-validation".into(),
         None => {
             format!(": at most {} models, chosen by cross-validation", options.members)
@@ -130,7 +130,7 @@ fn time_steps(summary: &Summary, unit: &str) -> String {
     let shortest = steps().map(|step| step.0).fold(f64::INFINITY, f64::min);
     let longest = steps().map(|step| step.2).fold(0.0, f64::max);
     if longest == 0.0 {
-        "one sample a record".into()
+        "one sample per record".into()
     } else if longest - shortest <= 1e-3 * longest {
         format!("steps of {:.4}{unit}", Significant(longest))
     } else {

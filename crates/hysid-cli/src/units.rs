@@ -58,15 +58,17 @@ fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
         Conversion::Factor(factor) => {
             let factor_shown = Significant(factor);
             note(format_args!(
-                "converted: {found} from {} to {}, the unit of the model's {trained} (times {factor_shown:.6})",
+                "converted: {found} from {} to {}, the unit of the model's {trained} (factor \
+                 {factor_shown:.6})",
                 clipped(&here),
                 clipped(&there),
             ));
             Ok(Some(factor))
         }
         Conversion::Impossible => bail!(
-            "{file}: column \"{found}\" is in {}, the model's \"{trained}\" in {}: no factor between them is known \
-             (name another column, convert the numbers, or take them as they are with --same-units)",
+            "{file}: column \"{found}\" is in {}, the model's \"{trained}\" in {}: no conversion between \
+             them is known (name another column, convert the numbers, or use them unchanged with \
+             --same-units)",
             clipped(&here),
             clipped(&there),
         ),

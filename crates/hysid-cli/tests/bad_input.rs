@@ -66,7 +66,7 @@ fn headers() {
         (
             "output alone",
             b"t,y\n0,1\n".into(),
-            ": no column is left for the input beside output \"y\" (columns: t, y)",
+            ": no column is left for the input besides output \"y\" (columns: t, y)",
         ),
     ]);
 }
@@ -110,7 +110,8 @@ fn rows_and_cells() {
         (
             "thousands",
             german(";").replacen(";0,", ";1.000,", 1).into(),
-            ", line 2, column \"x\": \"1.000,000000\" has more than one decimal sign (leave out thousands separators)",
+            ", line 2, column \"x\": \"1.000,000000\" has more than one decimal sign (remove thousands \
+             separators)",
         ),
         (
             "n/a output",
@@ -161,7 +162,7 @@ fn rows_and_cells() {
         (
             "records torn apart",
             alternating.replacen("t,", "record,", 1).into(),
-            ", line 12, column \"record\": record \"a\" goes on after another began (keep its rows together)",
+            ", line 12, column \"record\": record \"a\" continues after another record (keep its rows together)",
         ),
         (
             "record without name",
@@ -184,7 +185,7 @@ fn values_that_nothing_can_be_learnt_from() {
         (
             "constant input",
             with_column(1, |_| "5".into()).into(),
-            ": column \"x\" is constant (5): nothing moves, so there is nothing to identify",
+            ": column \"x\" is constant (5): there is nothing to identify",
         ),
         (
             "constant output",

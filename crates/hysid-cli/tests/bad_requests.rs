@@ -144,7 +144,8 @@ fn columns() {
             (
                 "fit inputs.csv --rate central",
                 1,
-                "inputs.csv: there is no time column to take the rate from (name it with --time, or use --rate none)",
+                "inputs.csv: there is no time column to compute the rate from (name it with --time, or use \
+                 --rate none)",
             ),
             (
                 "fit good.csv other.csv",
@@ -209,7 +210,7 @@ fn command_lines() {
             (
                 "fit data.csv -o data.html",
                 2,
-                "data.html: name the model file with .json: its report gets the name with .html",
+                "data.html: use .json for the model file: the report gets the same name with .html",
             ),
             ("fit data.csv", 1, "data.csv: cannot be read: no such file or directory"),
             ("fit .", 1, ".: is a directory, not a file"),

@@ -118,8 +118,8 @@ fn a_second_fit_on_a_checkpoint_is_refused_at_once_until_the_first_is_dead() {
             (refused.status, refused.stderr.as_str()),
             (
                 Some(1),
-                "error: c.bin: another fit keeps its checkpoint in this file: wait for its end, or name another file \
-                 with --checkpoint\n"
+                "error: c.bin: another fit writes its checkpoint to this file: wait until it ends, or name \
+                 another file with --checkpoint\n"
             )
         );
     }
@@ -159,16 +159,16 @@ fn resuming_is_refused_with_other_options_or_data() {
         (
             format!("fit good.csv {resume} c.bin --rate savitzky-golay"),
             2,
-            "--rate is not what the checkpoint",
+            "--rate differs from that of the checkpoint",
         ),
         (format!("fit other.csv {resume} c.bin"), 1, "belongs to other data"),
-        (format!("fit good.csv {resume} text.bin"), 1, "text.bin: this is no checkpoint of hysid"),
+        (format!("fit good.csv {resume} text.bin"), 1, "text.bin: this is not a Hysid checkpoint"),
         (format!("fit good.csv {resume} none.bin"), 1, "none.bin: cannot be read"),
         ("fit good.csv -o m.json --checkpoint good.csv".into(), 2, "would be overwritten"),
         (
             "fit good.csv -o n.json --checkpoint d.bin".into(),
             2,
-            "auto has no checkpoints: only a single network has, such as that of --model xpnn+",
+            "auto has no checkpoints: only a single network has them, such as --model xpnn+",
         ),
         (
             "fit good.csv -o n.json --model xpnn --members 3 --checkpoint d.bin".into(),

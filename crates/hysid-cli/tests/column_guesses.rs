@@ -63,7 +63,7 @@ fn what_no_input_is_is_set_aside_and_told() {
         "ignored  note: text",
         "ignored  room: constant",
         "ignored  n: counts the rows",
-        "guessed  input and output, from names and values (--input and --output decide)",
+        "guessed  input and output, from names and values (change: --input, --output)",
     ];
     told(data.clone(), "", &lines);
     told(data.clone(), "--input x --input sample", &["input    sample: ", "ignored  room: constant"]);
@@ -129,8 +129,8 @@ fn a_force_is_not_taken_for_the_input_silently() {
     refused(
         data("force_kN,disp_mm"),
         "",
-        "error: data.csv: \"disp_mm\" is in the last column, but \"force_kN\" looks more like the output: decide with \
-         --output force_kN, or --output disp_mm",
+        "error: data.csv: \"disp_mm\" is in the last column, but \"force_kN\" looks more like the output: choose with \
+         --output force_kN or --output disp_mm",
     );
     told(data("force_kN,disp_mm"), "--output force_kN", &["input    disp_mm: ", "output   force_kN: "]);
     told(data("force_kN,disp_mm"), "--output disp_mm", &["input    force_kN: ", "output   disp_mm: "]);

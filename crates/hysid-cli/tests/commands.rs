@@ -309,7 +309,7 @@ fn the_demo_needs_nothing_and_can_be_typed_after() {
         assert!(ran.stdout.contains(column), "{}", ran.stdout);
     }
     let page = bench.text("hysid-demo/demo.html");
-    for words in ["<svg", "The ensemble", "Tried and left out: ", "90 % band"] {
+    for words in ["<svg", "The ensemble", "Candidates without weight: ", "90 % band"] {
         assert!(page.contains(words), "{words}");
     }
     assert!(bench.text("hysid-demo/demo-loops.svg").starts_with("<svg"));

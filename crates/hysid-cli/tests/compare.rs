@@ -49,7 +49,7 @@ fn the_table_fits_a_terminal() {
     let ran = bench.run("compare good.csv --models gpnn,bouc-wen,generalized-prandtl-ishlinskii --no-report");
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     assert!(ran.stdout.lines().all(|line| line.chars().count() <= 80), "{}", ran.stdout);
-    assert!(ran.stdout.contains("the training data: name others with --test"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("the training data (name test data with --test)"), "{}", ran.stdout);
     assert!(ran.stderr.contains("6/6"), "{}", ran.stderr);
     assert!(!bench.path("good-compared.html").exists());
 }
@@ -72,7 +72,7 @@ fn a_fit_that_was_stopped_is_marked() {
     let row = ran.stdout.lines().find(|line| line.starts_with("xpnn+")).unwrap();
     assert!(row.contains("* "), "{}", ran.stdout);
     for text in [ran.stdout, bench.text("good-compared.html")] {
-        assert!(text.contains("* stopped before its end"), "{text}");
+        assert!(text.contains("* stopped early"), "{text}");
     }
     let whole = bench.run("compare good.csv --models prandtl-ishlinskii --no-report");
     assert!(!whole.stdout.contains('*'), "{}", whole.stdout);

@@ -53,7 +53,7 @@ fn a_model_knows_the_records_that_it_was_trained_on() {
     bench.put("other.csv", with_cell(7, 2, "0.5"));
     succeeds(bench.run(&format!("fit n1.csv -o model.json {QUICK}")));
     let ran = succeeds(bench.run("evaluate model.json n1.csv"));
-    let told = "is equal to what the model was trained on: its error says nothing about unseen data";
+    let told = "is equal to what the model was trained on: its error does not estimate that on unseen data";
     assert!(ran.stderr.contains(told), "{}", ran.stderr);
     let ran = succeeds(bench.run("evaluate model.json other.csv"));
     assert!(!ran.stderr.contains("trained on"), "{}", ran.stderr);
@@ -99,7 +99,7 @@ fn a_saturated_sensor_is_told_before_the_fit() {
     };
     bench.put("data.csv", record(0.7));
     let ran = succeeds(bench.run(&format!("fit data.csv -o out.json {QUICK}")));
-    assert!(ran.stderr.contains("warning: the output stands at 0.7 N for "), "{}", ran.stderr);
+    assert!(ran.stderr.contains("warning: the output stays at 0.7 N for "), "{}", ran.stderr);
     bench.put("data.csv", record(9.0));
     let ran = succeeds(bench.run(&format!("fit data.csv -o out.json {QUICK}")));
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
@@ -111,10 +111,10 @@ fn more_parameters_than_rows_are_told() {
     bench.put("data.csv", csv("t,x,y", ",", "\n", &rows()[..11]));
     let ran =
         succeeds(bench.run("fit data.csv -o out.json --no-report --model preisach-nn --starts 1 --epochs 2"));
-    assert!(ran.stderr.contains(" parameters are found from 11 rows: "), "{}", ran.stderr);
+    assert!(ran.stderr.contains(" parameters are fitted to 11 rows: "), "{}", ran.stderr);
     let ran =
         succeeds(bench.run("fit data.csv -o out.json --no-report --model preisach --operators 10 --json"));
     let json: Value = serde_json::from_str(&ran.stdout).unwrap();
     let note = json["notes"][0].as_str().unwrap_or_default();
-    assert!(note.contains(" parameters are found from 11 rows: "), "{json}");
+    assert!(note.contains(" parameters are fitted to 11 rows: "), "{json}");
 }

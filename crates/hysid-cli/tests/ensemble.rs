@@ -43,8 +43,8 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     for words in [
         "The ensemble",
         "ns per sample",
-        "all together",
-        "Held out in turn: 5",
+        "whole ensemble",
+        "Folds: 5 parts",
         "The prediction band",
         "90 % band",
     ] {
@@ -55,8 +55,8 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     let told = bench.run(&format!("fit good.csv -o e.json {QUICK}"));
     assert_narrow(&told.stdout);
     for words in [
-        "\nchosen the weighted median of 3 networks",
-        "\nwhy    cross-validated error, geometric mean of 5 folds",
+        "\nchosen ensemble of 3 networks",
+        "\nwhy    cross-validation error (geometric mean over 5 folds",
         "auto with ",
     ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);
@@ -95,8 +95,8 @@ fn a_band_that_is_not_there_is_refused() {
     let bench = Workbench::with_model();
     bench.put("taken.csv", csv("t,x,y_low", ",", "\n", &rows()));
     for (arguments, status, words) in [
-        ("simulate model.json good.csv --band 0.9", 1, "model.json: this model has no band"),
-        ("evaluate model.json good.csv --band 0.9", 1, "model.json: this model has no band"),
+        ("simulate model.json good.csv --band 0.9", 1, "model.json: this model has no prediction band"),
+        ("evaluate model.json good.csv --band 0.9", 1, "model.json: this model has no prediction band"),
         ("simulate model.json good.csv --band 0.3", 2, "a probability from 0.5 to 0.99 is needed"),
         ("evaluate model.json good.csv --band much", 2, "a probability from 0.5 to 0.99 is needed"),
     ] {
@@ -144,7 +144,7 @@ fn auto_keeps_its_time_limit_and_says_where_it_is() {
     let ran = bench.run("fit good.csv -o a.json --no-report --threads 1 --time-limit 2.5 --json");
     assert!(began.elapsed() < Duration::from_secs(12), "{:?}", began.elapsed());
     assert_eq!(json(&ran)["termination"], "stopped");
-    assert!(ran.stderr.contains(" % at "), "{}", ran.stderr);
+    assert!(ran.stderr.contains(" % fitting "), "{}", ran.stderr);
     assert_eq!(bench.run("evaluate a.json good.csv").status, Some(0));
 }
 
@@ -172,7 +172,7 @@ fn folds_are_told_one_by_one_and_together() {
     let heading: Vec<&str> = lines[0].split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect();
     assert_eq!(heading, ["held out", "train %", "unseen %", "train RMSE", "unseen RMSE"]);
     assert!(lines[5].starts_with("35 to 65 %, from the rest"), "{}", ran.stdout);
-    assert!(lines[6].starts_with("all together") && lines[7].starts_with("geometric mean"), "{}", ran.stdout);
+    assert!(lines[6].starts_with("all folds") && lines[7].starts_with("geometric mean"), "{}", ran.stdout);
     assert!(ran.stdout.contains("prandtl-ishlinskii: 5 folds in "), "{}", ran.stdout);
     assert!(ran.stderr.contains("fold 5 of 5: "), "{}", ran.stderr);
 
@@ -204,11 +204,7 @@ fn records_are_held_out_in_turn() {
     );
     let few = bench.run("validate few.csv --model pnn");
     assert_eq!(few.status, Some(1));
-    assert!(
-        few.last_line().starts_with("error: few.csv: the data are too few to hold any out"),
-        "{}",
-        few.stderr
-    );
+    assert!(few.last_line().starts_with("error: few.csv: too few data to hold any out"), "{}", few.stderr);
     assert_eq!(bench.run("validate four.csv --folds 1").status, Some(2));
 }
 
@@ -236,6 +232,6 @@ fn ctrl_c_keeps_the_folds_that_are_done() {
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let last = stderr.last().unwrap();
     let ran = Ran::from(child.wait_with_output().unwrap());
-    assert_eq!((ran.status, last.as_str()), (Some(130), "interrupted: 1 of 5 folds are done"));
+    assert_eq!((ran.status, last.as_str()), (Some(130), "interrupted: 1 of 5 folds are finished"));
     assert!(ran.stdout.contains("50 to 75 %") && !ran.stdout.contains("60 to 90 %"), "{}", ran.stdout);
 }

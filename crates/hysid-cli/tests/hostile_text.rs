@@ -108,7 +108,7 @@ fn errors_are_one_short_line_whatever_the_file_or_the_arguments_hold() {
         (format!("t,{0},{0}\n0,1,2\n", quoted("a\u{7}")), r#"there are two columns named "a\x07""#.into()),
         (
             format!("record,x,y\n{0},1,2\nb,1,2\n{0},1,2\n", quoted("a\r\u{85}b")),
-            r#"record "a\r\u{85}b" goes on"#.into(),
+            r#"record "a\r\u{85}b" continues"#.into(),
         ),
     ];
     for (table, expected) in tables {

@@ -177,7 +177,7 @@ fn defects_far_behind_name_their_line_and_leave_no_file() {
         (with(9000, &cell(3, "1e200")), "line 9000, column \"x\": 1e200 is too large"),
         (
             with(9500, &cell(1, "r1")),
-            "line 9500, column \"record\": record \"r1\" goes on after another began",
+            "line 9500, column \"record\": record \"r1\" continues after another record",
         ),
         (with(9500, &cell(1, " ")), "line 9500, column \"record\": the cell is empty"),
         (with(9500, &cell(3, "")), "line 9500, column \"x\": the cell is empty"),

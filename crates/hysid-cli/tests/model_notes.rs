@@ -70,8 +70,8 @@ fn an_input_far_from_zero_is_measured_from_elsewhere_and_the_report_says_so() {
     bench.put("far.csv", one_loop().lines().map(shifted).collect::<Vec<_>>().join("\n"));
     let ran = bench.run("fit far.csv -o m.json --model prandtl-ishlinskii");
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
-    assert!(bench.text("m.html").contains("H_A_m is measured from"));
+    assert!(bench.text("m.html").contains("Offset of H_A_m"));
     let ran = bench.run("fit far.csv -o j.json --model jiles-atherton --time-limit 1");
-    let caution = "H_A_m goes from 199 to 201, but the law takes 0 as the demagnetised state";
+    let caution = "H_A_m ranges from 199 to 201, but for the law 0 is the demagnetised state";
     assert!(ran.stderr.contains(caution), "{}", ran.stderr);
 }

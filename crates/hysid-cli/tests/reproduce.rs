@@ -28,7 +28,7 @@ fn an_example_says_what_stands_in_for_the_measurements_and_what_was_reached() {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     let text = bench.text("out/example7.md");
     for word in [
-        "Synthetic specimen magnetostrictive-actuator in the place of the paper's measured data (example 7)",
+        "Synthetic specimen magnetostrictive-actuator in place of the paper's measured data (example 7)",
         "seed 4",
         "A quick run",
         "| XPNN, unseen |",
@@ -55,7 +55,7 @@ fn finished_experiments_are_taken_up_if_they_were_made_in_the_same_way() {
     assert_eq!(bench.run("reproduce nds -o out").status, Some(0));
     let (page, stored) = (bench.text("out/nds.html"), bench.text("out/nds.json"));
     let again = bench.run("reproduce nds -o out");
-    assert!(again.stderr.contains("nds: finished before, taken from out/nds.json"), "{}", again.stderr);
+    assert!(again.stderr.contains("nds: already finished, read from out/nds.json"), "{}", again.stderr);
     assert_eq!((bench.text("out/nds.html"), bench.text("out/nds.json")), (page, stored.clone()));
     // Another seed, an older version, or a broken file: it is run again.
     let older = stored.replace(env!("CARGO_PKG_VERSION"), "0.0.0");
@@ -134,7 +134,7 @@ fn a_stored_experiment_that_was_changed_injects_nothing() {
     for pointer in [note.clone(), format!("{chart}/title"), format!("{chart}/description")] {
         bench.put("out/nds.json", change(&pointer, script.into()));
         let ran = bench.run("reproduce nds -o out --force");
-        assert!(ran.stderr.contains("finished before"), "{pointer}: {}", ran.stderr);
+        assert!(ran.stderr.contains("already finished"), "{pointer}: {}", ran.stderr);
         let page = bench.text("out/nds.html");
         assert!(
             page.contains("&lt;script&gt;alert(1)&lt;/script&gt;") && !page.contains("<script"),

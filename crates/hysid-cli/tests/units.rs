@@ -40,9 +40,9 @@ fn known_units_are_converted_to_the_model_s() {
     assert!((rmse(&found) / rmse(&own) - 1.0).abs() < 1e-6, "{found} {own}");
     assert_eq!(found["output"], "force_kN");
     for told in [
-        "converted: clock_ms from ms to s, the unit of the model's t_s (times 0.001)",
-        "converted: displacement_m from m to mm, the unit of the model's disp_mm (times 1000)",
-        "converted: force_N from N to kN, the unit of the model's force_kN (times 0.001)",
+        "converted: clock_ms from ms to s, the unit of the model's t_s (factor 0.001)",
+        "converted: displacement_m from m to mm, the unit of the model's disp_mm (factor 1000)",
+        "converted: force_N from N to kN, the unit of the model's force_kN (factor 0.001)",
     ] {
         assert!(ran.stderr.contains(told), "{}", ran.stderr);
     }
@@ -62,8 +62,9 @@ fn other_units_are_refused_unless_they_are_said_to_be_the_same() {
     bench.put("other.csv", csv("t_s,x [ticks],force_kN", ",", "\n", &rows()));
     let asked = ["evaluate", "--input", "x [ticks]", "model.json", "other.csv", "--json"];
     let ran: Ran = bench.command("").args(asked).output().unwrap().into();
-    let told = "error: other.csv: column \"x [ticks]\" is in ticks, the model's \"disp_mm\" in mm: no factor between them \
-                is known (name another column, convert the numbers, or take them as they are with --same-units)";
+    let told = "error: other.csv: column \"x [ticks]\" is in ticks, the model's \"disp_mm\" in mm: no \
+                conversion between them is known (name another column, convert the numbers, or use them \
+                unchanged with --same-units)";
     assert_eq!((ran.status, ran.last_line()), (Some(1), told));
     let ran: Ran = bench.command("--same-units").args(asked).output().unwrap().into();
     assert_ne!(ran.status, Some(0), "an option stands behind its command");
@@ -95,7 +96,7 @@ fn separators_of_thousands_are_no_decimal_points() {
         assert_eq!(ran.status, Some(1), "{}", ran.stderr);
         let told = ran.last_line();
         assert!(
-            told.starts_with("error: german.csv, line ") && told.contains("separator of thousands"),
+            told.starts_with("error: german.csv, line ") && told.contains("thousands separator"),
             "{told}"
         );
     }

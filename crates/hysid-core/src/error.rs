@@ -56,16 +56,16 @@ pub enum Error {
         found: usize,
     },
     /// A model that cannot be fitted without the rate of its input.
-    #[error("{0} needs the rate of the input: there are no time stamps to take it from")]
+    #[error("{0} needs the rate of the input: there are no time stamps to compute it from")]
     RateNeeded(&'static str),
     /// A sample that a model cannot take.
     #[error(transparent)]
     Sample(#[from] SampleError),
     /// Options of `auto` that leave no model to try.
-    #[error("no candidate is left by these decisions: take one of them back")]
+    #[error("these options leave no candidate: remove one of them")]
     NoCandidate,
     /// Data that cannot be divided into two folds.
-    #[error("the data are too few to hold any out: at least two records, or one of {rows} rows")]
+    #[error("too few data to hold any out: at least two records, or one of {rows} rows, are needed")]
     TooFewForFolds {
         /// Rows that one record needs.
         rows: usize,
@@ -75,7 +75,8 @@ pub enum Error {
     NoRecords,
     /// A model without a band of errors.
     #[error(
-        "this model of {0} has no band: a fit of `auto` calibrates one where the data are enough to hold some out"
+        "this model of {0} has no prediction band: a fit of `auto` calibrates one, if there are enough data \
+         to hold some out"
     )]
     NoBand(&'static str),
     /// A probability that no band is calibrated for.
@@ -194,13 +195,13 @@ pub enum DataProblem {
     #[error("the rate here is {0:.2e}: the time step is too small (is the time column right?)")]
     RateTooLarge(f64),
     /// A rate needs time stamps, and there are none.
-    #[error("there is no time column to take the rate from")]
+    #[error("there is no time column to compute the rate from")]
     NoTime,
     /// The model needs time and there is none.
     #[error("there is no time column, and the model needs one")]
     NoTimeForModel,
     /// The given rate is missing.
-    #[error("there is no given rate (the model was trained with one)")]
+    #[error("the measured rate is missing (the model was trained with one)")]
     NoGivenRate,
     /// The number of inputs is not what it must be.
     #[error("has {found} inputs where {expected} are expected")]
@@ -211,7 +212,7 @@ pub enum DataProblem {
         found: usize,
     },
     /// The input has one value throughout.
-    #[error("is constant ({}): nothing moves, so there is nothing to identify", Significant(*.0))]
+    #[error("is constant ({}): there is nothing to identify", Significant(*.0))]
     ConstantInput(f64),
     /// The output has one value throughout.
     #[error("is constant ({}): there is nothing to identify", Significant(*.0))]

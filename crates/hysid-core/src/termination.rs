@@ -33,7 +33,7 @@ impl std::fmt::Display for Termination {
             Self::Converged => "converged",
             Self::GradientVanished => "converged (gradient vanished)",
             Self::NoFurtherImprovement => "converged (no step improves further)",
-            Self::Stalled => "no longer improving noticeably",
+            Self::Stalled => "no noticeable improvement any more",
             Self::EpochsUsed => "all epochs used",
             Self::Stopped => "stopped",
         })

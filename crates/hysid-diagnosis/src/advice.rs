@@ -70,14 +70,17 @@ pub(crate) fn advise(findings: &[Finding], delay: Option<&Delay>) -> Advice {
     let found = Found::of(findings);
     let (model, reason) = simplest(&found);
     let mut statement = vec![match model {
-        Some(model) => format!("the simplest model that holds what was found is {}: {reason}", model.name()),
+        Some(model) => {
+            format!("the simplest model that can represent these properties is {}: {reason}", model.name())
+        }
         None => reason.to_string(),
     }];
     statement.extend(law(&found).map(String::from));
     if let Some(delay) = delay {
         let shift = Significant(delay.time.abs());
         statement.push(format!(
-            "the delay must be taken out first (shift the output by {shift:.3} in time); with it the speed matters, and xpnn is needed"
+            "remove the delay first (shift the output by {shift:.3} in time); otherwise the output depends \
+             on the speed, and xpnn is needed"
         ));
     }
     if model.is_some() {
@@ -113,8 +116,8 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
         );
     }
     if found.rate_dependence == Yes {
-        let reason = "the speed matters, so its neurons must see the rate; where memory fades with time (creep, relaxation) xpnn+ holds \
-                      more";
+        let reason = "the output depends on the speed, so the rate must be an input; if the memory also \
+                      fades with time (creep, relaxation), use xpnn+";
         return (network(Family::Xpnn), reason);
     }
     if found.deterioration == Yes {
@@ -127,28 +130,30 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
         return match found.odd_symmetry {
             Yes => (
                 rival(ClassicalModel::BoucWen),
-                "closed excursions leave a trace, without wear; xpnn holds it as well",
+                "closed excursions leave a trace, without deterioration; xpnn can represent this too",
             ),
             _ => (
                 network(Family::Xpnn),
-                "closed excursions leave a trace, without wear, and the loops are not known to be symmetric",
+                "closed excursions leave a trace, without deterioration, and the loops are not known to be \
+                 symmetric",
             ),
         };
     }
     if found.congruency == No {
         return (
             network(Family::PreisachNn),
-            "the shape of a minor loop depends on where it lies, which sums of plays, of stops or of relays cannot hold",
+            "minor loops between the same inputs differ in shape, which a weighted sum of plays, stops or \
+             relays cannot represent",
         );
     }
     if found.masing == No || found.odd_symmetry == No {
-        let reason = "branches are not all one curve, and nothing says that minor loops between the same inputs differ; \
-                      generalized-prandtl-ishlinskii is smaller where its envelopes fit";
+        let reason = "branches differ in shape, and minor loops between the same inputs were not found to \
+                      differ; generalized-prandtl-ishlinskii has fewer parameters, if its envelopes fit";
         return (rival(ClassicalModel::Preisach), reason);
     }
     (
         rival(ClassicalModel::PrandtlIshlinskii),
-        "all branches are one curve, magnified, so a weighted sum of plays is enough (as a network: pnn)",
+        "all branches are one curve, scaled, so a weighted sum of plays is enough (as a network: pnn)",
     )
 }
 
@@ -175,31 +180,31 @@ fn assumptions(found: &Found) -> Vec<String> {
     let mut assumed = Vec::new();
     let mut assume = |verdict: Verdict, what: &str| {
         if verdict == Verdict::NotTestable {
-            assumed.push(format!("not testable here: {what}"));
+            assumed.push(format!("not testable with these data: {what}"));
         }
     };
-    assume(found.static_hysteresis, "whether loops remain at rest; taken as hysteresis");
-    assume(found.rate_dependence, "rate dependence; taken as none (if the speed matters: xpnn)");
+    assume(found.static_hysteresis, "static hysteresis (assumed: yes)");
+    assume(found.rate_dependence, "rate dependence (assumed: none; if the speed matters: xpnn)");
     if found.rate_dependence == Verdict::Yes {
         return assumed;
     }
-    assume(found.deterioration, "deterioration; taken as none");
+    assume(found.deterioration, "deterioration (assumed: none)");
     if found.deterioration != Verdict::Yes {
-        assume(found.wiping_out, "wiping-out; taken as holding");
+        assume(found.wiping_out, "wiping-out (assumed: yes)");
         if found.wiping_out != Verdict::No {
-            assume(found.congruency, "congruency; taken as holding (if it does not: preisach-nn)");
+            assume(found.congruency, "congruency (assumed: yes; if not: preisach-nn)");
         }
         if found.wiping_out != Verdict::No
             && found.congruency != Verdict::No
             && found.odd_symmetry != Verdict::No
         {
-            assume(found.masing, "Masing's rule; taken as holding (if it does not: preisach)");
+            assume(found.masing, "Masing's rule (assumed: yes; if not: preisach)");
         }
     }
     let relies_on_symmetry = found.deterioration == Verdict::Yes
         || found.wiping_out != Verdict::No && found.congruency != Verdict::No && found.masing != Verdict::No;
     if relies_on_symmetry {
-        assume(found.odd_symmetry, "symmetry; taken as symmetric");
+        assume(found.odd_symmetry, "symmetry (assumed: yes)");
     }
     assumed
 }
@@ -233,7 +238,7 @@ mod tests {
 
     /// How many statements are assumptions.
     fn assumed(advice: &Advice) -> usize {
-        advice.statement.iter().filter(|text| text.starts_with("not testable here: ")).count()
+        advice.statement.iter().filter(|text| text.starts_with("not testable with these data: ")).count()
     }
 
     #[test]
@@ -271,7 +276,7 @@ mod tests {
         let advice = advise(&findings([NotTestable; 7]), None);
         assert_eq!(name(&advice), Some("prandtl-ishlinskii"));
         assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
-        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable here: ")));
+        assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable with these data: ")));
         assert_eq!(advice.needs_rate, NotTestable);
         // What would not change the model is not mentioned.
         let advice = advise(

@@ -51,7 +51,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
         Verdict::No => {
             format!("loops between the same inputs differ in shape by {percent:.0} % of their height")
         }
-        Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
+        Verdict::NotTestable => "the noise is too large to detect differences that matter".into(),
     };
     let mut finding = survey.finding(Property::Congruency, &judgement, &comparisons, statement, EXPERIMENT);
     if let Some(picture) = &mut finding.picture {

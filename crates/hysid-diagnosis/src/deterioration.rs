@@ -63,7 +63,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         );
         (Verdict::Yes, text)
     } else if limit > 5.0 * EFFECT {
-        (Verdict::NotTestable, "the noise hides losses of the size that matters".into())
+        (Verdict::NotTestable, "the noise is too large to detect losses that matter".into())
     } else {
         (
             Verdict::No,

@@ -31,7 +31,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let statement = match judgement.verdict {
         Verdict::Yes => format!("repeated loops close, within {percent:.2} % of the output's range"),
         Verdict::No => format!("a repeated loop stays open by {percent:.1} % of the output's range"),
-        Verdict::NotTestable => "the noise hides gaps of the size that matters".into(),
+        Verdict::NotTestable => "the noise is too large to detect gaps that matter".into(),
     };
     survey.finding(Property::LoopClosure, &judgement, &comparisons, statement, EXPERIMENT)
 }

@@ -22,8 +22,7 @@ const MOST: usize = 12;
 /// Places along a branch.
 const PLACES: usize = 80;
 
-const EXPERIMENT: &str =
-    "run a few equal loops over the whole range of the input, as far to one side as to the other";
+const EXPERIMENT: &str = "run a few equal loops over the whole range of the input, equally far to both sides";
 
 /// Tests for odd symmetry.
 pub(crate) fn test(survey: &BranchSet) -> Finding {
@@ -35,19 +34,25 @@ pub(crate) fn test(survey: &BranchSet) -> Finding {
     let comparisons: Vec<Comparison> =
         pairs.into_iter().step_by(step).filter_map(|pair| compare(survey, centre, half, pair)).collect();
     let Some(judgement) = judge(&comparisons, EFFECT) else {
-        let statement = "no rising and falling branch that follow each other over the whole range";
+        let statement = "no successive rising and falling branches over the whole range";
         return Finding::not_testable(Property::OddSymmetry, statement, EXPERIMENT);
     };
     let percent = 100.0 * judgement.index;
     let about = if centre == 0.0 { "x = 0" } else { "the middle of the input's range" };
     let statement = match judgement.verdict {
         Verdict::Yes => {
-            format!("loops turned about {about} are themselves, within {percent:.2} % of the output's range")
+            format!(
+                "loops rotated by 180° about {about} coincide with themselves within {percent:.2} % of \
+                     the output's range"
+            )
         }
         Verdict::No => {
-            format!("a loop turned about {about} is off itself by {percent:.1} % of the output's range")
+            format!(
+                "a loop rotated by 180° about {about} deviates from itself by {percent:.1} % of the \
+                     output's range"
+            )
         }
-        Verdict::NotTestable => "the noise hides differences of the size that matters".into(),
+        Verdict::NotTestable => "the noise is too large to detect differences that matter".into(),
     };
     survey.finding(Property::OddSymmetry, &judgement, &comparisons, statement, EXPERIMENT)
 }
@@ -105,7 +110,7 @@ fn compare(
                 points: rows.iter().map(|row| (row.0, row.1)).collect(),
             },
             super::PictureCurve {
-                label: "opposite branch, turned".into(),
+                label: "opposite branch, rotated".into(),
                 points: rows.iter().map(|row| (row.0, mean - row.2)).collect(),
             },
         ],

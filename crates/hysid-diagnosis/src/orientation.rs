@@ -35,12 +35,12 @@ pub(crate) fn test(survey: &BranchSet) -> Finding {
     let (verdict, statement) = if index > CLEAR {
         (
             Verdict::Yes,
-            "loops are passed clockwise: the output dissipates, as a force does over a displacement",
+            "loops are traversed clockwise: energy is dissipated, as by a force over a displacement",
         )
     } else if index < -CLEAR {
-        (Verdict::No, "loops are passed counter-clockwise: the output lags behind the input")
+        (Verdict::No, "loops are traversed counter-clockwise: the output lags behind the input")
     } else {
-        (Verdict::NotTestable, "loops cross themselves (butterfly), so that they have no one orientation")
+        (Verdict::NotTestable, "loops cross themselves (butterfly), so they have no single orientation")
     };
     Finding {
         property: Property::Orientation,

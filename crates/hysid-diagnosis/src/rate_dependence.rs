@@ -75,7 +75,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     let courses = courses(survey);
     let comparisons: Vec<Comparison> = courses.iter().filter_map(|speeds| compare(survey, speeds)).collect();
     let Some(mut judgement) = judge(&comparisons, EFFECT) else {
-        let statement = "no way of the input is gone at two speeds";
+        let statement = "no input path was run at two speeds";
         return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
     };
     let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);
@@ -103,7 +103,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
         (Verdict::Yes, _) => format!(
             "at {ratio:.1} times the speed the output is the same, within {percent:.2} % of its range"
         ),
-        (Verdict::NotTestable, _) => "the noise hides differences of the size that matters".into(),
+        (Verdict::NotTestable, _) => "the noise is too large to detect differences that matter".into(),
     };
     judgement.verdict = match (agree, explained) {
         (Verdict::No, Some(_)) => Verdict::No,

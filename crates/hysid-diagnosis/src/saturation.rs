@@ -74,7 +74,8 @@ fn end(survey: &BranchSet, rising: bool) -> Option<Finding> {
         (
             Verdict::NotTestable,
             format!(
-                "at the {side} end the slope is {share:.0} % of the largest, too uncertain for the noise"
+                "at the {side} end the slope is {share:.0} % of the largest, too uncertain because of the \
+                 noise"
             ),
         )
     };

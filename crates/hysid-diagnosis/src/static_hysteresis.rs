@@ -67,30 +67,51 @@ pub(crate) fn test(survey: &BranchSet, longest_lag: impl FnOnce() -> Option<f64>
     let threshold = FULL + noise::critical_value(1) * noise;
     let percent = 100.0 * index;
     let (verdict, statement) = if area < threshold && threshold > 2.0 * FULL && area > FULL {
-        (Verdict::NotTestable, "the noise hides loops of the size that matters".to_string())
+        (Verdict::NotTestable, "the noise is too large to detect loops that matter".to_string())
     } else if area < threshold {
         (
             Verdict::No,
-            format!("the loops fill {percent:.1} % of their box: the output follows the input alone"),
+            format!(
+                "the loops fill {percent:.1} % of their bounding box: the output is a function of the \
+                     input"
+            ),
         )
     } else if next.is_some() && index < REMAINS * area {
         (Verdict::No, "the loops vanish as the speed goes to 0".to_string())
     } else if next.is_some() {
-        (Verdict::Yes, format!("carried on to speed 0, loops still fill {percent:.0} % of their box"))
+        (
+            Verdict::Yes,
+            format!(
+                "extrapolated to speed 0, loops still fill {percent:.0} % of their bounding \
+                                box"
+            ),
+        )
     } else if let Some(speed) = slowest
         && longest_lag().is_some_and(|lag| area * shown.swing > BEYOND_A_LAG * 2.0 * lag * speed)
     {
         (
             Verdict::Yes,
-            format!("loops fill {percent:.0} % of their box, more than a lag would that fits their tips"),
+            format!(
+                "loops fill {percent:.0} % of their bounding box, more than a lag that fits their tips \
+                     explains"
+            ),
         )
     } else if slowest.is_some() {
         (
             Verdict::NotTestable,
-            format!("loops fill {percent:.0} % of their box, at one speed: a lag would look alike"),
+            format!(
+                "loops fill {percent:.0} % of their bounding box, at one speed: a lag would look the \
+                     same"
+            ),
         )
     } else {
-        (Verdict::Yes, format!("loops fill {percent:.0} % of their box (without time stamps, taken as slow)"))
+        (
+            Verdict::Yes,
+            format!(
+                "loops fill {percent:.0} % of their bounding box (no time stamps: assumed \
+                                slow)"
+            ),
+        )
     };
     Finding {
         property: Property::StaticHysteresis,

@@ -13,8 +13,9 @@ pub(super) const EFFECT: f64 = 0.01;
 /// Excursions shorter than this share of the range of the input say nothing.
 const SHORTEST: f64 = 0.05;
 
-const EXPERIMENT: &str = "swing the input back by a third and return past the turning point, on the way up and on the way \
-     down, then go on to the end; two such excursions at least";
+const EXPERIMENT: &str = "on the way up and on the way down, reverse the input by a third of the range, \
+                          return past the turning point and continue to the end; at least two such \
+                          excursions";
 
 /// Tests for return-point memory.
 pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
@@ -39,7 +40,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let statement = match judgement.verdict {
         Verdict::Yes => format!("excursions close: the largest gap is {percent:.2} % of the output's range"),
         Verdict::No => format!("an excursion leaves a gap of {percent:.1} % of the output's range"),
-        Verdict::NotTestable => "the noise hides gaps of the size that matters".into(),
+        Verdict::NotTestable => "the noise is too large to detect gaps that matter".into(),
     };
     survey.finding(Property::WipingOut, &judgement, &comparisons, statement, EXPERIMENT)
 }

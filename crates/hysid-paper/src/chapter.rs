@@ -56,13 +56,13 @@ pub struct Target {
 
 /// Begins the heading of every table whose figures are of a specimen.
 pub fn stands_in(specimen: &str, of: &str) -> String {
-    format!("Synthetic specimen {specimen} in the place of the paper's measured data ({of})")
+    format!("Synthetic specimen {specimen} in place of the paper's measured data ({of})")
 }
 
 /// The targets of all these chapters as a table; `None` if there are none.
 pub fn targets(chapters: &[Chapter]) -> Option<Table> {
     let mut table = Table::new(["experiment", "figure", "target", "measured", "verdict"])
-        .headed("What was to be reached. Synthetic specimens stand in for the paper's measured data");
+        .headed("Targets and results. Synthetic specimens replace the paper's measured data");
     for chapter in chapters {
         for target in &chapter.targets {
             table.push([

@@ -60,7 +60,9 @@ pub fn words(settings: Settings) -> Text {
         "XPNN: {} stops and {} tanh neurons, inputs x and, where records differ in rate or where it lowers the error on data held out of training, x'; Levenberg-Marquardt from {starts} random starts, {epochs} iterations each, ridge 1e-8 and decay 1e-9 because there is no noise. The paper trains by its hybrid of genetic algorithm and sub-gradient method; the experiment ",
         ARCHITECTURE.stops, ARCHITECTURE.hidden
     );
-    let rest = " compares the two. Nothing unseen was trained on, but it was not blind: architecture, penalties, some specimens and their paths were settled while errors on unseen data were looked at.";
+    let rest = " compares the two. No unseen data were trained on, but the test was not blind: \
+                architecture, penalties, some specimens and their paths were chosen with knowledge of the \
+                errors on unseen data.";
     Text::from(words).with(Piece::Code("training".into())).with(Piece::Plain(rest.into()))
 }
 

@@ -24,9 +24,13 @@ const ENDLESS: f64 = 1e7;
 /// The paper's six, and what each shows.
 const DEMONSTRATIONS: [(Neuron, &str); 6] = [
     (neuron(1.42, 0.0, ENDLESS), "a static loop, the same at every rate"),
-    (neuron(1.42, -1.1, ENDLESS), "a negative weight of the rate narrows the loop and then turns it round"),
+    (
+        neuron(1.42, -1.1, ENDLESS),
+        "a negative weight of the rate narrows the loop and then reverses its \
+                                   orientation",
+    ),
     (neuron(1.42, 0.0, 25.0), "the static loop shrinks as the stop slides, in cycles and not in time"),
-    (neuron(1.42, 2.0, 25.0), "wider at speed, and dead sooner: a faster cycle slides further"),
+    (neuron(1.42, 2.0, 25.0), "wider at speed, with a shorter life: a faster cycle slides further"),
     (neuron(1.0, 0.0, ENDLESS), "the stop never slides: no loop at all"),
     (neuron(1.0, 2.0, ENDLESS), "no loop when slow, a loop at speed: K is zero and P is not"),
 ];
@@ -109,17 +113,30 @@ pub fn chapter() -> Chapter {
     Chapter {
         name: "nds".into(),
         title: "One neuron, six demonstrations".into(),
-        verdict: "One neuron makes static, rate-dependent and deteriorating loops by three numbers alone: a static loop needs |w_x| above 1 at unit input, rate dependence needs w_x' other than 0, and a finite β wears the loop out with every slide.".into(),
+        verdict: "One neuron makes static, rate-dependent and deteriorating loops by three numbers alone: a \
+                  static loop needs |w_x| above 1 at unit input, rate dependence needs w_x' other than 0, \
+                  and with a finite β every slide deteriorates the loop."
+            .into(),
         parts: vec![
             Part::Table(table()),
             Part::note(format!(
-                "The neuron is the stop of w_x x + w_x' x' with threshold 1 and capacity β. K is the width of the loop at rate 0, half-way up; P is what the width at a rate has more than that, and less if negative: both are measured on the first full cycle of a simulation from the virgin state under sin 2πft. The paper names K and P without defining them; these definitions are ours. Rates are designed. The paper lists β 25 for the third demonstration and discusses it as 50; the last row has that. A dead neuron gives 0 from then on, which has no width (–); life is in cycles at {} Hz.",
+                "The neuron is the stop of w_x x + w_x' x' with threshold 1 and capacity β. K is the width \
+                 of the loop at rate 0, half-way up; P is the width at a rate minus K: both are measured on \
+                 the first full cycle of a simulation from the virgin state under sin 2πft. The paper names \
+                 K and P without defining them; these definitions are ours. Rates are designed. The paper \
+                 lists β 25 for the third demonstration and discusses it as 50; the last row has that. The \
+                 output of a dead neuron is 0, so it has no width (–); life is in cycles at {} Hz.",
                 RATES[0]
             )),
             Part::heading("The input, and the six loops"),
             Part::chart(input_chart()),
-            Part::Charts(DEMONSTRATIONS.iter().enumerate().map(|(index, (neuron, _))| loops(index, *neuron)).collect()),
-            Part::note("In the figures the three rates follow each other without a rest, so deterioration goes on from one to the next."),
+            Part::Charts(
+                DEMONSTRATIONS.iter().enumerate().map(|(index, (neuron, _))| loops(index, *neuron)).collect(),
+            ),
+            Part::note(
+                "In the figures the three rates follow each other without a reset, so deterioration \
+                        continues from one to the next.",
+            ),
         ],
         targets: Vec::new(),
         files: Vec::new(),
@@ -134,7 +151,7 @@ fn table() -> Table {
         let more = |rate: f64| neuron.width(rate).zip(zero).map(|(width, zero)| tidy(width - zero));
         let mut cells = vec![format!("{name}: {}", neuron.name()).into(), zero.map(tidy).into()];
         cells.extend(RATES.map(|rate| more(rate).into()));
-        cells.push(neuron.life(RATES[0]).map_or("no end".into(), Cell::from));
+        cells.push(neuron.life(RATES[0]).map_or("unlimited".into(), Cell::from));
         cells.push(shows.into());
         cells
     };

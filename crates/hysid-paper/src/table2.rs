@@ -53,7 +53,7 @@ pub fn chapter(settings: Settings, observer: &dyn Observer) -> Result<Chapter> {
                 fitting::ARCHITECTURE.stops,
                 fitting::ARCHITECTURE.hidden
             )),
-            Part::heading("Where our verdict differs from the paper's"),
+            Part::heading("Where our verdict differs from the paper"),
             Part::paragraph(match differences.is_empty() {
                 true => "Nowhere.".into(),
                 false => differences.join(" "),

@@ -61,7 +61,7 @@ impl FitSpec {
         self.chosen.model().name()
     }
 
-    /// Options that the model has no use for, and data that it is not made for, in words.
+    /// Options that the model ignores, and data that do not suit it, in words.
     fn warnings(&self, data: &Dataset) -> Vec<String> {
         let ignored = self.chosen.ignored().into_iter();
         let mut warnings: Vec<String> =
@@ -89,7 +89,7 @@ pub fn option_table() -> Vec<(&'static str, &'static str, &'static str)> {
     OPTIONS.iter().map(|option| (option.name, option.meaning, option.default)).collect()
 }
 
-/// What a progress callback is told: share of the work done, error on the training rows in percent of std,
+/// Arguments of a progress callback: share of the work done, error on the training rows in percent of std,
 /// start, epoch, what is being done, the model that is being fitted, and whether that fit is one of many.
 type Report = (f64, f64, usize, usize, String, &'static str, bool);
 
@@ -215,7 +215,9 @@ fn attended<T: Send + 'static>(
             Ok(done) => break done,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("the fit broke down: this is a fault of hysid"));
+                return Err(PyRuntimeError::new_err(
+                    "the fit ended without a result: this is an error in Hysid, please report it",
+                ));
             }
         }
         if let Err(error) = py.check_signals() {

@@ -9,6 +9,7 @@ use hysid::model::selection::Selection;
 use hysid::model::{self, Prediction};
 use hysid_files::{Destination, Kind};
 use numpy::PyArray1;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::data::{Column, Dataset, NewColumn};
@@ -49,7 +50,7 @@ impl Model {
         written.map(drop).map_err(not_written)
     }
 
-    /// Number of parameters that were found from the data.
+    /// Number of fitted parameters.
     fn parameters(&self) -> usize {
         self.model.parameters()
     }
@@ -88,7 +89,7 @@ impl Model {
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }
 
-    /// What was chosen among candidates and why, in two lines; `None` where there was no choice.
+    /// The choice among candidates and the reason, in two lines; `None` if there was no choice.
     fn selection(&self) -> Option<[String; 2]> {
         self.model.provenance().selection.as_ref().map(Selection::summary)
     }
@@ -110,7 +111,7 @@ impl Model {
         self.model.warm_up()
     }
 
-    /// What to know before relying on the model.
+    /// Notes on the limits of this model.
     fn notes(&self) -> Vec<String> {
         self.model.notes()
     }
@@ -121,7 +122,7 @@ impl Model {
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 
-    /// What kind of hysteresis it has learnt, as JSON.
+    /// Properties of its hysteresis, as JSON.
     fn diagnose(&self, py: Python<'_>) -> PyResult<String> {
         let diagnosis = py.detach(|| ModelDiagnosis::of(&self.model)).map_err(refused)?;
         serde_json::to_string(&diagnosis).map_err(refused)
@@ -166,18 +167,22 @@ pub struct Stepper {
 
 #[pymethods]
 impl Stepper {
-    /// The output at the next sample.
+    /// Simulates one sample and gives the output.
     #[pyo3(signature = (x, time=None, rate=None))]
     fn step(&mut self, x: &Bound<'_, PyAny>, time: Option<f64>, rate: Option<f64>) -> PyResult<f64> {
         let time = time.unwrap_or(f64::NAN);
         let output = match x.extract::<f64>() {
             Ok(x) => self.stepper.step(&[x], time, rate),
-            Err(_) => self.stepper.step(&x.extract::<Vec<f64>>()?, time, rate),
+            Err(_) => {
+                let several = x.extract::<Vec<f64>>();
+                let words = "x: a number, or a sequence of numbers, is needed";
+                self.stepper.step(&several.map_err(|_| PyTypeError::new_err(words))?, time, rate)
+            }
         };
         output.map_err(refused)
     }
 
-    /// Back to the virgin state.
+    /// Goes back to the virgin state.
     fn reset(&mut self) {
         self.stepper.reset();
     }

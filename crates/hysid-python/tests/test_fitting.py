@@ -13,7 +13,7 @@ import pytest
 
 import hysid
 
-pytestmark = pytest.mark.filterwarnings("ignore:.* parameters are found from:hysid.HysidWarning")
+pytestmark = pytest.mark.filterwarnings("ignore:.* parameters are fitted to:hysid.HysidWarning")
 """Fits that take long are of large networks."""
 
 LONG = {"model": "xpnn+", "starts": 200, "epochs": 100_000, "stops": 30, "hidden": 30}
@@ -25,14 +25,14 @@ LONG = {"model": "xpnn+", "starts": 200, "epochs": 100_000, "stops": 30, "hidden
     [
         ([1.0, 2.0], [1.0], 'record "data", output: has 1 values where the first input has 2'),
         ([], [], 'record "data": has no rows'),
-        (np.ones(50), np.arange(50.0), "is constant (1): nothing moves"),
+        (np.ones(50), np.arange(50.0), "is constant (1): there is nothing"),
         (np.arange(50.0), np.ones(50), "is constant (1): there is nothing to identify"),
         (np.arange(50.0), np.full(50, np.nan), "is blank in every row"),
         ([*range(20), np.nan], range(21), 'record "data", row 21, input: NaN is not a finite number'),
         ([*range(20), 1e200], range(21), "is too large: at most 1e100"),
         (range(5), [1, 4, 2, 5, 3], "has only 5 rows with an output: at least 10 are needed"),
         (["a", "b"], [1.0, 2.0], "input: could not convert string to float"),
-        (np.zeros((2, 2, 2)), [1.0, 2.0], "input: an array of 1 or 2 dimensions is needed, not 3"),
+        (np.zeros((2, 2, 2)), [1.0, 2.0], "input: a one- or two-dimensional array is needed, not one of 3 dimensions"),
         (np.zeros((2, 0)), [1.0, 2.0], "x has no columns"),
         ([1j, 2j], [1.0, 2.0], "complex numbers cannot be used"),
     ],
@@ -50,7 +50,7 @@ def test_time_must_increase_within_a_record(spring_and_slider):
     with pytest.raises(ValueError, match="row 301, time: time 0 does not come after 299"):
         hysid.fit(x, y, time=stamps)
     hysid.fit(x, y, time=stamps, records=np.repeat(["a", "b"], 300), model="masing")
-    with pytest.raises(ValueError, match='record "a" goes on after another began'):
+    with pytest.raises(ValueError, match='record "a" continues after another record'):
         hysid.fit(x, y, records=np.tile(["a", "b"], 300))
     with pytest.raises(ValueError, match="one label for each of the 600 rows"):
         hysid.fit(x, y, records=["a"])

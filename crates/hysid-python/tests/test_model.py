@@ -194,13 +194,13 @@ def test_members_share_out_the_whole(quick_ensemble):
     told = {one["name"]: one["members"] for one in candidates if one["members"]}
     assert {one.name for one in members} <= set(told)
     assert f"auto of {len(members)}" in repr(quick_ensemble)
-    assert "the weighted median of" in quick_ensemble._repr_html_()
-    assert "cross-validated error" in quick_ensemble._repr_html_()
+    assert "ensemble of" in quick_ensemble._repr_html_()
+    assert "cross-validation error" in quick_ensemble._repr_html_()
 
 
 def test_a_single_model_has_no_members_and_no_band(quick_model, spring_and_slider):
     assert quick_model.members == () and not quick_model.has_band
-    with pytest.raises(ValueError, match="this model of xpnn\\+ has no band"):
+    with pytest.raises(ValueError, match="this model of xpnn\\+ has no prediction band"):
         quick_model.predict(spring_and_slider[0])
 
 

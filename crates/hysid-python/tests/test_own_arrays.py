@@ -63,10 +63,10 @@ def test_dates_and_times_are_seconds(plain, kind):
 
 def test_dates_and_times_are_no_inputs(plain):
     x, y, time, _ = plain
-    with pytest.raises(ValueError, match="input: dates and times are no numbers"):
+    with pytest.raises(ValueError, match="input: dates and times are not numbers"):
         hysid.fit(stamps()["numpy"], y)
     frame = pandas.DataFrame({"timestamp": stamps()["series"], "x": x})
-    with pytest.raises(ValueError, match="input: dates and times are no numbers"):
+    with pytest.raises(ValueError, match="input: dates and times are not numbers"):
         hysid.fit(frame, y)
     missing = stamps()["numpy"].copy()
     missing[7] = np.datetime64("NaT")
@@ -140,8 +140,8 @@ def test_units_are_converted_or_refused(spring_and_slider):
     told = warned(lambda: found.append(model.evaluate(other["u_m"], other["F_N"])))
     (found,) = found
     assert told == [
-        "u_m is converted to the unit of the model's disp_mm (times 1000)",
-        "F_N is converted to the unit of the model's force_kN (times 0.001)",
+        "u_m is converted to the unit of the model's disp_mm (factor 1000)",
+        "F_N is converted to the unit of the model's force_kN (factor 0.001)",
     ]
     assert found.output == "force_kN" and found.rmse == pytest.approx(errors.rmse)
     with pytest.raises(ValueError, match='"F_N" has another unit than the model\'s "disp_mm"'):
@@ -163,7 +163,7 @@ def test_copies_and_marks_are_warned_of(spring_and_slider):
     with pytest.warns(hysid.HysidWarning, match='"y" is -999 in 3 rows'):
         hysid.fit(x, marked, model="masing")
     told = warned(lambda: hysid.fit(x[100:120], y[100:120], **{**SMALL, "stops": 20}))
-    assert any("parameters are found from 20 rows" in text for text in told)
+    assert any("parameters are fitted to 20 rows" in text for text in told)
     told = warned(lambda: hysid.compare(x, y, test=(x[100:400], y[100:400]), models=["masing"]))
     assert any("is a part of what the model was trained on" in text for text in told)
 

@@ -104,9 +104,9 @@ def test_what_a_model_does_not_have_is_not_drawn(quick_model, quick_ensemble, sp
     for draw, model, text in [
         (plot.preisach_plane, quick_model, "has no Preisach plane"),
         (plot.thresholds, found_at_once, "has no thresholds"),
-        (plot.convergence, found_at_once, "was found at once"),
-        (plot.thresholds, quick_ensemble, "has no thresholds of its own: its [2-6] members have"),
-        (plot.convergence, quick_ensemble, "has no one training: its [2-6] members have"),
+        (plot.convergence, found_at_once, "was fitted without iterations"),
+        (plot.thresholds, quick_ensemble, "is an ensemble: only its [2-6] members have thresholds"),
+        (plot.convergence, quick_ensemble, "is an ensemble: only its [2-6] members have training runs"),
     ]:
         with pytest.raises(ValueError, match=text):
             draw(model)

@@ -74,7 +74,7 @@ def test_blanks_drive_and_are_not_trained_on(actuator):
     assert fitted.score(x, measured) == pytest.approx(1 - share**2, rel=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore:pnn ignores hidden")
+@pytest.mark.filterwarnings("ignore:pnn ignores hidden:hysid.HysidWarning")
 def test_it_is_searched_over_records(actuator):
     _, _, frame, _ = actuator
     x, y = frame.drop(columns="displacement_um"), frame["displacement_um"]
@@ -119,7 +119,7 @@ def test_randomness_is_scikit_learn_s(spring_and_slider):
     [
         ({"time": "t"}, "time: X has no column 't'"),
         ({"record": 7}, "record: X has no column 7"),
-        ({"model": "glass"}, "model \"glass\": choose one of auto"),
+        ({"model": "glass"}, 'model "glass": choose one of auto, pnn, gpnn'),
         ({"time": "x"}, "no column left for an input"),
     ],
 )

@@ -167,17 +167,17 @@ def test_ignored_options_are_warned_of_in_the_same_words(keywords, program, tmp_
 @pytest.mark.parametrize(
     ("keywords", "text"),
     [
-        ({"model": "masin"}, "model \"masin\": choose one of auto, pnn, gpnn"),
+        ({"model": "masin"}, 'model "masin": choose one of auto, pnn, gpnn'),
         ({"starts": 0}, "starts 0: choose a whole number from 1 to 10000"),
         ({"validation": 2.0}, "a number between 0 and 1 is needed"),
-        ({"training": "lm"}, "training \"lm\": choose one of levenberg-marquardt"),
+        ({"training": "lm"}, 'training "lm": choose one of levenberg-marquardt'),
         ({"thresholds": [1.0, 0.5], "model": "masing"}, "thresholds"),
         ({"time_limit": -1.0}, "a number of seconds above 0 is needed"),
         ({"threads": 0}, "threads 0: choose 1 to 1024"),
         ({"rate": "forward"}, "rate `forward` is unknown"),
-        ({"rate": "central"}, "no time"),
+        ({"rate": "central"}, "rate='central' needs time stamps"),
         ({"model": "rate-dependent-prandtl-ishlinskii"}, "needs the rate of the input"),
-        ({"sign": "positive"}, "sign \"positive\": choose one of any, non-negative, non-positive"),
+        ({"sign": "positive"}, 'sign "positive": choose one of any, non-negative'),
     ],
 )
 def test_options_outside_their_meaning_are_value_errors(keywords, text, spring_and_slider):

@@ -59,5 +59,5 @@ def test_what_has_no_meaning_is_a_value_error(keywords, text, spring_and_slider)
 
 def test_data_too_few_to_hold_any_out_are_refused(spring_and_slider):
     x, y = spring_and_slider
-    with pytest.raises(ValueError, match="too few to hold any out"):
+    with pytest.raises(ValueError, match="too few data to hold any out"):
         hysid.validate(x[::20], y[::20], model="masing")

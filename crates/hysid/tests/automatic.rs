@@ -207,7 +207,7 @@ fn decisions_that_leave_nothing_are_refused() {
     let refused =
         |options: AutoOptions| identify(&data(), &FitSpec::Auto(options), &mut on).unwrap_err().to_string();
     let nothing = AutoOptions { companding: Some(true), history: Some(true), ..options(None) };
-    assert!(refused(nothing).contains("no candidate is left"));
+    assert!(refused(nothing).contains("leave no candidate"));
     assert!(refused(AutoOptions { members: 0, ..options(None) }).contains("choose a whole number from 1 to"));
 }
 
@@ -274,7 +274,7 @@ fn the_band_lies_about_the_output_and_widens_with_its_probability() {
         assert!(model.predict(&excitation, wrong).unwrap_err().to_string().contains("from 0.5 to 0.99"));
     }
     let alone = identify(&data, &small(ModelName::Network(Family::Xpnn), None), &mut on).unwrap().model;
-    assert!(alone.predict(&excitation, 0.9).unwrap_err().to_string().contains("no band"));
+    assert!(alone.predict(&excitation, 0.9).unwrap_err().to_string().contains("no prediction band"));
 }
 
 #[test]

@@ -192,7 +192,7 @@ fn contradictory_checkpoints_are_refused() {
         for key in keys {
             let wrong = with_number(&bytes, key, f64::NAN);
             let error = resume(&data(), wrong, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
-            assert!(error.contains("contradicts itself") && error.contains("anew"), "{key}: {error}");
+            assert!(error.contains("is inconsistent") && error.contains("start a new fit"), "{key}: {error}");
         }
     }
 }
@@ -206,15 +206,15 @@ fn damaged_checkpoints_and_other_data_are_refused() {
     let refusal = |bytes: &[u8]| Checkpoint::from_bytes(bytes).unwrap_err().to_string();
     for length in (0..bytes.len()).step_by(97) {
         let said = refusal(&bytes[..length]);
-        assert!(said.contains("begin the fit anew"), "{length}: {said}");
+        assert!(said.contains("start a new fit"), "{length}: {said}");
     }
     for place in (0..bytes.len()).step_by(61) {
         let mut bytes = bytes.clone();
         bytes[place] ^= 4;
         let said = refusal(&bytes);
-        assert!(said.contains("begin the fit anew"), "{place}: {said}");
+        assert!(said.contains("start a new fit"), "{place}: {said}");
     }
-    assert!(refusal(b"").contains("empty") && refusal(b"x,y\n1,2\n").contains("no checkpoint"));
+    assert!(refusal(b"").contains("empty") && refusal(b"x,y\n1,2\n").contains("not a Hysid checkpoint"));
     assert!(refusal(b"hysid checkpoint 9\n....").contains("another version"));
     let mut record = data().records()[0].clone();
     let mut y = record.output().to_vec();

@@ -4,7 +4,7 @@ use super::answer::{Diagnosis, Verdict};
 use crate::cases::{Case, Reasons, aligned, row};
 
 const KEY: &str =
-    "\nIn the cells: the verdict and the index in percent; `?` where the record does not tell.\n";
+    "\nIn the cells: the verdict and the index in percent; `?` where the record does not allow a verdict.\n";
 
 /// All that is known so far.
 pub struct Page {
@@ -33,7 +33,7 @@ impl Page {
 
     /// The table of verdicts, what the doctor says and what is advised.
     pub fn tables(&self) -> String {
-        let doctor = self.said("What the data doctor says", |diagnosis| &diagnosis.complaints);
+        let doctor = self.said("Data quality", |diagnosis| &diagnosis.complaints);
         let advice = self.said("Advice", |diagnosis| &diagnosis.advice);
         format!("## Verdicts\n\n{}{doctor}{advice}", self.verdicts())
     }
@@ -123,8 +123,7 @@ mod tests {
         let case = |name: &str, outcome| Case { name: name.into(), outcome };
         page.cases =
             vec![case("bad", Err("no number".into())), case("steel", Ok(steel)), case("timber", Ok(timber))];
-        let expected = "\
-## Verdicts
+        let expected = "## Verdicts
 
 | case   |  masing | congruency |
 | ------ | ------: | ---------: |
@@ -132,13 +131,13 @@ mod tests {
 | steel  |   no 40 |          ? |
 | timber | yes 1.2 |   no -0.20 |
 
-In the cells: the verdict and the index in percent; `?` where the record does not tell.
+In the cells: the verdict and the index in percent; `?` where the record does not allow a verdict.
 
 Why cells are empty:
 
 1. no number
 
-## What the data doctor says
+## Data quality
 
 - **steel**: it drifts; it is short
 

@@ -7,7 +7,7 @@ use hysid::options::table::{FitOption, OPTIONS, Values};
 use serde_json::{Map, Value};
 
 /// Options of the short help of a command.
-const IN_SHORT_HELP: [&str; 4] = ["model", "members", "seed", "validation"];
+const IN_SHORT_HELP: [&str; 2] = ["model", "members"];
 
 /// What was asked for of the model and its training.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,16 +52,21 @@ fn argument(option: &'static FitOption) -> Arg {
         "" => String::new(),
         default => format!(" [default: {default}]"),
     };
+    let help = format!("{}{default}", option.meaning);
     let argument = Arg::new(option.name)
         .long(flag(option.name))
-        .help(format!("{}{default}", option.meaning))
+        .help(&help)
         .help_heading(option.group.heading())
         .hide_short_help(!IN_SHORT_HELP.contains(&option.name));
     match option.values {
         Values::Flag => argument.action(ArgAction::SetTrue),
-        Values::Names(names) => {
-            argument.value_name(option.values.placeholder()).value_parser(by_name(names()))
-        }
+        // The short help has no room for all names.
+        Values::Names(names) => argument
+            .value_name(option.values.placeholder())
+            .value_parser(by_name(names()))
+            .hide_possible_values(true)
+            .help(format!("{help} [names: see --help]"))
+            .long_help(format!("{help} [names: {}]", names().join(", "))),
         _ => {
             let read = |text: String| option.read(&text);
             argument

@@ -55,9 +55,9 @@ impl ThousandsWatch {
         are_thousands.then(|| {
             let cell = clipped(cell);
             let problem = format!(
-                "\"{cell}\" seems to have a separator of thousands, because all numbers of this column are whole and \
-                 below 1000 or have exactly three digits behind it (leave out the separators; if they are decimals, \
-                 write the whole numbers with decimals too)"
+                "\"{cell}\" seems to have a thousands separator: all numbers of this column are whole and \
+                 below 1000, or have exactly three digits after it (remove the separators; if they are \
+                 decimal signs, write the whole numbers with decimals too)"
             );
             (*line, problem)
         })
@@ -82,7 +82,7 @@ mod tests {
     fn thousands_are_told_from_decimals() {
         let (line, words) = problem(&["850", "-920", "", "990", "1.012", "1.234", "-1.100"]).unwrap();
         assert_eq!(line, 6);
-        assert!(words.starts_with("\"1.012\" seems to have a separator of thousands"), "{words}");
+        assert!(words.starts_with("\"1.012\" seems to have a thousands separator"), "{words}");
         assert!(problem(&["850", "920", "990", "1,012", "12,234", "1,100"]).is_some());
         for decimals in [
             // With its zeros, without its zeros, small numbers, too few to tell.

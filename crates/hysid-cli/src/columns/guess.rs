@@ -140,8 +140,8 @@ impl Guess<'_> {
             Some(input) => {
                 let (input, output) = (clipped(input), clipped(output));
                 bail!(
-                    "{}: \"{output}\" is in the last column, but \"{input}\" looks more like the output: decide with \
-                     --output {input}, or --output {output}",
+                    "{}: \"{output}\" is in the last column, but \"{input}\" looks more like the output: \
+                     choose with --output {input} or --output {output}",
                     self.table.file
                 )
             }

@@ -51,7 +51,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     if let Some(test) = &test {
         summarised(&test.set.copies_of(&train.set)).iter().for_each(warning);
     }
-    interrupt::listen("stopping; what is finished is compared")?;
+    interrupt::listen("stopping; the finished fits are compared")?;
     let rows = comparison::run(&Compared { train: &train, test: test.as_ref() }, &requests, arguments)?;
     match arguments.json {
         true => json_results(&comparison::printed(&rows))?,

@@ -79,7 +79,7 @@ fn read(path: &Path) -> Result<Data> {
 fn next(train: &Path, test: &Path, out: &Path) -> String {
     let [train, test, out] = [train, test, out].map(files::shown);
     format!(
-        "\nThe same by hand, and then with your own data:\n  hysid fit {train} -o {out}\n  hysid evaluate {out} {test}\n  \
-         hysid simulate {out} {test} -o OUT.csv\n"
+        "\nTo repeat this step by step, or with your own data:\n  hysid fit {train} -o {out}\n  hysid \
+         evaluate {out} {test}\n  hysid simulate {out} {test} -o OUT.csv\n"
     )
 }

@@ -62,7 +62,7 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
         && !further.is_empty()
     {
         warning(format_args!(
-            "diagnosed is how {} follows {}; {} {} not looked at (choose with --input)",
+            "diagnosed: {} over {}; {} {} not diagnosed (choose with --input)",
             clipped(&data.roles.output),
             clipped(first),
             listed(further),
@@ -70,7 +70,7 @@ fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
         ));
     }
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
-        warning("diagnose ignores --rate: speeds are those between turning points");
+        warning("diagnose ignores --rate: it uses the speeds between turning points");
     }
     let diagnosed = DataDiagnosis::of(&data, &arguments.options(), &understood, fit_command(arguments))?;
     let text = if arguments.json { diagnosed.json()? } else { diagnosed.text() };

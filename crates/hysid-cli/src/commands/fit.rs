@@ -89,7 +89,7 @@ fn checkpoint_destination(arguments: &Fit) -> Option<Destination> {
 fn note_resumable(checkpoint: &Path) {
     let file = files::shown(checkpoint);
     note(format_args!(
-        "to go on: the same command with --resume {file} in the place of its training options"
+        "to resume: run the same command with --resume {file} instead of its training options"
     ));
 }
 
@@ -101,7 +101,7 @@ fn out(arguments: &Fit) -> Result<PathBuf> {
         return Ok(PathBuf::from(name));
     };
     if out.extension().is_some_and(|extension| extension == "html") {
-        let advice = "name the model file with .json: its report gets the name with .html";
+        let advice = "use .json for the model file: the report gets the same name with .html";
         return Err(Usage(format!("{}: {advice}", out.display())).into());
     }
     if out.as_os_str() == "-" {
@@ -120,7 +120,7 @@ fn options_of(begun: &Checkpoint, rate: &RateOption) -> Result<FitOptions> {
         RateOption::Column(_) => options.rate == Some(RateMethod::Given),
     };
     if !agrees {
-        let advice = "--rate is not what the checkpoint was made with: leave it out, or begin the fit anew";
+        let advice = "--rate differs from that of the checkpoint: leave it out, or start a new fit";
         return Err(Usage(advice.into()).into());
     }
     Ok(options)
@@ -134,7 +134,7 @@ fn check_checkpoints(request: &FitSpec) -> Result<()> {
         FitSpec::Auto(options) if options.only.is_some() => "an ensemble",
         FitSpec::Auto(_) => "auto",
     };
-    let advice = "only a single network has, such as that of --model xpnn+";
+    let advice = "only a single network has them, such as --model xpnn+";
     Err(Usage(format!("{what} has no checkpoints: {advice}")).into())
 }
 
@@ -156,7 +156,10 @@ pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Resu
     Ok(match option {
         RateOption::Column(_) => Some(RateMethod::Given),
         RateOption::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
-            bail!("there is no time column to take the rate from (name it with --time, or use --rate none)")
+            bail!(
+                "there is no time column to compute the rate from (name it with --time, or use --rate \
+                   none)"
+            )
         }
         RateOption::Choice(choice) => choice.method(model, roles.time.is_some()),
     })

@@ -171,7 +171,8 @@ impl Numbers<'_> {
     fn check(&self, sign: DecimalSign, so_far: &CellReader) -> Result<()> {
         ensure!(
             so_far.sign().is_none_or(|found| found == sign),
-            "{}: the first decimal comma comes after thousands of whole numbers (give a file in the place of a pipe)",
+            "{}: the first decimal comma comes after thousands of whole numbers (give a file instead of a \
+             pipe)",
             self.data.display()
         );
         Ok(())

@@ -44,7 +44,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     warn_of_ignored(chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;
-    say_beforehand(&data, &request, "stopping; the folds that are done are told")?;
+    say_beforehand(&data, &request, "stopping; the finished folds are reported")?;
 
     let pool = thread_pool(arguments.threads)?;
     check_memory(&data.set, &request, pool.current_num_threads()).map_err(|error| data.explain(error))?;
@@ -59,7 +59,8 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
             if interrupt::requested() {
                 break;
             }
-            follower.say(&format!("fold {} of {all}: no time for a first model", place + 1));
+            follower
+                .say(&format!("fold {} of {all}: stopped by the time limit before a first model", place + 1));
             continue;
         }
         let model = fitted.map_err(|error| data.explain(error))?.model;
@@ -70,7 +71,11 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
             stopped += 1;
         }
         let errors = validator.judge(&fold, &model).map_err(|error| data.explain(error))?;
-        follower.say(&format!("fold {} of {all}: {} % of std unseen", place + 1, percent(&errors.unseen)));
+        follower.say(&format!(
+            "fold {} of {all}: {} % of std on held-out data",
+            place + 1,
+            percent(&errors.unseen)
+        ));
         if interrupt::requested() {
             break;
         }
@@ -80,7 +85,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         if !interrupt::requested() {
             return Err(hysid::Error::Stopped.into());
         }
-        note(format_args!("interrupted before the first fold was done"));
+        note(format_args!("interrupted before the first fold was finished"));
         return Ok(Outcome::Interrupted);
     };
     let model = request.model().name();
@@ -90,7 +95,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         false => results(&validated.text())?,
     }
     if interrupt::requested() {
-        note(format_args!("interrupted: {} of {all} folds are done", validated.errors.folds.len()));
+        note(format_args!("interrupted: {} of {all} folds are finished", validated.errors.folds.len()));
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)
@@ -111,15 +116,15 @@ impl Validated {
         rows.extend(self.errors.folds.iter().map(|fold| row(&fold.held_out, cells(fold))));
         let blank = String::new;
         let all = &self.errors.unseen;
-        rows.push(row("all together", [blank(), percent(all), blank(), number(all.rmse)]));
+        rows.push(row("all folds", [blank(), percent(all), blank(), number(all.rmse)]));
         let mean = self.errors.unseen_nrmse_std_percent.map_or_else(|| "-".into(), number);
         rows.push(row("geometric mean", [blank(), mean, blank(), blank()]));
         shorten_names(&mut rows);
         let mut text = aligned(&rows).join("\n") + "\n\n";
         text += &wrapped(
-            "Errors of free runs: RMSE, and the same in % of the standard deviation of the output there. Unseen is \
-             what was held out of the fit. A single record is cut in time, and parts of it are held out more than \
-             once.",
+            "Errors of free runs: RMSE, and RMSE in % of the standard deviation of the output. Unseen rows \
+             are those held out of the fit. A single record is cut in time, and parts of it are held out \
+             more than once.",
             WIDTH,
         )
         .join("\n");

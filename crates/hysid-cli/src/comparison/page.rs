@@ -27,10 +27,17 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
     let mut parts = Vec::new();
     parts.extend(fitted.first().map(|(name, best)| {
         let error = super::percent(best.judged());
-        Part::Lead(format!("On {data}, {name} is best: {error} % of the output’s standard deviation.").into())
+        Part::Lead(
+            format!(
+                "{name} has the lowest error on {data}: {error} % of the standard deviation of \
+                            the output."
+            )
+            .into(),
+        )
     }));
     let words = format!(
-        "NRMSE in percent of the output’s standard deviation, of free runs. Fits ran on one thread each, several at a time. {}",
+        "NRMSE of free runs, in percent of the standard deviation of the output. Each fit ran on one \
+         thread, several fits at the same time. {}",
         stopped_note(rows)
     );
     parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));

@@ -11,8 +11,9 @@ use super::quantities::Quantities;
 const POINTS: usize = 800;
 
 /// What the numbers of a card mean.
-pub const EXPLANATION: &str = "The index measures how far what should coincide does not, as a share; beyond the threshold the verdict turns. \
-     A threshold is the difference that matters in practice, or what noise may give by chance in that many comparisons, whichever is larger.";
+pub const EXPLANATION: &str = "The index is a relative difference or size. The threshold separates yes from \
+                               no: it is the larger of two values, the difference that matters in practice \
+                               and the difference that noise alone can cause in this number of comparisons.";
 
 /// All verdicts, each with what was found, as links to the cards.
 pub fn verdicts(findings: &[Finding]) -> Part {
@@ -35,9 +36,11 @@ fn card(finding: &Finding, quantities: &Quantities, place: &str) -> Card {
     parts.extend(picture.map(|picture| Part::chart(chart(finding, picture, quantities))));
     parts.push(Part::paragraph(sentence(&finding.statement)));
     parts.extend(finding.experiment.as_ref().map(|experiment| {
-        Part::Paragraph(Text::from(Piece::Strong("To tell:".into())).and(Piece::Plain(sentence(experiment))))
+        Part::Paragraph(
+            Text::from(Piece::Strong("Experiment:".into())).and(Piece::Plain(sentence(experiment))),
+        )
     }));
-    let place = if place.is_empty() { String::new() } else { format!(" Transformed in {place}.") };
+    let place = if place.is_empty() { String::new() } else { format!(" Found in {place}.") };
     parts.push(Part::note(numbers(finding) + &place));
     let heading = Text::from(badge(finding.verdict)).and(Piece::Plain(heading(finding)));
     Card { anchor: finding.property.name().into(), heading, parts }
@@ -64,7 +67,7 @@ fn numbers(finding: &Finding) -> String {
     let numbers = [
         share("Index", finding.index),
         share("threshold", finding.threshold),
-        share("noise alone gives", finding.noise),
+        share("from noise alone", finding.noise),
         (finding.comparisons > 0).then(|| count(finding.comparisons, "comparison")),
     ];
     let numbers: Vec<String> = numbers.into_iter().flatten().collect();

@@ -13,8 +13,8 @@ const INDENT: usize = 4;
 pub fn doctor_text(complaints: &[DataIssue]) -> String {
     let told: String = complaints.iter().map(|complaint| indented(&labelled(complaint), INDENT)).collect();
     match complaints.len() {
-        0 => "data doctor: nothing to complain of\n".into(),
-        _ => format!("data doctor\n{told}"),
+        0 => "data quality: no issues found\n".into(),
+        _ => format!("data quality\n{told}"),
     }
 }
 
@@ -75,8 +75,8 @@ pub fn doctor_section(complaints: &[DataIssue]) -> Part {
         is_warning: complaint.severity == Severity::Warning,
     };
     let said = match complaints.len() {
-        0 => Part::paragraph("Nothing to complain of."),
+        0 => Part::paragraph("No issues found."),
         _ => Part::List(complaints.iter().map(item).collect()),
     };
-    Part::section("What the data doctor says", [said])
+    Part::section("Data quality", [said])
 }

@@ -96,7 +96,7 @@ impl<'a> DataDiagnosis<'a> {
         ]);
         parts.extend(loops::cycles_section(&diagnosis.cycles, quantities, several));
         let understood = [Part::Definitions(understood.to_vec()), Part::paragraph(self.noise())];
-        parts.push(Part::section("What was understood of the data", understood));
+        parts.push(Part::section("How the data were read", understood));
         Page { title: format!("Diagnosis: {}", data.source.tables[0].file), parts }
     }
 }

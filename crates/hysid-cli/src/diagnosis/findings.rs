@@ -24,7 +24,7 @@ pub fn text(findings: &[Finding]) -> String {
     }
     let experiments = experiments(findings);
     if !experiments.is_empty() {
-        text += "\nto tell what could not be tested\n";
+        text += "\nexperiments for what could not be tested\n";
         for (experiment, properties) in experiments {
             text += &indented(&format!("{}: {experiment}", properties.join(", ")), INDENT);
         }
@@ -68,16 +68,16 @@ pub fn shown(percent: f64) -> String {
 /// What a property says of that which has it.
 pub fn meaning(property: Property) -> &'static str {
     match property {
-        Property::StaticHysteresis => "there is a loop however slowly the input goes",
-        Property::Orientation => "loops are passed clockwise, as those of friction are",
-        Property::RateDependence => "the speed of the input matters",
+        Property::StaticHysteresis => "there is a loop however slowly the input changes",
+        Property::Orientation => "loops are traversed clockwise, as with friction",
+        Property::RateDependence => "the output depends on the speed of the input",
         Property::WipingOut => "a closed excursion of the input leaves no trace (return-point memory)",
         Property::Congruency => "minor loops between the same inputs have the same shape",
-        Property::Masing => "all branches are the same curve, magnified",
-        Property::OddSymmetry => "a branch turned by half a turn is the opposite branch",
-        Property::Saturation => "the output hardly grows at the ends of the input",
+        Property::Masing => "all branches are the same curve, scaled",
+        Property::OddSymmetry => "a branch rotated by 180° is the opposite branch",
+        Property::Saturation => "the output hardly changes at the ends of the input range",
         Property::Deterioration => "loops shrink when they are repeated",
-        Property::LoopClosure => "a period of the input brings the output back to where it was",
+        Property::LoopClosure => "the output is the same after each period of the input",
     }
 }
 

@@ -71,9 +71,10 @@ pub fn text(cycles: &[Cycle], quantities: &Quantities) -> String {
 /// Energy over the number of the cycle, and the table; `None` without cycles.
 pub fn cycles_section(cycles: &[Cycle], quantities: &Quantities, several_records: bool) -> Option<Part> {
     let largest = largest(cycles)?;
-    let words = "Energy is the area ∮ y dx, positive if the loop is passed clockwise. Width is measured half way up; coercive input and \
-                 remanent output are half the distance of the branches where the output, or the input, is 0; secant stiffness is the slope \
-                 from tip to tip. Rows count from 1 in their record.";
+    let words = "Energy is the area ∮ y dx, positive if the loop is traversed clockwise. Width is measured \
+                 at half the height; coercive input and remanent output are half the distance of the \
+                 branches where the output, or the input, is 0; secant stiffness is the slope from tip to \
+                 tip. Rows count from 1 in their record.";
     let parts = [
         Part::chart(energy_chart(cycles, quantities)),
         Part::Table(cycles_table(cycles, quantities, largest, several_records)),

@@ -67,9 +67,9 @@ impl<'a> DiagnosedModel<'a> {
         }
         say("output", names.output.clone());
         let from = match probing.time_scale {
-            TimeScale::TrainedRates => "the rates it was trained on",
+            TimeScale::TrainedRates => "the trained rates",
             TimeScale::RelaxationTimes => "its relaxation times",
-            TimeScale::None => "any: it sees neither rate nor time",
+            TimeScale::None => "any: the model has neither rate nor time as an input",
         };
         let speeds: Vec<String> = probing.speeds.iter().map(|&v| speed(v)).collect();
         say(
@@ -87,7 +87,8 @@ impl<'a> DiagnosedModel<'a> {
         let mut parts = vec![findings::text(&self.diagnosis.properties)];
         let inside = self.inside();
         if !inside.rows.is_empty() {
-            let mut text = String::from("what equations and weights say (! where probing says otherwise)\n");
+            let mut text =
+                String::from("verdicts from equations and weights (! where probing contradicts)\n");
             let statements = self.inside_statements();
             for (line, statement) in
                 columns(&inside, Cell::ascii).iter().zip(std::iter::once(None).chain(statements))
@@ -141,7 +142,7 @@ impl<'a> DiagnosedModel<'a> {
         parts.extend(self.inside_section());
         parts.extend(self.neurons_section());
         parts.push(Part::section("Widths of the loop", widths));
-        parts.push(Part::section("What was driven, and how", [Part::Definitions(self.understood())]));
+        parts.push(Part::section("Inputs of the probing", [Part::Definitions(self.understood())]));
         Page { title: format!("Diagnosis: {}", self.file), parts }
     }
 
@@ -195,10 +196,10 @@ impl<'a> DiagnosedModel<'a> {
         let statements = properties.zip(self.inside_statements());
         let statements: Vec<(String, String)> =
             statements.filter_map(|(property, statement)| Some((property, sentence(&statement?)))).collect();
-        let words = "Equations decide some properties whatever the parameters; the weights of a network tell more. An ! marks where \
-                     probing says otherwise.";
+        let words = "Some properties follow from the equations for all parameters, others from the weights \
+                     of the network. An ! marks a verdict that probing contradicts.";
         let parts = [Part::Table(table), Part::Definitions(statements), Part::note(words)];
-        Some(Part::section("What equations and weights say", parts))
+        Some(Part::section("Verdicts from equations and weights", parts))
     }
 
     fn neurons_section(&self) -> Option<Part> {
@@ -211,11 +212,11 @@ impl<'a> DiagnosedModel<'a> {
         let mut table = Table::new([
             "neuron",
             "without it, %",
-            "moved by the input",
-            "by the rate",
+            "travel by input",
+            "travel by rate",
             "wear, %",
             &time,
-            "what it does",
+            "kind",
         ]);
         for neuron in order.iter().map(|&place| &weights.neurons[place]) {
             let kinds: Vec<&str> = neuron.kinds.iter().map(|&kind| kind_name(kind)).collect();
@@ -229,9 +230,11 @@ impl<'a> DiagnosedModel<'a> {
                 kinds.join(", ").into(),
             ]);
         }
-        let mut words = "“Without it” is how much the output changes without the neuron, in percent of its range. Input and rate move a stop \
-                         so many times its threshold; beyond 2 it slips at rest. Wear is the slip of 25 loops over the whole range, in percent of \
-                         what the stop can bear."
+        let mut words = "“Without it”: change of the output without the neuron, in percent of its range. \
+                         “Travel”: how far the input or the rate moves a stop, in multiples of its \
+                         threshold; a stop slips in a slow loop if the travel by the input exceeds 2. \
+                         “Wear”: slip in 25 loops over the whole range, in percent of the capacity of the \
+                         stop."
             .to_string();
         if more > 0 {
             words += &format!(" {more} neurons of less influence are not shown.");
@@ -243,10 +246,10 @@ impl<'a> DiagnosedModel<'a> {
         let widths = &self.diagnosis.loop_widths;
         let unit = unit::suffix(unit::of_column(&self.quantities.input).as_deref());
         let speed = if widths.dynamic.is_empty() { "at any speed" } else { "as the speed goes to 0" };
-        let at_speed = if widths.dynamic.is_empty() { "" } else { "; P is by how much it is wider at speed" };
+        let at_speed = if widths.dynamic.is_empty() { "" } else { "; P is the additional width at a speed" };
         let width = match widths.static_width {
             Some(width) => format!("K = {:.4}{unit}", Significant(width)),
-            None => "no K, because a branch does not pass the middle of its height".into(),
+            None => "no K, because a branch does not cross its half height".into(),
         };
         format!("width of the loop over the whole range, {speed}: {width}{at_speed}")
     }
@@ -276,22 +279,25 @@ impl<'a> DiagnosedModel<'a> {
             |(low, high): (f64, f64)| format!("{:.4} to {:.4}{suffix}", Significant(low), Significant(high));
         let bound = &memory.bound;
         let ever = match bound.whatever_the_input {
-            Some(all) => format!("{} whatever the input", span(all)),
-            None => "outside of them it may grow with the input for ever".into(),
+            Some(all) => format!("{} for any input", span(all)),
+            None => "outside these ranges it may grow with the input without bound".into(),
         };
         let reached = span(bound.reached);
         let basis = basis_name(bound.basis);
         let bounded = match bound.in_trained_ranges {
             None => format!(
-                "no bound: {output} may grow with the path of the input for ever ({basis}). Reached was {reached}"
+                "no bound: {output} may grow with the path of the input without limit ({basis}). Range \
+                 found by probing: {reached}"
             ),
             Some(range) if width(range) > USELESS * width(bound.reached) => format!(
-                "within the trained ranges {output} is bounded, but the bound is {:.0} times as wide as what was reached, \
-                 which is too wide to be of use ({basis}). Reached was {reached}",
+                "within the trained ranges {output} is bounded, but the bound is {:.0} times as wide as the \
+                 range found by probing, which is too wide to be useful ({basis}). Range found by probing: \
+                 {reached}",
                 Significant(width(range) / width(bound.reached))
             ),
             Some(range) => format!(
-                "within the trained ranges {output} stays within {}; {ever} ({basis}). Reached was {reached}",
+                "within the trained ranges {output} stays within {}; {ever} ({basis}). Range found by \
+                 probing: {reached}",
                 span(range)
             ),
         };
@@ -334,7 +340,7 @@ fn basis_name(basis: Basis) -> &'static str {
     match basis {
         Basis::Structure => "by its equations",
         Basis::Weights => "by its weights",
-        Basis::Probing => "as probed",
+        Basis::Probing => "by probing",
     }
 }
 
@@ -355,7 +361,7 @@ fn kind_name(kind: NeuronKind) -> &'static str {
         NeuronKind::Dynamic => "dynamic",
         NeuronKind::Deteriorating => "deteriorating",
         NeuronKind::NeverSlips => "never slipping",
-        NeuronKind::DiesAtOnce => "dead after the first loop",
+        NeuronKind::DiesAtOnce => "worn out after the first loop",
         NeuronKind::Relaxation => "relaxing",
         NeuronKind::Idle => "without influence",
     }

@@ -48,10 +48,12 @@ impl<'a> Overview<'a> {
             parts.push(Part::chart(self.way(*record)));
         }
         let mut words =
-            "The backbone joins the tips that go beyond all before them; dots are turning points of the input.".to_string();
+            "The backbone connects the loop tips that exceed all earlier ones; dots are turning points of \
+             the input."
+                .to_string();
         if longest.len() < records.len() {
             words += &format!(
-                " Of {} the ways of the {} longest are drawn.",
+                " Of {}, the input of the {} longest is drawn.",
                 count(records.len(), "record"),
                 longest.len()
             );

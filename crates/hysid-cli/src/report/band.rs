@@ -9,22 +9,23 @@ use crate::band_coverage::BandCoverage;
 pub fn section(report: &Report) -> Option<Part> {
     let (inside, outside) = report.model.band()?.rows();
     let beyond = match outside {
-        0 => "none beyond it, where the same width is used".to_string(),
-        rows => format!("{rows} beyond it"),
+        0 => "none outside, where the same width is used".to_string(),
+        rows => format!("{rows} outside"),
     };
     let calibration = format!(
-        "The band was calibrated on {} of rows held out from the fit: {inside} inside the range that was fitted to, \
-         {beyond}. A row that was in several folds counts once for each.",
+        "The band was calibrated on {} of held-out rows: {inside} inside the trained range, {beyond}. A row \
+         in several folds counts once for each.",
         count(inside + outside, "prediction")
     );
     let probability = number(100.0 * BAND, 3);
     let columns = ["data".into(), "samples".into(), format!("within the {probability} % band (%)")];
     let table = Table::new(columns).with_rows(report.sets.iter().filter_map(row));
     let words = format!(
-        "The band is wider where the members disagree, and beyond the trained range if the error was larger there. It \
-         is calibrated to hold {probability} % of the rows held out (split conformal prediction); it holds as many new \
-         rows if they resemble these. The share of the training rows says little, because the model was fitted to \
-         them. Other probabilities: hysid simulate --band."
+        "The band is wider where the members disagree, and outside the trained range if the error was \
+         larger there. It is calibrated to contain {probability} % of the held-out rows (split conformal \
+         prediction), and contains the same share of new rows if they resemble the held-out ones. The share \
+         of training rows does not measure this, because the model was fitted to them. Other probabilities: \
+         hysid simulate --band."
     );
     let parts = [Part::paragraph(calibration), Part::Table(table), Part::note(words)];
     Some(Part::section("The prediction band", parts))

@@ -64,24 +64,24 @@ fn nodes(
         "members",
         "share (%)",
         "error alone (% of std)",
-        "error of the ensemble without it",
+        "ensemble error without it (change)",
         "ns per sample",
         "parameters",
     ];
     let (low, high) = ensemble.range();
     let words = format!(
-        "Members of a candidate are fits from different random starts. Candidates are combined by a weighted \
-         median in each kind, then over the kinds; a share is a candidate's weight in it. Errors are of free \
-         runs on data held out, geometric means over the folds. If the ensemble is worse without a candidate, that \
-         is what it adds. Where two numbers stand, the first is of rows where the first input has not left the range \
-         that was fitted to (here {} to {}), the second of those after it has. The cost was measured here, on one \
-         thread.",
+        "The members of a candidate are fits from different random starts. A weighted median combines the \
+         candidates of each kind, and another one the kinds; the share is the resulting weight of a \
+         candidate. Errors are those of free runs on held-out data, geometric means over the folds. In \
+         parentheses: the change of the error without the candidate. Of two numbers, the first is for rows \
+         before the first input leaves the trained range ({} to {}), the second for the rows after. The \
+         cost was measured on this machine, on one thread.",
         number(low, 4),
         number(high, 4)
     );
     let mut table = Table::new(columns).with_rows(candidates.iter().map(row));
     table.push([
-        "all together".into(),
+        "whole ensemble".into(),
         "".into(),
         ensemble.members().len().into(),
         share(1.0).into(),
@@ -109,19 +109,20 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
     let is_distilled = selection.single.as_ref().is_none_or(|single| single.distilled);
     let (first, words) = match is_distilled {
         true => (
-            "One model was asked for. It was trained on the data and on what an ensemble of these candidates \
-             predicts on paths that were not measured:",
-            "The candidates are not part of the model. A share is what a candidate counts in the ensemble.",
+            "A single model was requested. It was trained on the data, and on the output of an ensemble of \
+             these candidates for paths that were not measured:",
+            "The candidates are not part of the model. The share is the weight of a candidate in the \
+             ensemble.",
         ),
         false => (
-            "One model was asked for. It was fitted to the data alone, because that predicts data held out better \
-             than a model distilled from an ensemble of these candidates:",
-            "A share is what a candidate counts in the ensemble.",
+            "A single model was requested. It was fitted to the data alone, because its error on held-out \
+             data is lower than that of a model distilled from an ensemble of these candidates:",
+            "The share is the weight of a candidate in the ensemble.",
         ),
     };
-    let errors = "Errors are of free runs on data held out, geometric means over what was held out. Where two numbers \
-                  stand, the first is of rows where the first input has not left the range that was fitted to, the \
-                  second of those after it has.";
+    let errors = "Errors are those of free runs on held-out data, geometric means over the folds. Of two \
+                  numbers, the first is for rows before the first input leaves the trained range, the \
+                  second for the rows after.";
     vec![Part::paragraph(first), Part::Table(table), Part::note(format!("{words} {errors}"))]
 }
 
@@ -134,13 +135,16 @@ fn left_out(candidates: &[&CandidateResult]) -> Option<Part> {
     };
     let table =
         Table::new(["candidate", "kind", "error alone (% of std)"]).with_rows(candidates.iter().map(row));
-    let summary = format!("Tried and left out: {}", candidates.len());
+    let summary = format!("Candidates without weight: {}", candidates.len());
     (!candidates.is_empty()).then(|| Part::Folded(summary, vec![Part::Table(table)]))
 }
 
 fn held_out(selection: &Selection) -> Part {
     let folds = selection.folds.iter().map(|fold| Part::paragraph(fold.as_str()));
-    Part::Folded(format!("Held out in turn: {} parts of the data", selection.folds.len()), folds.collect())
+    Part::Folded(
+        format!("Folds: {} parts of the data, held out in turn", selection.folds.len()),
+        folds.collect(),
+    )
 }
 
 /// The places of a candidate's members.

@@ -22,22 +22,27 @@ fn grade(percent: f64) -> &'static str {
 /// One sentence: how good is it?
 pub fn verdict(report: &Report) -> Part {
     let provenance = report.model.provenance();
-    let mut parts = vec![format!("{} on its training data", judged(&provenance.train))];
+    let mut parts = vec![format!("{} on the training data", judged(&provenance.train))];
     let behind = provenance.train_after_warm_up.as_ref();
-    parts.extend(behind.map(|errors| format!("{} on its training data without the warm-up", judged(errors))));
+    parts.extend(behind.map(|errors| format!("{} on the training data without the warm-up", judged(errors))));
     parts.push(match &provenance.validation {
         Some(errors) => {
-            format!("{} on data held out (cross-validation)", judged(errors))
+            format!("{} on held-out data (cross-validation)", judged(errors))
         }
-        None if provenance.options.starts() == 1 => "unknown on new data, since none were held out".into(),
-        None => "unknown on new data, since there were too few to hold any out".into(),
+        None if provenance.options.starts() == 1 => {
+            "not measured on new data, because none were held out".into()
+        }
+        None => "not measured on new data, because there were too few to hold any out".into(),
     });
     let unseen = report.sets.iter().filter(|set| set.name != "training");
     parts.extend(unseen.map(|set| format!("{} on the {} data", judged(&set.errors), set.name)));
-    Part::Lead(format!(
-        "Driven by the input alone, the model’s error in percent of the output’s standard deviation is {}.",
-        joined(&parts)
-    ).into())
+    Part::Lead(
+        format!(
+            "Error of a free run, in percent of the standard deviation of the output: {}.",
+            joined(&parts)
+        )
+        .into(),
+    )
 }
 
 /// An error and what to think of it.
@@ -85,21 +90,22 @@ pub fn section(report: &Report) -> Part {
 
 fn explanation(report: &Report) -> Part {
     let mut text = String::from(
-        "All errors are those of a free run: the model sees the input only, from the virgin state at the \
-         start of each record. RMSE is the root of the mean square error; NRMSE is the same in percent of \
-         the measured output's standard deviation or range; fit is 100 % minus the NRMSE in % of std. ",
+        "All errors are those of a free run: the model gets only the input, and starts each record in the \
+         virgin state. RMSE is the root mean square error; NRMSE is the RMSE in percent of the standard \
+         deviation or the range of the measured output; fit is 100 % minus the NRMSE in % of std. ",
     );
     let provenance = report.model.provenance();
     text += match (&provenance.validation, &provenance.selection) {
         (Some(_), Some(_)) => {
-            "“Validation” is the error on data held out: each fold was predicted by models that were trained without \
-             it. The weights of the ensemble were chosen on the same folds, so this error is slightly too low."
+            "“Validation” is the error on held-out data: each fold was simulated by models trained without \
+             it. The weights of the ensemble were chosen on the same folds, so this error is slightly too \
+             low."
         }
         (Some(_), None) => {
-            "“Validation” is the error on data held out, of networks that were trained in the same way without \
-             them."
+            "“Validation” is the error on held-out data, of networks that were trained in the same way \
+             without these data."
         }
-        (None, _) => "Nothing was held out, so there is no validation.",
+        (None, _) => "No data were held out, so there is no validation.",
     };
     Part::note(text)
 }

@@ -33,7 +33,7 @@ pub fn loops_section(set: &ReportSet) -> Part {
     let fewest = record_points(set).min(LOOP_POINTS / records.len());
     if records.iter().any(|record| record.len() > fewest) {
         parts.push(Part::note(
-            "Where a path is too long to be drawn whole, stretches from its beginning to its end stand for it.",
+            "Of a long path, only sections are drawn, spread from its beginning to its end.",
         ));
     }
     if set.data.names().inputs.len() > 1 {

@@ -122,11 +122,11 @@ fn stop_note(report: &Report, stops: &[Stop]) -> Part {
          slips within the trained range has no memory of its own.",
     );
     if network(report).architecture().rate {
-        text += " The rate pushes it too, by its weight; the threshold is that of a slow input.";
+        text += " The rate moves it too, by its weight; the threshold is that for a slow input.";
     }
     if network(report).architecture().deterioration {
-        text += " Having slid β times its threshold, a stop has lost its strength; ∞ stands for never. Strength \
-                 left is that at the end of the longest record of the first set.";
+        text += " A stop has lost its strength after sliding β times its threshold; ∞ means never. \
+                 “Strength left” is that at the end of the longest training record.";
     }
     if stops.len() > MOST_ROWS {
         text += &format!(" {} more are not listed.", stops.len() - MOST_ROWS);
@@ -136,7 +136,7 @@ fn stop_note(report: &Report, stops: &[Stop]) -> Part {
 
 fn channel_name(report: &Report, channel: usize) -> String {
     match (channel, network(report).architecture().rate) {
-        (1, true) if report.model.input_transform().rate_companding.is_some() => "the spread rate".into(),
+        (1, true) if report.model.input_transform().rate_companding.is_some() => "the companded rate".into(),
         (1, true) => "the rate".into(),
         (channel, rate) => input_name(report, channel - usize::from(rate && channel > 0)),
     }
@@ -210,7 +210,8 @@ fn relaxation_parts(report: &Report) -> Vec<Part> {
     };
     let columns = ["neuron".into(), "of input".into(), format!("relaxation time ({time})")];
     let table = Table::new(columns).with_rows(neurons.iter().take(MOST_ROWS).map(row));
-    let words = "A relaxation neuron is a spring behind a dashpot: what it feels of the input fades within its relaxation time.";
+    let words = "A relaxation neuron is a spring behind a dashpot: the effect of the input on it fades \
+                 within its relaxation time.";
     vec![Part::heading("Relaxation neurons"), Part::Table(table), Part::note(words)]
 }
 
@@ -228,8 +229,8 @@ fn output_parts(report: &Report) -> [Part; 3] {
     let row = |(name, weight): &(String, f64)| vec![name.as_str().into(), Cell::number(*weight, 4)];
     let table = Table::new(columns).with_rows(weights.iter().map(row));
     let mut words = String::from(
-        "The output is a weighted sum. Tanh neurons and stops give between −1 and 1; the linear and the \
-         relaxation neurons give as much as the scaled input makes them.",
+        "The output is a weighted sum. The outputs of tanh neurons and stops are between −1 and 1; the \
+         outputs of linear and relaxation neurons scale with the input.",
     );
     if weights.len() < all {
         words += &format!(" The {} largest of {all} weights are listed.", weights.len());

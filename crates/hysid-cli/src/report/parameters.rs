@@ -41,7 +41,7 @@ pub fn section(report: &Report) -> Option<Part> {
     if is_companded {
         let seen = seen_label(report);
         parts.push(Part::note(format!(
-            "The law sees its input as {seen}, a number without a unit; so do its parameters."
+            "The input of the law is {seen}, which has no unit; its parameters refer to this input."
         )));
     }
     Some(Part::section("Parameters", parts))

@@ -12,7 +12,7 @@ use super::{Report, seen_label};
 /// What was understood of the data.
 pub fn understood(report: &Report) -> Option<Part> {
     let parts = [Part::Definitions(report.understood.to_vec())];
-    (!report.understood.is_empty()).then(|| Part::section("What was understood of the data", parts))
+    (!report.understood.is_empty()).then(|| Part::section("How the data were read", parts))
 }
 
 /// The warnings, or that there is none.
@@ -48,16 +48,16 @@ pub fn section(report: &Report) -> Part {
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
     let preprocessing = report.model.input_transform();
     for (input, origin) in report.model.names().inputs.iter().zip(&preprocessing.origins) {
-        say(&format!("{input} is measured from"), number(*origin, 6));
+        say(&format!("Offset of {input}"), number(*origin, 6));
     }
     if preprocessing.companding.is_some() {
-        say("Input as it is seen", seen_label(report));
+        say("Transformed input", seen_label(report));
     }
     if let Some(scale) = preprocessing.rate_companding {
-        say("Rate as it is seen", format!("asinh(rate / {})", number(scale, 3)));
+        say("Transformed rate", format!("asinh(rate / {})", number(scale, 3)));
     }
     if preprocessing.history.is_some() {
-        say("Past as it is seen", "largest input and path so far".into());
+        say("Further inputs", "running peak and travelled path".into());
     }
     say("Rate", rate.into());
     say(
@@ -79,7 +79,7 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
     let provenance = report.model.provenance();
     let held_out = match (&provenance.validation, &provenance.selection) {
         (_, Some(selection)) => {
-            format!("{} in turn, to choose this model among others", count(selection.folds.len(), "part"))
+            format!("{} in turn, to choose this model", count(selection.folds.len(), "part"))
         }
         (Some(errors), None) => match options.validation {
             Some(share) => {
@@ -87,7 +87,7 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
             }
             None => format!("the folds of a cross-validation: {}", count(errors.samples, "sample")),
         },
-        (None, None) if options.starts == 1 => "nothing, since there was one start only".into(),
+        (None, None) if options.starts == 1 => "nothing, because there was only one start".into(),
         (None, None) => "nothing: too few data".into(),
     };
     let (starts, epochs) = match options.starts {
@@ -132,7 +132,7 @@ fn of_auto(report: &Report, options: &AutoOptions) -> Vec<(String, String)> {
     };
     vec![
         pair("Model", format!("auto: {}{of}, {} at most", count(members, "member"), options.members)),
-        pair("Training", format!("{candidates} on data of which a part was held out, then on everything")),
+        pair("Training", format!("{candidates} with a part of the data held out, then on all data")),
         pair("Seed", options.seed.to_string()),
     ]
 }

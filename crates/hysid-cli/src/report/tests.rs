@@ -97,9 +97,7 @@ fn the_figures_of_the_errors_are_there() {
         }
     }
     assert!(
-        page.contains("RMSE (kN)")
-            && page.contains("Validation")
-            && page.contains("Driven by the input alone")
+        page.contains("RMSE (kN)") && page.contains("Validation") && page.contains("Error of a free run")
     );
 }
 

@@ -14,7 +14,7 @@ fn commands(report: &Report) -> Part {
     let file = quoted(&report.model_file);
     let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
     let parts = [
-        Part::paragraph("Judge it on a measurement that it has not seen:"),
+        Part::paragraph("Evaluate it on new measured data:"),
         Part::Command(format!("hysid evaluate {file} NEW.csv")),
         Part::paragraph(match band {
             "" => "Simulate an input; the output is added as a column:",
@@ -45,24 +45,24 @@ fn limits(report: &Report) -> Part {
     rows.push(vec![unit::label(&names.output).into(), span(trained.output).into()]);
     let table = Table::new(["quantity", "range in training"]).with_rows(rows);
     let mut limits = vec![
-        "Outside these ranges it extrapolates, and nothing vouches for the result.",
-        "Its memory is virgin at the start of every record: a specimen with a past that the record does not \
-         contain is started wrongly.",
+        "Outside these ranges the model extrapolates, and its error is unknown.",
+        "It starts every record in the virgin state. If the specimen has a history that the record does not \
+         contain, the initial state is wrong.",
     ];
     if !report.model.needs_time() && report.model.rate().is_none() {
-        limits.push("It knows no time: the same input path gives the same output, however fast it is run.");
+        limits.push("It is rate-independent: the same input path gives the same output at any speed.");
     }
     if wears_out(report.model) {
         limits.push(
-            "It wears out by sliding: a history longer or harsher than the training records wears it further \
-             than anything measured vouches for.",
+            "Its stops deteriorate as they slide. A history longer or more severe than the training records \
+             leads to deterioration that was not measured.",
         );
     }
     if report.model.needs_time() {
-        limits.push("It needs time stamps, in the unit it was trained with.");
+        limits.push("It needs time stamps, in the unit of the training data.");
     }
     let items = limits.into_iter().map(|limit| Item { text: limit.into(), is_warning: false });
-    Part::section("What the model cannot do", [Part::Table(table), Part::List(items.collect())])
+    Part::section("Limits of the model", [Part::Table(table), Part::List(items.collect())])
 }
 
 /// True if a network in it deteriorates.

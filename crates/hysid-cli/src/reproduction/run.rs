@@ -79,7 +79,7 @@ fn finished(
     for (place, &experiment) in experiments.iter().enumerate() {
         match &places.lock().expect("no thread panics with the lock")[place] {
             Some(_) => note(format_args!(
-                "{}: finished before, taken from {} (delete it to run it again)",
+                "{}: already finished, read from {} (delete this file to run it again)",
                 experiment.name(),
                 files::shown(outputs.stored(experiment.name()).path())
             )),
@@ -129,7 +129,8 @@ fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
     let seconds: f64 = finished.iter().map(|one| one.seconds).sum();
     let quick = if settings.quick { " A quick run, with a fraction of the effort." } else { "" };
     rendering::made(&format!(
-        ", on {dates}, seed {}; {seconds:.0} s in all, experiments side by side counted one by one. The measured data of the paper are not public: synthetic specimens stand in for them.{quick}{further}",
+        ", on {dates}, seed {}; {seconds:.0} s in total over all experiments. The measured data of the \
+         paper are not public: synthetic specimens replace them.{quick}{further}",
         settings.seed
     ))
 }

@@ -91,8 +91,8 @@ impl fmt::Display for Warning {
                 };
                 write!(
                     f,
-                    "record \"{record}\": the input {times}, so there is little memory to learn from \
-                     (measure several cycles of different amplitude)"
+                    "record \"{record}\": the input {times}, so the data show little of the memory (measure \
+                     several cycles of different amplitude)"
                 )
             }
             Self::OutsideTrainedRange { name, share_percent, trained, seen } => write!(
@@ -118,7 +118,8 @@ impl fmt::Display for Warning {
             ),
             Self::TrainedOn { record, likeness } => write!(
                 f,
-                "record \"{record}\" is {likeness} what the model was trained on: its error says nothing about unseen data"
+                "record \"{record}\" is {likeness} what the model was trained on: its error does not \
+                 estimate that on unseen data"
             ),
             Self::RowsOutOfOrder { record } => write!(
                 f,
@@ -127,12 +128,13 @@ impl fmt::Display for Warning {
             ),
             Self::MoreParametersThanRows { parameters, rows } => write!(
                 f,
-                "{parameters} parameters are found from {rows} rows: the model follows these rows and may be wrong everywhere \
-                 else (measure more, or choose a smaller model, such as fewer stops and hidden neurons)"
+                "{parameters} parameters are fitted to {rows} rows: the model may overfit (measure more, or \
+                 choose a smaller model, such as fewer stops and hidden neurons)"
             ),
             Self::ConstantOutput { record, value } => write!(
                 f,
-                "record \"{record}\": the output is {} throughout, so it tells nothing (was the sensor connected?)",
+                "record \"{record}\": the output is {} throughout, so it carries no information (was the \
+                 sensor connected?)",
                 Significant(*value)
             ),
         }

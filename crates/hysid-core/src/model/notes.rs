@@ -50,8 +50,8 @@ impl Model {
         let one_loop = |selection: &Selection| selection.one_loop;
         self.provenance().selection.as_ref().is_some_and(one_loop).then(|| {
             format!(
-                "one loop: all reversals of {} lie at the ends of its range, so the data do not show what smaller loops \
-                 look like; the weights also use how well each kind predicted smaller loops in synthetic cases, \
+                "one loop: all reversals of {} are at the ends of its range, so the data contain no smaller \
+                 loops; the ensemble weights therefore also use errors on smaller loops of synthetic cases, \
                  and the band is wider (to improve this, measure loops of three or more amplitudes)",
                 self.names().inputs[0]
             )

@@ -53,24 +53,25 @@ impl Selection {
             self.candidates.iter().filter(|one| one.kind == kind).map(|one| one.members).sum()
         };
         let parts = kinds.iter().filter(|kind| count(kind) > 0);
-        let part = |kind: &&str| match (count(kind), *kind) {
-            (1, "networks") => "1 network".into(),
-            (count, kind) => format!("{count} {kind}"),
-        };
-        let parts: Vec<String> = parts.map(part).collect();
+        let parts: Vec<String> = parts.map(|kind| counted(count(kind), kind)).collect();
         let most = self.candidates.iter().max_by(|a, b| a.share.inside.total_cmp(&b.share.inside));
-        let leading = most.map_or_else(String::new, |one| format!("; the largest weight has {}", one.name));
-        format!("the weighted median of {}{leading}", parts.join(", "))
+        let leading = most.map_or("", |one| one.name.as_str());
+        match kinds.iter().map(|kind| count(kind)).sum() {
+            1 => format!("{}: {leading}", listed(&parts)),
+            _ => {
+                let parts = listed(&parts);
+                format!("ensemble of {parts}, combined by weighted medians; largest weight: {leading}")
+            }
+        }
     }
 
     fn why(&self, kinds: &[&str]) -> String {
         let percent = |error: (f64, f64)| format!("{:.3} %", Significant(error.0));
-        let ensemble = format!("the ensemble {}", percent(self.error_percent));
+        let ensemble = format!("ensemble {}", percent(self.error_percent));
         let errors = match &self.single {
             Some(SingleModel { distilled_percent, plain_percent, .. }) => {
-                let distilled =
-                    distilled_percent.map(|error| format!("a distilled model {}", percent(error)));
-                let plain = format!("the best single fit {}", percent(*plain_percent));
+                let distilled = distilled_percent.map(|error| format!("distilled model {}", percent(error)));
+                let plain = format!("best single fit {}", percent(*plain_percent));
                 distilled.into_iter().chain([plain, ensemble]).collect::<Vec<String>>().join(", ")
             }
             None => {
@@ -80,10 +81,30 @@ impl Selection {
                     Some(format!("{} {}", best.name, percent(best.error_percent)))
                 };
                 let bests: Vec<String> = kinds.iter().filter_map(best_of).collect();
-                format!("{ensemble}; the best of each kind alone: {}", bests.join(", "))
+                format!("{ensemble}; best of each kind alone: {}", bests.join(", "))
             }
         };
-        format!("cross-validated error, geometric mean of {} folds, in % of std: {errors}", self.folds.len())
+        let folds = self.folds.len();
+        format!("cross-validation error (geometric mean over {folds} folds, in % of std): {errors}")
+    }
+}
+
+/// So many models of a kind.
+fn counted(count: usize, kind: &str) -> String {
+    let one = match kind {
+        "networks" => "network",
+        "classical" => "classical model",
+        "random stops" => "random-stops network",
+        other => other,
+    };
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+}
+
+/// `a, b and c`.
+fn listed(parts: &[String]) -> String {
+    match parts {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => parts.concat(),
     }
 }
 
@@ -139,5 +160,53 @@ impl WarmUp {
     /// A warm-up chosen by the user.
     pub fn decided(rows: usize) -> Self {
         Self { rows, without_percent: None, with_percent: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn candidate(name: &str, kind: &str, members: usize, inside: f64) -> CandidateResult {
+        CandidateResult {
+            name: name.into(),
+            kind: kind.into(),
+            error_percent: (2.0, 2.0),
+            share: Weights { inside, outside: inside },
+            members,
+            without_percent: None,
+        }
+    }
+
+    #[test]
+    fn an_ensemble_is_summarised_by_its_kinds_its_largest_weight_and_its_errors() {
+        let mut selection = Selection {
+            folds: vec!["a".into(), "b".into()],
+            error_percent: (1.5, 1.5),
+            candidates: vec![
+                candidate("preisach", "classical", 2, 0.3),
+                candidate("xpnn+", "networks", 1, 0.6),
+                candidate("random-stops", "random stops", 1, 0.1),
+            ],
+            single: None,
+            warm_up: None,
+            one_loop: false,
+            dropped: Vec::new(),
+        };
+        let [chosen, why] = selection.summary();
+        assert_eq!(
+            chosen,
+            "ensemble of 2 classical models, 1 network and 1 random-stops network, combined by weighted medians; \
+             largest weight: xpnn+"
+        );
+        assert_eq!(
+            why,
+            "cross-validation error (geometric mean over 2 folds, in % of std): ensemble 1.5 %; \
+             best of each kind alone: preisach 2 %, xpnn+ 2 %, random-stops 2 %"
+        );
+        selection.candidates.truncate(1);
+        assert!(selection.summary()[0].starts_with("ensemble of 2 classical models, combined"));
+        selection.candidates[0].members = 1;
+        assert_eq!(selection.summary()[0], "1 classical model: preisach");
     }
 }

@@ -41,8 +41,8 @@ fn far_from_zero(model: ModelName, data: &Dataset) -> Option<String> {
     let (middle, half_range) = (0.5 * (low + high), 0.5 * (high - low));
     (middle.abs() > FAR * half_range).then(|| {
         format!(
-            "{}: {} goes from {:.4} to {:.4}, but the law takes 0 as the demagnetised state \
-             (subtract the offset of the field, or fit another model)",
+            "{}: {} ranges from {:.4} to {:.4}, but for the law 0 is the demagnetised state (subtract the \
+             offset of the field, or fit another model)",
             model.name(),
             data.names().inputs[0],
             Significant(low),

@@ -50,8 +50,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
                 false => (DataIssueKind::InputClipped, "input", "output", units.input(value)),
             };
             let statement = format!(
-                "the {name} stands at {shown} for {count} rows while the {other} goes on: clipped by its instrument; measure with a \
-                 larger range, or blank the output of these rows"
+                "the {name} stays at {shown} for {count} rows while the {other} changes: clipped by the \
+                 instrument; measure with a larger range, or blank the output of these rows"
             );
             found.push(DataIssue {
                 value: Some(value),

@@ -14,8 +14,8 @@ pub(super) fn complaints(findings: &[Finding]) -> Vec<DataIssue> {
     let why = if wears {
         "the specimen deteriorates, which explains it"
     } else {
-        "drift, creep, a memory that fades, or a specimen that has not settled; leave out the first cycles, or take the \
-         drift off"
+        "drift, creep, fading memory, or a specimen that has not settled; leave out the first cycles, or \
+         remove the drift"
     };
     let rows = closure.evidence.iter().flat_map(|evidence| evidence.pieces.iter().cloned()).take(3).collect();
     vec![DataIssue {
@@ -25,9 +25,7 @@ pub(super) fn complaints(findings: &[Finding]) -> Vec<DataIssue> {
         ..DataIssue::of_rows(
             DataIssueKind::UnclosedLoops,
             Severity::Note,
-            format!(
-                "a period of the input leaves the output {percent:.1} % of its range away from where it was: {why}"
-            ),
+            format!("after a period of the input the output differs by {percent:.1} % of its range: {why}"),
             rows,
         )
     }]

@@ -36,7 +36,9 @@ fn wrong_sign(survey: &BranchSet) -> Option<DataIssue> {
         DataIssue::of_all(
             DataIssueKind::WrongSign,
             Severity::Note,
-            "the output falls as the input grows, throughout: if it should not, one of the two has the wrong sign".into(),
+            "the output decreases whenever the input increases: if this is not expected, one of the two has \
+             the wrong sign"
+                .into(),
         )
     })
 }
@@ -66,8 +68,8 @@ fn swapped(survey: &BranchSet) -> Option<DataIssue> {
         DataIssue::of_all(
             DataIssueKind::SwappedColumns,
             Severity::Note,
-            "over time the output is a plain sine or triangle, and the input is not: the output looks like what was commanded; \
-             check which column is which, or that this is what you want to model"
+            "the output is a plain sine or triangle over time, and the input is not: the output looks like \
+             a command signal; check that input and output are not exchanged"
                 .into(),
         )
     })

@@ -52,8 +52,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
         None => format!("{} rows", last - first + 1),
     };
     let statement = format!(
-        "while the input stands still for {during}, the output moves by {}, {:.1} % of its range (holds like it: {}): creep, which \
-         needs a model with a memory that fades (xpnn+)",
+        "while the input is constant for {during}, the output changes by {}, {:.1} % of its range (such \
+         holds: {}): creep, which needs a model with fading memory (xpnn+)",
         units.output(largest.movement),
         100.0 * largest.movement.abs() / survey.height(),
         holds.len()

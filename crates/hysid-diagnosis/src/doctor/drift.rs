@@ -47,8 +47,8 @@ pub(super) fn complaints(survey: &BranchSet, cycles: &[Cycle]) -> Vec<DataIssue>
     let units = Units::of(survey);
     let (first, last) = (longest.cycles[0], longest.cycles[count(longest) - 1]);
     let statement = format!(
-        "repeated loops move {} by {} over {} cycles, {:.1} % of the output's range: drift (of a sensor, of the mean load, or \
-         ratcheting); take it off, or fit with it in mind",
+        "repeated loops move {} by {} over {} cycles, {:.1} % of the output's range: drift (of a sensor or \
+         of the mean load, or ratcheting); remove it if it is not part of the hysteresis",
         if longest.drift > 0.0 { "up" } else { "down" },
         units.output(longest.drift.abs()),
         count(longest),

@@ -118,8 +118,8 @@ pub(super) fn longest(survey: &BranchSet) -> Option<f64> {
 fn between_speeds(survey: &BranchSet, delay: &Delay) -> DataIssue {
     let units = Units::of(survey);
     let statement = format!(
-        "the output is {}, the same at all speeds, and what looks like rate dependence goes with it; shift the output by {} to {} \
-         time before anything is fitted",
+        "the output is {}, the same at all speeds, which explains the apparent rate dependence; shift the \
+         output by {} to {} time before fitting",
         units.behind(delay.time),
         units.time(delay.time.abs()),
         if delay.time > 0.0 { "an earlier" } else { "a later" },
@@ -145,8 +145,8 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
     if let Some(other) = lags.iter().find(|lag| !sharpest.agrees(lag, 3.0, SAME)) {
         let (slow, fast) = if sharpest.speed < other.speed { (sharpest, other) } else { (other, sharpest) };
         let statement = format!(
-            "around turning points the output is {} at a speed of {}, and {} at {}: not one delay, so the speed itself \
-             matters",
+            "around turning points the output is {} at a speed of {}, and {} at {}: not one delay, so the \
+             output depends on the speed",
             units.behind(slow.time),
             units.speed(slow.speed),
             units.behind(fast.time),
@@ -170,12 +170,14 @@ fn at_turning_points(survey: &BranchSet) -> Vec<DataIssue> {
             "the same at all speeds: a delay of the input, which looks like rate dependence".to_string()
         }
         (false, true) => {
-            "a delay or a slow sensor (runs at other speeds tell whether it is a constant time)".to_string()
+            "a delay or a slow sensor (runs at other speeds show whether the time is constant)".to_string()
         }
-        (false, false) => "a delay of the input, or a viscous part (runs at other speeds tell)".to_string(),
+        (false, false) => {
+            "a delay of the input, or a viscous part (runs at other speeds show which)".to_string()
+        }
     };
     let statement = format!(
-        "the output is {} (± {}), {what}; shift the output by {} to {} time before anything is fitted",
+        "the output is {} (± {}), {what}; shift the output by {} to {} time before fitting",
         units.behind(value),
         time(2.0 * deviation),
         time(value.abs()),

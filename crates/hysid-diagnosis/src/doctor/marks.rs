@@ -154,12 +154,12 @@ impl<'d> Column<'d> {
             format!(" (first in row {} of record \"{}\")", row + 1, record.name())
         });
         let what = match apart.is_mark {
-            true => "a mark of a missing value or the full scale of the instrument?",
-            false => "far from all others: a mark of a missing value, or a spike?",
+            true => "a code for a missing value, or the full scale of the instrument?",
+            false => "far from all other values: a code for a missing value, or a spike?",
         };
         let help = match self.is_output {
             true => "leave the output of these rows blank",
-            false => "leave these rows out, or interpolate: every value of an input moves the memory",
+            false => "leave these rows out, or interpolate: every value of an input changes the memory",
         };
         let name = self.name;
         let statement =

@@ -53,8 +53,8 @@ fn repeated_rows(survey: &BranchSet) -> Option<DataIssue> {
     let share = repeated as f64 / rows.max(1) as f64;
     (share > REPEATED).then(|| {
         let statement = format!(
-            "{:.0} % of the rows are the row before once more: logged faster than measured, or joined twice; drop them, so \
-             that rates and weights are right",
+            "{:.0} % of the rows repeat the row before: logged faster than measured, or joined twice; \
+             remove them, because they distort rates and weights",
             100.0 * share
         );
         DataIssue {
@@ -111,8 +111,9 @@ fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
                 DataIssueKind::HeldSamples,
                 Severity::Warning,
                 format!(
-                    "the {name} keeps its value for {typical} rows at a time while the other channel changes: it was sampled less \
-                     often, and lags by half of that on average; keep one row in {typical}, or interpolate it"
+                    "the {name} keeps its value for {typical} rows at a time while the other channel \
+                     changes: it was sampled less often, and lags by half of that on average; keep one row \
+                     in {typical}, or interpolate"
                 ),
             )
         }
@@ -162,8 +163,8 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
         false => ("input", units.input(step)),
     };
     let statement = format!(
-        "the {name} comes in steps of {shown}, {:.1} % of its range: differences below that, and turning points, are not to be \
-         trusted; measure in a smaller range of the instrument",
+        "the {name} comes in steps of {shown}, {:.1} % of its range: smaller differences, and turning \
+         points, are not reliable; measure in a smaller range of the instrument",
         100.0 * step / range
     );
     Some(DataIssue {

@@ -37,8 +37,8 @@ fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
         let gaps: Vec<usize> = (1..steps.len().saturating_sub(1)).filter(is_gap).collect();
         if let Some(&longest) = gaps.iter().max_by(|a, b| steps[**a].total_cmp(&steps[**b])) {
             let statement = format!(
-                "{} where rows are missing, the longest {} at {}: what the input did there the memory does not know; make them \
-                 records of their own, or fill the input in",
+                "{} where rows are missing, the longest {} at {}: the input there is unknown, so the memory \
+                 after it may be wrong; start a new record after each gap, or fill in the input",
                 match gaps.len() {
                     1 => "a gap".to_string(),
                     n => format!("{n} gaps"),
@@ -64,7 +64,8 @@ fn time_steps(survey: &BranchSet) -> Vec<DataIssue> {
             && long > CHANGING * short
         {
             let statement = format!(
-                "time steps change from {} to {}: rows count more where they are dense; rates are taken on the stamps as they are",
+                "time steps change from {} to {}: parts with dense rows have more weight in a fit; rates \
+                 use the time stamps as given",
                 units.time(short),
                 units.time(long)
             );
@@ -97,8 +98,8 @@ fn rows_of_a_branch(survey: &BranchSet) -> Option<DataIssue> {
             DataIssueKind::FewSamples,
             Severity::Warning,
             format!(
-                "there are {typical} rows from turning point to turning point: too few to see the shape of a branch; sample {} \
-                 times as fast",
+                "there are {typical} rows from turning point to turning point: too few for the shape of a \
+                 branch; sample {} times as fast",
                 (2 * FEWEST_ROWS).div_ceil(typical.max(1))
             ),
         )
@@ -114,8 +115,8 @@ fn turning_points(survey: &BranchSet) -> Option<DataIssue> {
             DataIssueKind::FewTurningPoints,
             Severity::Warning,
             format!(
-                "the input turns {} only (by more than {}): hardly any memory to learn from; measure several cycles of \
-                 different amplitude",
+                "the input turns only {} (by more than {}), so the data show little of the memory; measure \
+                 several cycles of different amplitude",
                 match found {
                     1 => "once".to_string(),
                     2 => "twice".to_string(),

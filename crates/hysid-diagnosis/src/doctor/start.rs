@@ -16,7 +16,7 @@ const OPEN: f64 = 0.1;
 const SIDE: f64 = 0.15;
 
 const HELP: &str =
-    "put a few rows of its past, with blank outputs, before it, or leave its first cycle blank";
+    "add a few earlier rows with blank outputs before it, or blank the output of its first cycle";
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     (0..survey.data.records().len()).filter_map(|record| beginning(survey, record)).collect()
@@ -52,8 +52,8 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
             DataIssueKind::NotVirgin,
             Severity::Warning,
             format!(
-                "it begins with an output of {} at an input of {}, where later loops are between {} and {}: a virgin curve \
-                 outside of them, a past, or an output that was set anew; {HELP}",
+                "it begins with an output of {} at an input of {}, where later loops are between {} and {}: \
+                 a virgin curve outside the loops, an unknown history, or an output that was reset; {HELP}",
                 units.output(y),
                 units.input(x),
                 units.output(low),
@@ -66,7 +66,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
             DataIssueKind::UnknownStart,
             Severity::Note,
             format!(
-                "it begins at an input of {}, not at rest, so its memory is not known; {HELP}",
+                "it begins at an input of {}, not at rest, so its initial memory is unknown; {HELP}",
                 units.input(x)
             ),
         );
@@ -84,8 +84,8 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
             DataIssueKind::NotVirgin,
             Severity::Warning,
             format!(
-                "it begins with an output of {} at an input of {}, on one side of its later loops ({} and {}) and not between them, as \
-                 a virgin specimen would; {HELP}",
+                "it begins with an output of {} at an input of {}, on one side of its later loops ({} and \
+                 {}); a virgin specimen would begin between them; {HELP}",
                 units.output(y),
                 units.input(x),
                 units.output(up),

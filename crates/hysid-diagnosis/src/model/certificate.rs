@@ -138,11 +138,11 @@ fn refine(probe: &Probe) -> Result<Refinement> {
     let (by_two, by_ten) = (change(2)?, change(10)?);
     let exact = by_two.max(by_ten) <= ROUNDING;
     let statement = if exact {
-        "a path in finer steps gives the same outputs, to rounding".into()
+        "a path in finer steps gives the same outputs, up to rounding".into()
     } else {
         format!(
-            "a branch in twice its {} steps gives outputs that differ by up to {} % of their range, in ten times as many by \
-             {} %",
+            "with twice the {} steps of a branch the outputs differ by up to {} % of their range, with ten \
+             times as many by {} %",
             2 * COARSE,
             Significant(100.0 * by_two),
             Significant(100.0 * by_ten)
@@ -180,9 +180,9 @@ fn rate_independent(probe: &Probe, index: Option<f64>) -> Claim {
     let measured = index.unwrap_or(0.0);
     let (holds, basis, statement) = if !sees {
         let basis = if probe.speeds.matter() { Basis::Weights } else { Basis::Structure };
-        (true, basis, "no part of the model sees rate or time".to_string())
+        (true, basis, "no part of the model has rate or time as an input".to_string())
     } else if measured <= ROUNDING {
-        (true, Basis::Probing, "the output is the same at all trained speeds, to rounding".into())
+        (true, Basis::Probing, "the output is the same at all trained speeds, up to rounding".into())
     } else {
         let percent = Significant(100.0 * measured);
         let text = format!("at 30 times the speed the output differs by {percent} % of its range");
@@ -202,14 +202,14 @@ fn return_point_memory(
         let fades = |neuron: &Neuron| neuron.relaxation_time.is_some() && neuron.influence >= MATTERS;
         wear.is_some_and(|criterion| criterion.value <= ROUNDING) && !weights.neurons.iter().any(fades)
     });
-    let measured = gap.map_or("; at a vanishing speed the output hardly moves".into(), |gap| {
+    let measured = gap.map_or("; at vanishing speed the output hardly changes".into(), |gap| {
         format!("; the largest gap found is {} % of the output's range", Significant(100.0 * gap))
     });
     let (holds, basis, text) = match (promised, found) {
         (Some(Verdict::Yes), _) => {
-            (true, Basis::Structure, "all of the memory is turning points that are wiped out")
+            (true, Basis::Structure, "the memory consists of turning points that are wiped out")
         }
-        _ if unworn => (true, Basis::Weights, "no stop that matters slips so much that it wears"),
+        _ if unworn => (true, Basis::Weights, "no stop with influence deteriorates noticeably"),
         (_, Some(Verdict::Yes)) => (true, Basis::Probing, "excursions leave no gap that matters"),
         (_, Some(Verdict::No)) => (false, Basis::Probing, "excursions leave a gap"),
         _ => (false, Basis::Probing, "there is no memory to test"),

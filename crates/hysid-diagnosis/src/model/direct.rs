@@ -58,7 +58,7 @@ pub(super) fn rate_dependence(probe: &Probe) -> Result<Finding> {
         .collect();
     let index = evidence.iter().map(|evidence| evidence.index).fold(0.0, f64::max);
     let statement = if index <= ROUNDING {
-        "the output is the same at every speed, to rounding".into()
+        "the output is the same at every speed, up to rounding".into()
     } else {
         let percent = Significant(100.0 * index);
         format!("at 30 times the speed the output differs by up to {percent:.3} % of its range")
@@ -108,18 +108,18 @@ pub(super) fn odd_symmetry(probe: &Probe) -> Result<Finding> {
     let x_origin = format!("x = {}", Significant(origin));
     let (about, further) = match &at_origin {
         Some(found) if off_centre == 0.0 => {
-            (format!("{x_origin} is off itself by {:.3} %", percent(found)), String::new())
+            (format!("{x_origin} deviates from itself by {:.3} %", percent(found)), String::new())
         }
         Some(found) => (
-            format!("{x_origin} is off itself by {:.3} %", percent(found)),
+            format!("{x_origin} deviates from itself by {:.3} %", percent(found)),
             format!(", about {middle_of_range} by {:.3} %", percent(&middle)),
         ),
         None => (
-            format!("{middle_of_range} is off itself by {:.3} %", percent(&middle)),
-            format!("; {x_origin} is not in the middle of what was trained"),
+            format!("{middle_of_range} deviates from itself by {:.3} %", percent(&middle)),
+            format!("; {x_origin} is not in the middle of the trained range"),
         ),
     };
-    let statement = format!("an output turned about {about} of its range{further}");
+    let statement = format!("an output rotated by 180° about {about} of its range{further}");
     let best = match at_origin {
         Some(found) if found.index <= middle.index => found,
         _ => middle,
@@ -152,7 +152,7 @@ fn mirrored(probe: &Probe, centre: f64, half: f64) -> Result<Mirrored> {
     let sums = || record.output()[first..].iter().zip(&other.output()[first..]).map(|(a, b)| a + b);
     let mean = sums().sum::<f64>() / (there.x.len() - first) as f64;
     let turned = PictureCurve {
-        label: "mirrored, turned back".into(),
+        label: "mirrored, rotated back".into(),
         points: there.x[first..].iter().zip(&other.output()[first..]).map(|(&x, y)| (x, mean - y)).collect(),
     };
     Ok(Mirrored {

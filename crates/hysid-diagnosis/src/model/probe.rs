@@ -154,9 +154,10 @@ impl<'m> Probe<'m> {
             time_scale: self.speeds.scale,
             vanishing_speed: self.speeds.vanishing,
             speeds: if self.speeds.matter() { self.speeds.tried().to_vec() } else { Vec::new() },
-            outside: self.speeds.one_sided.then(|| {
-                "rates of one sign only were trained: probes that go there and back had to leave them".into()
-            }),
+            outside: self
+                .speeds
+                .one_sided
+                .then(|| "only rates of one sign were trained: the probing also uses the other sign".into()),
         }
     }
 

@@ -37,7 +37,7 @@ const HARDLY_MOVES: f64 = 0.01;
 const EXACT: DiagnosisOptions = DiagnosisOptions { smallest_reversal: 0.02, smoothing: false };
 
 const FASTER: &str =
-    "the model answers to the rate of the input alone; look at its loops at the trained speeds";
+    "the model depends only on the rate of the input; look at its loops at the trained speeds";
 
 const LARGER: &str = "fit the model to a record with loops over a larger range of the input";
 
@@ -93,14 +93,14 @@ fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
         closure(probe)?,
     ];
     if probe.speeds.matter() {
-        findings.iter_mut().for_each(|finding| finding.statement += " (at a vanishing speed)");
+        findings.iter_mut().for_each(|finding| finding.statement += " (at vanishing speed)");
     }
     Ok(findings)
 }
 
 /// In place of [`of_memory`].
 fn hardly_moving() -> Vec<Finding> {
-    let statement = "at a vanishing speed the output hardly moves: there is nothing to remember";
+    let statement = "at vanishing speed the output hardly changes: there is no memory to test";
     let properties = [
         Property::Orientation,
         Property::WipingOut,
@@ -143,7 +143,7 @@ fn wear(probe: &Probe) -> Result<Finding> {
         let cycles = cycles(&survey);
         let open = |cycle: &Cycle| cycle.area > static_hysteresis::FULL * cycle.swing() * cycle.height();
         if !cycles.first().is_some_and(open) {
-            let statement = "there is hardly a loop that could shrink";
+            let statement = "there is no loop large enough to shrink";
             return Ok(Finding::not_testable(Property::Deterioration, statement, LARGER));
         }
         let mut finding = deterioration::test(&survey, &cycles);
@@ -162,8 +162,7 @@ fn wear(probe: &Probe) -> Result<Finding> {
         (Verdict::NotTestable, _) => true,
         _ => fast.index > slow.index,
     };
-    let (mut finding, speed) =
-        if stronger { (fast, "the middle speed") } else { (slow, "a vanishing speed") };
+    let (mut finding, speed) = if stronger { (fast, "the middle speed") } else { (slow, "vanishing speed") };
     finding.statement += &format!(", at {speed}");
     Ok(finding)
 }

@@ -108,7 +108,10 @@ fn static_loop(neurons: &[Neuron]) -> Criterion {
         .iter()
         .filter(|neuron| neuron.influence >= MATTERS && !neuron.kinds.contains(&NeuronKind::DiesAtOnce));
     let value = living.filter_map(|neuron| neuron.input_swing).fold(0.0, f64::max);
-    let statement = format!("the input moves a stop by up to {value:.2}; it slips beyond {SLIPS}");
+    let statement = format!(
+        "the input moves a stop by up to {value:.2} times its threshold; it slips \
+                             beyond {SLIPS}"
+    );
     criterion(Property::StaticHysteresis, value, SLIPS, yes_if(value > SLIPS), statement)
 }
 
@@ -124,11 +127,11 @@ fn rate(probe: &Probe, inside: &Inside, neurons: &[Neuron]) -> Criterion {
     let statement = if probe.speeds.matter() {
         let [stops, linear, relaxing] = [stops, linear, relaxing].map(|part| 100.0 * part);
         format!(
-            "of the output's range the rate moves {stops:.2} % through stops and {linear:.2} % past them, and relaxation neurons \
-             make {relaxing:.2} %"
+            "shares of the output's range: rate through stops {stops:.2} %, rate past the stops {linear:.2} \
+             %, relaxation neurons {relaxing:.2} %"
         )
     } else {
-        "no neuron sees rate or time".into()
+        "no neuron has rate or time as an input".into()
     };
     criterion(Property::RateDependence, value, NO_RATE, yes_if(value > NO_RATE), statement)
 }
@@ -142,7 +145,8 @@ fn wear(neurons: &[Neuron]) -> Criterion {
     let worn = sum(slipping().map(|neuron| neuron.influence * neuron.wear.unwrap_or(0.0).min(1.0)));
     let all = sum(slipping().map(|neuron| neuron.influence));
     let value = worn / all.max(f64::MIN_POSITIVE);
-    let statement = format!("25 loops wear the stops that slip by {:.2} % in the mean", 100.0 * value);
+    let statement =
+        format!("25 loops use {:.2} % of the capacity of the slipping stops, on average", 100.0 * value);
     criterion(Property::Deterioration, value, WEAR, yes_if(value > WEAR), statement)
 }
 
@@ -164,9 +168,9 @@ fn straight_readout(inside: &Inside, property: Property, unworn: bool) -> Criter
     let neurons = c.iter().zip(inside.arguments.iter().zip(shares));
     let value = sum(neurons.map(|(c, neuron)| c.abs() * of_one(neuron))) / inside.height;
     let readout = if property == Property::Congruency { "the readout of the memory" } else { "the readout" };
-    let worn = if unworn { "" } else { ", and slip wears the stops" };
+    let worn = if unworn { "" } else { ", and the stops deteriorate as they slip" };
     let statement = format!(
-        "{readout} is off a straight line by at most {:.2} % of the output's range{worn}",
+        "{readout} deviates from a straight line by at most {:.2} % of the output's range{worn}",
         100.0 * value
     );
     // What bends may cancel: above the threshold the weights do not tell.
@@ -188,7 +192,7 @@ fn even_readout(probe: &Probe, inside: &Inside) -> Criterion {
     let mean = sum(sums.iter().copied()) / count;
     let value = (sum(sums.iter().map(|even| (even - mean).powi(2))) / count).sqrt() / inside.height;
     let statement = format!(
-        "about x = 0, biases make the readout uneven by {:.2} % of the output's range",
+        "about x = 0, biases make the readout asymmetric by {:.2} % of the output's range",
         100.0 * value
     );
     // An output that is not odd about 0 may be odd about the middle of the range.

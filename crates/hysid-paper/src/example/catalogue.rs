@@ -81,8 +81,8 @@ impl Figure {
             Self::Unseen => "unseen, % of std".into(),
             Self::UnseenRecords(names) => format!("unseen {}, % of std", names.join(" and ")),
             Self::LargestUnseen => "largest unseen error, % of largest".into(),
-            Self::TimesBelowTraining => "rival's MSE / ours, training".into(),
-            Self::TimesBelowUnseen => "rival's MSE / ours, unseen".into(),
+            Self::TimesBelowTraining => "MSE ratio, other model / XPNN, training".into(),
+            Self::TimesBelowUnseen => "MSE ratio, other model / XPNN, unseen".into(),
         }
     }
 }
@@ -112,7 +112,8 @@ pub static EXAMPLES: [Example; 7] = [
     Example {
         name: "example1",
         title: "ferromagnetic material",
-        paper: "excellent agreement with measured data (its abstract); we know of no figure for this example.",
+        paper: "excellent agreement with measured data (its abstract); no number for this example is known \
+                to us.",
         cases: &[Case {
             specimen: "ferromagnet",
             shows: "minor loops within minor loops",
@@ -127,13 +128,15 @@ pub static EXAMPLES: [Example; 7] = [
         cases: &[
             Case {
                 specimen: "reinforced-concrete-joint-cycles",
-                shows: "unseen cycles between seen ones: the damage has been met, these cycles have not",
+                shows: "unseen cycles between training cycles: their damage is within the trained range, \
+                        the cycles themselves are new",
                 opponent: GPNN,
                 wanted: JOINT,
             },
             Case {
                 specimen: "reinforced-concrete-joint",
-                shows: "the last 30 % of the time unseen: drift and damage beyond all in training, so this is a forecast, not an interpolation",
+                shows: "the last 30 % of the time unseen: drift and damage exceed those in training, so \
+                        this is an extrapolation",
                 opponent: GPNN,
                 wanted: JOINT,
             },
@@ -146,13 +149,13 @@ pub static EXAMPLES: [Example; 7] = [
         cases: &[
             Case {
                 specimen: "terfenol-rod",
-                shows: "asymmetric loops of a specimen that is not itself a GPIM",
+                shows: "asymmetric loops of a specimen that is not a GPIM",
                 opponent: GPIM,
                 wanted: FORTY,
             },
             Case {
                 specimen: "terfenol-actuator",
-                shows: "a specimen that is itself a GPIM, and so favours its rival",
+                shows: "a specimen that is a GPIM, which favours the GPIM",
                 opponent: GPIM,
                 wanted: &[],
             },
@@ -161,17 +164,18 @@ pub static EXAMPLES: [Example; 7] = [
     Example {
         name: "example4",
         title: "shape-memory-alloy actuator",
-        paper: "a comparison with the GPIM for two wires between -1 and 1 A; we know of no figure for this example.",
+        paper: "a comparison with the GPIM for two wires between -1 and 1 A; no number for this example is \
+                known to us.",
         cases: &[
             Case {
                 specimen: "two-wire-actuator",
-                shows: "asymmetric loops of a specimen that is not itself a GPIM",
+                shows: "asymmetric loops of a specimen that is not a GPIM",
                 opponent: GPIM,
                 wanted: FORTY,
             },
             Case {
                 specimen: "shape-memory-actuator",
-                shows: "a specimen that is itself a GPIM, and so favours its rival",
+                shows: "a specimen that is a GPIM, which favours the GPIM",
                 opponent: GPIM,
                 wanted: &[],
             },
@@ -191,7 +195,8 @@ pub static EXAMPLES: [Example; 7] = [
     Example {
         name: "example6",
         title: "rate-dependent actuators",
-        paper: "on the synthetic set MSE 7e-5 in training and 0.002 on unseen data, 778 without the rate; for the piezo set, in which 50 and 200 Hz were not trained on, we know of no figure.",
+        paper: "on the synthetic set MSE 7e-5 in training and 0.002 on unseen data, 778 without the rate; \
+                for the piezo set, in which 50 and 200 Hz were not trained on, no number is known to us.",
         cases: &[
             Case {
                 specimen: "rate-dependent-actuator",
@@ -214,7 +219,8 @@ pub static EXAMPLES: [Example; 7] = [
     Example {
         name: "example7",
         title: "magnetostrictive actuator from 10 to 300 Hz",
-        paper: "excellent agreement with measured data (its abstract) at eight frequencies; we know of no figure for this example.",
+        paper: "excellent agreement with measured data (its abstract) at eight frequencies; no number for \
+                this example is known to us.",
         cases: &[Case {
             specimen: "magnetostrictive-actuator",
             shows: "hysteresis between a lag and a resonance; 50 and 200 Hz unseen",

@@ -74,7 +74,15 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
 }
 
 /// What the words of the tables mean.
-const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least squares. From the same seed the genetic algorithm and the hybrid begin with the same population, the sub-gradient method and Levenberg-Marquardt with the same random network, whose thresholds are spread out beforehand. An epoch is a generation of 50 individuals, an outer iteration of the sub-gradient method, or an iteration of Levenberg-Marquardt; a hybrid spends half of its epochs on each phase. An evaluation is one of the objective or of its gradient. Seconds are of this machine and of this run, beside whatever else ran. Unseen is the rest of the history, which nothing was fitted to.";
+const WORDS: &str = "Every trainer minimises the same objective on the same record, output weights by least \
+                     squares. From the same seed the genetic algorithm and the hybrid begin with the same \
+                     population, the sub-gradient method and Levenberg-Marquardt with the same random \
+                     network, whose thresholds are spread out beforehand. An epoch is a generation of 50 \
+                     individuals, an outer iteration of the sub-gradient method, or an iteration of \
+                     Levenberg-Marquardt; a hybrid spends half of its epochs on each phase. An evaluation \
+                     is one of the objective or of its gradient. Times are those of this run on this \
+                     machine, which may have run other programs too. “Unseen” is the rest of the history, \
+                     which no model was fitted to.";
 
 fn of(repetitions: &[Repetition], trainer: Trainer) -> Vec<&Training> {
     let all = repetitions.iter().flat_map(|repetition| &repetition.trainings);
@@ -170,7 +178,8 @@ pub(super) fn matched(repetitions: &[Repetition]) -> String {
     let reached = match shares.as_slice() {
         [] => {
             return format!(
-                "Levenberg-Marquardt, begun anew whenever it ends, does not reach the hybrid's final error within the hybrid's time from any of {tried}."
+                "Levenberg-Marquardt, restarted whenever it ends, does not reach the hybrid's final error \
+                 within the hybrid's time from any of {tried}."
             );
         }
         shares => shares,
@@ -178,7 +187,8 @@ pub(super) fn matched(repetitions: &[Repetition]) -> String {
     let (low, median, high) = range(reached);
     let part = |share: f64| format!("1/{:.2}", Significant(1.0 / share));
     format!(
-        "Levenberg-Marquardt, begun anew whenever it ends, reaches the hybrid's final error within the hybrid's time in {} of {tried}, after {} of that time ({} to {}).",
+        "Levenberg-Marquardt, restarted whenever it ends, reaches the hybrid's final error within the \
+         hybrid's time in {} of {tried}, after {} of that time ({} to {}).",
         reached.len(),
         part(median),
         part(low),

@@ -1,9 +1,9 @@
 """Identification of hysteresis: measured input and output in, a small, stable model out.
 
-`fit` identifies a `Model`, `validate` tells how it does on data held out, `diagnose` what kind of hysteresis data
-have, `compare` sets all models side by side. `operators` and `classical` are the field's laws as functions on arrays, `specimens` what to try them on.
-`HysteresisRegressor` is the estimator for scikit-learn, `plot` draws with matplotlib; both are looked for when they
-are first used.
+`fit` identifies a `Model`, `validate` cross-validates it, `diagnose` determines properties of the hysteresis in data,
+and `compare` fits all models to the same data. `operators` and `classical` contain the operators and laws of the field
+as functions on arrays, `specimens` gives synthetic data. `HysteresisRegressor` is the estimator for scikit-learn,
+`plot` draws with matplotlib; both are imported when they are first used.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Models side by side."""
+"""Comparison of models."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._fitting import as_json, fitted
 from hysid._html import number, table
@@ -27,7 +28,7 @@ _TIME_LIMIT = 20.0
 
 @dataclass(frozen=True)
 class Compared:
-    """A model of a comparison, or why there is none.
+    """A model of a comparison, or the reason why there is none.
 
     Attributes
     ----------
@@ -36,9 +37,9 @@ class Compared:
     model : Model or None
         The fitted model.
     train, test : Errors or None
-        Errors of free runs on the data fitted to, and on data that it has not seen.
+        Errors of free runs on the training data, and on unseen data.
     fit_seconds : float or None
-        Seconds on one thread.
+        Time of the fit on one thread, in seconds.
     error : str or None
         Why there is no model.
     """
@@ -52,14 +53,14 @@ class Compared:
 
     @property
     def judged(self) -> float:
-        """Error on unseen data, on the training data if there are no others, in percent of std."""
+        """Error on unseen data (without such data, on the training data), in percent of std."""
         errors = self.test or self.train
         percent = None if errors is None else errors.nrmse_std_percent
         return float("inf") if percent is None else percent
 
 
 class Comparison(Sequence[Compared]):
-    """Models side by side, the lowest error on unseen data first."""
+    """Results of all models, the lowest error on unseen data first."""
 
     def __init__(self, rows: list[Compared]) -> None:
         self._rows = sorted(rows, key=lambda row: row.judged)
@@ -148,24 +149,24 @@ def compare(
     seed: int | None = None,
     threads: int | None = None,
 ) -> Comparison:
-    """Fit every model, in all its variants, to the same data, and judge them on data that none has seen.
+    """Fit all models, in all their variants, to the same data and compare their errors on unseen data.
 
     Parameters
     ----------
     x, y, time, rate, records
         Data to fit to, as of `hysid.fit`.
     test : tuple, dict or Records, optional
-        Data that no model sees: x, y, and time, rate, records where there are any. Without it, errors are
-        those of the training.
+        Test data, which no model is fitted to: x, y and, if there are any, time, rate, records. Without it,
+        the models are compared on the training data.
     models : sequence of str, optional
-        Names of the models, also ``"auto"``; all of `hysid.models` by default.
+        Names of the models, also ``"auto"``; by default all of `hysid.models`.
     time_limit : float, optional
-        Seconds for each model, after which its search ends with what it has; 20 by default, and none for
+        Time for each model in seconds, after which its best fit so far is used; by default 20, and no limit for
         ``"auto"``.
     seed : int, optional
-        Seed of all randomness.
+        Seed of all random numbers.
     threads : int, optional
-        Models fitted at a time, each on one thread; one for each processor by default.
+        Number of models fitted at the same time, each on one thread; by default one for each processor.
 
     Returns
     -------
@@ -181,9 +182,10 @@ def compare(
     >>> comparison[0].name
     'generalized-prandtl-ishlinskii'
     """
-    # Looked for here: it is slow to import, and only this function needs it.
+    # Imported here: it is slow to import, and only this function needs it.
     from concurrent.futures import ThreadPoolExecutor
 
+    limit = None if time_limit is None else real("time_limit", time_limit)
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
     unseen = None if test is None else columns(*_parts(test))
@@ -204,9 +206,9 @@ def compare(
             rows.append(Compared(name, error=str(error)))
 
     def row(request: _hysid.FitSpec) -> Compared:
-        return _compared(data, request, unseen, time_limit)
+        return _compared(data, request, unseen, limit)
 
-    workers = threads or os.cpu_count() or 1
+    workers = os.cpu_count() or 1 if threads is None else whole("threads", threads, 1, 1024)
     with ThreadPoolExecutor(min(workers, max(1, len(requests)))) as pool, warnings.catch_warnings():
         warnings.simplefilter("ignore", HysidWarning)
         try:

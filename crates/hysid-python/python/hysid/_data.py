@@ -16,18 +16,18 @@ Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike]]
 """Numbers, or columns by their names; pandas objects are among the former."""
 
 RECORD = "data"
-"""What the one record is called if no records are told apart."""
+"""Name of the record if `records` is not given."""
 
 
 class Column(NamedTuple):
-    """Numbers and the name that came with them."""
+    """Numbers, and their name if they have one."""
 
     values: np.ndarray
     name: str | None
 
 
 class Columns(NamedTuple):
-    """All that was measured, column by column; and where one record ends and the next begins."""
+    """All measured columns, and the rows of each record."""
 
     inputs: list[Column]
     time: Column | None
@@ -69,7 +69,7 @@ class Columns(NamedTuple):
 
 
 def columns(x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
-    """Takes everything apart, and refuses columns of different length."""
+    """Splits the arguments into columns, and refuses columns of different length."""
     given = {"x": x, "y": y, "time": time, "rate": rate, "records": records}
     check_indexes(given)
     inputs = _inputs(x)
@@ -101,7 +101,7 @@ def check_indexes(given: Mapping[str, Any]) -> None:
     for other in others:
         if not indexed[first].index.equals(indexed[other].index):
             raise ValueError(
-                f"{first} and {other} have different indexes, and rows are taken by position: bring them in the same "
+                f"{first} and {other} have different indexes, and rows are taken by position: bring them into the same "
                 f"order, as with {other}.reindex({first}.index), or give arrays, as with {other}.to_numpy()"
             )
 
@@ -113,7 +113,7 @@ def warn_of_order(x: Any, records: list[slice]) -> None:
     if not all(x.index[rows].is_monotonic_increasing for rows in records):
         warn(
             [
-                "the rows are not in the order of their index: a model with memory takes them in their order as time "
+                "the rows are not in the order of their index: a model with memory needs them in the order of time "
                 "(sort them, as with sort_index(); a shuffled split, such as ShuffleSplit, destroys it)"
             ]
         )
@@ -171,7 +171,7 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
     """Contiguous float64; the very same array if it is that already."""
     values = without_mask(values, what)
     if are_stamps(values):
-        raise ValueError(f"{what}: dates and times are no numbers (give them as time)")
+        raise ValueError(f"{what}: dates and times are not numbers (give them as time)")
     try:
         if hasattr(values, "iloc"):
             values = values.to_numpy(dtype=np.float64, na_value=np.nan)
@@ -183,9 +183,10 @@ def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.n
         raise ValueError(f"{what}: {error}") from None
     if numbers.ndim == 2 and 2 not in dimensions and numbers.shape[1] == 1:
         numbers = np.ascontiguousarray(numbers[:, 0])
-    if values.ndim not in dimensions and numbers.ndim not in dimensions:
-        expected = " or ".join(f"{dimension}" for dimension in dimensions)
-        raise ValueError(f"{what}: an array of {expected} dimensions is needed, not {values.ndim}")
+    # `ascontiguousarray` makes an array of one value from a number.
+    if values.ndim == 0 or values.ndim not in dimensions and numbers.ndim not in dimensions:
+        expected = "one- or two-dimensional" if 2 in dimensions else "one-dimensional"
+        raise ValueError(f"{what}: a {expected} array is needed, not one of {values.ndim} dimensions")
     return numbers
 
 
@@ -215,7 +216,7 @@ def _records(records: Any, rows: int) -> list[tuple[str, slice]]:
     for piece in runs(labels):
         name = str(labels[piece.start])
         if name in begun:
-            raise ValueError(f'record "{name}" goes on after another began (keep its rows together)')
+            raise ValueError(f'record "{name}" continues after another record (keep its rows together)')
         begun.add(name)
         found.append((name, piece))
     return found

@@ -1,4 +1,4 @@
-"""What kind of hysteresis is this?"""
+"""Properties of hysteresis, from data or of a model."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
+from hysid._arguments import real, truth
 from hysid._data import columns
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Finding:
-    """A property, and what data or a model say about it.
+    """A property of the hysteresis, with its verdict and evidence.
 
     Attributes
     ----------
@@ -28,15 +29,16 @@ class Finding:
     verdict : str
         ``"yes"``, ``"no"`` or ``"not testable"``.
     index, threshold, noise : float or None
-        The measure that decides, where it decides otherwise, and what noise alone would give.
+        The measure of the property, the value that separates yes from no, and the value from noise alone; shares,
+        not percent.
     comparisons : int
-        How many comparisons the index is the largest of.
+        Number of comparisons; the index is the largest of them.
     statement : str
-        What was found, in words.
+        The result in words.
     experiment : str or None
-        Where the data do not tell: the experiment that would.
+        If the property could not be tested: an experiment that tests it.
     evidence : list of dict
-        The rows that show it, the strongest first.
+        The rows behind the index, the strongest evidence first.
     """
 
     name: str
@@ -97,16 +99,16 @@ class _Findings:
 
 
 class Diagnosis(_Findings):
-    """Everything that measured data say about their hysteresis.
+    """Properties of the hysteresis in measured data.
 
     Attributes
     ----------
     properties : list of Finding
         Ten properties, each with its verdict and evidence; ``diagnosis["masing"]`` is one of them.
     doctor : list of dict
-        What in the data would mislead a fit, warnings first.
+        Data-quality issues that mislead a fit, warnings first.
     advice : dict
-        The simplest model that can hold what was found.
+        The simplest model that can represent these properties.
     content : dict
         What the program prints with ``hysid diagnose --json``.
     """
@@ -117,25 +119,25 @@ class Diagnosis(_Findings):
 
     @property
     def doctor(self) -> list[dict[str, Any]]:
-        """What in the data would mislead a fit."""
+        """Data-quality issues that mislead a fit."""
         return list(self.content["doctor"])
 
     @property
     def advice(self) -> dict[str, Any]:
-        """The simplest model that can hold what was found."""
+        """The simplest model that can represent these properties."""
         return dict(self.content["advice"])
 
 
 class ModelDiagnosis(_Findings):
-    """Everything that can be said about the hysteresis of a fitted model.
+    """Properties of the hysteresis of a fitted model.
 
     Attributes
     ----------
     properties : list of Finding
-        Ten properties, found by driving the model.
+        Ten properties, found by probing the model.
     content : dict
-        Beside them what its equations promise, its weights say, the widths of its loops, and what is certain
-        of its memory.
+        The properties, the verdicts from equations and weights, the widths of the loops, and statements on the
+        memory.
     """
 
 
@@ -148,32 +150,32 @@ def diagnose(
     smallest_reversal: float = 0.02,
     smoothing: bool = True,
 ) -> Diagnosis:
-    """Tell what kind of hysteresis measured data have.
+    """Determine the properties of the hysteresis in measured data.
 
     Parameters
     ----------
     x : array of shape (n,) or (n, inputs)
-        The inputs in the user's units; how the output follows the first is diagnosed.
+        The inputs in the user's units; the output over the first input is diagnosed.
     y : array of shape (n,)
-        The measured output; NaN is a blank.
+        The measured output; NaN for no measurement.
     time : array of shape (n,), optional
         Time stamps, increasing within each record.
     records : array of shape (n,), optional
         A label for each row.
     smallest_reversal : float
-        Reversals of the input below this share of its range are no turning points.
+        Reversals of the input below this share of its range are ignored.
     smoothing : bool
-        Smooth noise out of branches before they are compared.
+        Smooth branches before they are compared.
 
     Returns
     -------
     Diagnosis
-        Ten properties with their evidence, what is wrong with the data, and what to do.
+        Ten properties with their evidence, data-quality issues, and advice on a model.
 
     Raises
     ------
     ValueError
-        Data that nothing can be said about.
+        Data that cannot be diagnosed.
 
     Examples
     --------
@@ -182,6 +184,8 @@ def diagnose(
     >>> hysid.diagnose(train.x, train.y, time=train.time).verdict("deterioration")
     'yes'
     """
+    smallest_reversal = real("smallest_reversal", smallest_reversal)
+    smoothing = truth("smoothing", smoothing)
     if not 0.0 < smallest_reversal < 1.0:
         raise ValueError(f"smallest_reversal {smallest_reversal}: a number between 0 and 1 is needed")
     arranged = columns(x, y, time, None, records)

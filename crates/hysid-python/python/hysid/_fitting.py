@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._warning import warn
 from hysid.model import Model
@@ -22,26 +23,25 @@ if TYPE_CHECKING:
 
 
 class Progress(NamedTuple):
-    """Where a fit is.
+    """Progress of a fit.
 
     Attributes
     ----------
     done : float
-        Share of the work done, 0 to 1, if every start takes all its epochs.
+        Share of the work done, from 0 to 1; assumes that every start uses all its epochs.
     train_nrmse_percent : float
-        Error on the training rows, in percent of the output's standard deviation; NaN in the midst of a fit
-        that has no rounds.
+        Error on the training rows, in percent of the output's standard deviation; NaN if it is not known yet.
     start : int
-        Start, counted from 0.
+        Number of the start, from 0.
     epoch : int
-        Epochs done by this start in this phase.
+        Finished epochs of this start in this phase.
     phase : str
         ``"starts"`` or ``"all-data"``.
     model : str
         The model that is being fitted.
     is_part : bool
-        Whether this is one fit of many: of a candidate of ``auto``, or to a fold of `hysid.validate`. Only
-        ``done`` speaks of the whole work then.
+        Whether this is one of many fits: of a candidate of ``auto``, or of a fold of `hysid.validate`. Then only
+        ``done`` is about the whole work.
     """
 
     done: float
@@ -93,27 +93,27 @@ def fit(
 ) -> Model:
     """Identify a model from measured data.
 
-    Without a choice of `model`, Hysid cross-validates networks and classical models and combines the best in an
-    ensemble, which is the most accurate and takes some ten seconds to a minute. One named model takes seconds.
+    Without `model`, Hysid cross-validates networks and classical models and combines the best in an ensemble. This is
+    the most accurate choice and takes ten seconds to a minute. A single named model takes seconds.
 
-    Options have the names that they have on the command line of the program `hysid`; ``None`` is the default. A model
-    that has no use for an option ignores it, with a warning. The same data, options and seed give the same model file,
-    byte by byte. Ctrl-C ends the fit, warns, and returns the best model so far.
+    Options have the same names as on the command line of the program `hysid`; ``None`` is the default. A model warns
+    of options that it ignores. The same data, options and seed give the same model file, byte by byte. Ctrl-C ends the
+    fit with a warning and returns the best model so far.
 
     Parameters
     ----------
     x : array of shape (n,) or (n, inputs)
-        The inputs in the user's units; a pandas object gives its names to the model.
+        The inputs in the user's units; the model takes its column names from a pandas object.
     y : array of shape (n,)
-        The measured output in the user's unit. NaN, or a mask, is a blank: such a row drives the memory, and is
-        neither trained on nor scored. Rows are taken by position: pandas objects must have the same index.
+        The measured output in the user's unit. NaN or a mask means no measurement: such a row drives the memory, but
+        is neither trained on nor scored. Rows are taken by position: pandas objects must have the same index.
     time : array of shape (n,), optional
         Time stamps, increasing within each record; dates and times become seconds since the first.
     rate : str or array of shape (n,), default "auto"
-        How the rate of the first input is found: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
+        Method for the rate of the first input: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
     records : array of shape (n,), optional
-        A label for each row: the memory starts afresh where the label changes.
+        A label for each row; where the label changes, a new record starts in the virgin state.
     model : str, optional
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
@@ -168,8 +168,8 @@ def fit(
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
     operators : int, optional
-        Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops. Default: 10 to 60, by
-        model.
+        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops. Default:
+        10 to 60, by model.
     thresholds : array of numbers, optional
         Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
         input. Default: chosen by cross-validation.
@@ -188,12 +188,12 @@ def fit(
     differential_form : bool, optional
         Use jiles-atherton in its differential form of 1992 in place of that of 1986. Default: off.
     time_limit : float, optional
-        Seconds after which to stop and keep the best model so far.
+        Time in seconds after which to stop and keep the best model so far.
     threads : int, optional
-        Threads to use; the model does not depend on it. One for each processor by default.
+        Number of threads; the model does not depend on it. By default one for each processor.
     progress : callable, optional
-        Called with a `Progress` up to twenty times a second; the fit ends with the best model so far if it
-        returns something true. `hysid.tqdm_progress` makes one that shows a bar.
+        Called with a `Progress` up to twenty times a second. If it returns true, the fit ends with the best model
+        so far. `hysid.tqdm_progress` shows a progress bar.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def fit(
     Raises
     ------
     ValueError
-        Data that nothing can be identified from, or an option outside its meaning.
+        Data that no model can be identified from, or an invalid option.
 
     Examples
     --------
@@ -238,7 +238,7 @@ def identified(
     threads: int | None,
     progress: Callable[[Progress], object] | None = None,
 ) -> Model:
-    """Fits, warns before and after, and gives the model."""
+    """Fits with warnings before and after."""
     data, request = requested(arranged, rate, options, threads)
     return fitted(data, request, time_limit=time_limit, threads=threads, progress=progress)
 
@@ -251,22 +251,23 @@ def fitted(
     threads: int | None,
     progress: Callable[[Progress], object] | None = None,
 ) -> Model:
-    """Fits, warns of what there is to know afterwards, and gives the model."""
+    """Fits with warnings afterwards."""
+    limit = None if time_limit is None else real("time_limit", time_limit)
     with told(progress) as tell:
-        native, _, interrupted = _hysid.identify(data, request, threads, time_limit, tell)
+        native, _, interrupted = _hysid.identify(data, request, threads, limit, tell)
     model = Model(native)
-    warn(model.notes + (["interrupted: this is the best model so far"] if interrupted else []))
+    warn(model.notes + (["interrupted: the best model so far is returned"] if interrupted else []))
     return model
 
 
 def requested(
     arranged: Columns, rate: str, options: dict[str, Any], threads: int | None
 ) -> tuple[_hysid.Dataset, _hysid.FitSpec]:
-    """Data and request as the native module takes them; refuses and warns before there is any work."""
+    """Data and request for the native module; checks them and warns before the work."""
     if rate in ("central", "backward", "savitzky-golay") and arranged.time is None:
-        raise ValueError("there is no time to take the rate from (give time, or use rate='none')")
-    if threads is not None and not 1 <= threads <= 1024:
-        raise ValueError(f"threads {threads}: choose 1 to 1024")
+        raise ValueError(f"rate='{rate}' needs time stamps (give time, or use rate='none')")
+    if threads is not None:
+        whole("threads", threads, 1, 1024)
     data = arranged.dataset()
     request = _hysid.FitSpec(as_json(options), rate, data)
     warn(request.warnings(data) + data.warnings())
@@ -275,7 +276,7 @@ def requested(
 
 @contextmanager
 def told(callback: Callable[[Progress], object] | None) -> Iterator[_Teller | None]:
-    """Calls a user's callback while there is work, and closes it then if it can be closed."""
+    """Calls a user's callback during the work, and closes it afterwards if it has `close`."""
     try:
         yield None if callback is None else _Teller(callback)
     finally:
@@ -295,7 +296,7 @@ class _Teller:
 
 
 def as_json(options: dict[str, Any]) -> str:
-    """Options as the native module takes them; what was left out has its default."""
+    """Options for the native module; options that are None have their defaults."""
     given = {name: _plain(value) for name, value in options.items() if value is not None}
     for name, value in given.items():
         for number in value if isinstance(value, list) else [value]:
@@ -304,7 +305,7 @@ def as_json(options: dict[str, Any]) -> str:
     try:
         return json.dumps(given)
     except TypeError as error:
-        raise ValueError(f"an option cannot be used: {error}") from None
+        raise TypeError(f"invalid option: {error}") from None
 
 
 def _plain(value: Any) -> Any:

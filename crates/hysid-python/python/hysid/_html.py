@@ -7,7 +7,7 @@ from html import escape
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table with a head; numbers stand under one another, the first column is words."""
+    """A table with a heading; the first column is aligned left, the others right."""
 
     def line(cells: Sequence[str], tag: str) -> str:
         aligned = (

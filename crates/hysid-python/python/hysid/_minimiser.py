@@ -1,15 +1,17 @@
-"""The minimiser of functions that need not be smooth."""
+"""Minimisation of functions that need not be smooth."""
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -22,9 +24,9 @@ class Minimum:
     Attributes
     ----------
     x : array of shape (n,)
-        Where it is.
+        The point.
     value : float
-        The function there.
+        Value of the function at the point.
     iterations, evaluations : int
         Outer iterations, and evaluations of the function.
     termination : str
@@ -57,28 +59,28 @@ def minimise(
     Parameters
     ----------
     function : callable
-        Takes an array of shape (n,), gives the value and a sub-gradient of shape (n,) there.
+        Takes an array of shape (n,); returns the value and a sub-gradient of shape (n,) there.
     x : array of shape (n,)
-        Where to begin.
+        Starting point.
     dilation : str
-        Along what the space is dilated: ``"difference"`` of two successive sub-gradients (the r-algorithm), or
+        Direction of the space dilatation: ``"difference"`` of two successive sub-gradients (the r-algorithm), or
         the ``"subgradient"`` itself.
     coefficient : float
-        By which the space is dilated; above 1, usually 2 to 4.
+        Coefficient of the space dilatation; above 1, usually 2 to 4.
     first_step : float
-        About the distance to the minimum.
+        First step; choose about the distance to the minimum.
     shrinkage : float
-        By which the step is multiplied when one inner step was enough: 1 for a function that is not smooth.
+        Factor of the step size after an iteration with one inner step; 1 for a function that is not smooth.
     growth : float
-        By which the step is multiplied at every third inner step.
+        Factor of the step size at every third inner step.
     lower_bound : float
-        A value that the function does not fall below, for ``"subgradient"``.
+        Lower bound of the function, for ``"subgradient"``.
     iterations : int
-        Most outer iterations.
+        Maximum number of outer iterations.
     target : float
-        A value that is low enough.
+        Stop at this value of the function.
     stall : int
-        Iterations in a row without a relative fall of 1e-4 that end it; 0 for no such rule.
+        Stop after this number of iterations without a relative decrease of 1e-4; 0 for never.
 
     Returns
     -------
@@ -88,7 +90,7 @@ def minimise(
     Raises
     ------
     ValueError
-        A setting outside its meaning.
+        An invalid option.
 
     Examples
     --------
@@ -98,20 +100,45 @@ def minimise(
     >>> bool(np.allclose(minimum.x, [3, -1], atol=1e-8))
     True
     """
-    options = {
-        "dilation": dilation,
-        "coefficient": float(coefficient),
-        "first_step": float(first_step),
-        "shrinkage": float(shrinkage),
-        "growth": float(growth),
-        "lower_bound": float(lower_bound),
+    if dilation not in ("difference", "subgradient"):
+        raise ValueError(f"dilation {dilation!r}: choose 'difference' or 'subgradient'")
+    numbers = {
+        "coefficient": coefficient,
+        "first_step": first_step,
+        "shrinkage": shrinkage,
+        "growth": growth,
+        "lower_bound": lower_bound,
     }
+    options = {"dilation": dilation, **{name: _finite(name, value) for name, value in numbers.items()}}
     start = np.array(x, dtype=np.float64, ndmin=1)
+    if start.ndim != 1:
+        raise ValueError(f"x: a one-dimensional array is needed, not one of {start.ndim} dimensions")
+    return Minimum(
+        *_hysid.minimise(
+            lambda at: _value_and_slope(function(at)),
+            start,
+            json.dumps(options),
+            whole("iterations", iterations),
+            real("target", target),
+            whole("stall", stall),
+        )
+    )
 
-    def value(at: np.ndarray) -> tuple[float, np.ndarray]:
-        answer, slope = function(at)
-        return float(answer), np.ascontiguousarray(slope, dtype=np.float64)
 
-    if iterations < 0 or stall < 0:
-        raise ValueError("iterations and stall must not be below 0")
-    return Minimum(*_hysid.minimise(value, start, json.dumps(options), iterations, target, stall))
+def _finite(name: str, value: float) -> float:
+    number = real(name, value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} {number}: a finite number is needed")
+    return number
+
+
+def _value_and_slope(returned: Any) -> tuple[float, np.ndarray]:
+    """Value and sub-gradient, as the native module takes them."""
+    try:
+        value, slope = returned
+        number, slopes = float(value), np.ascontiguousarray(slope, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"function: must return a number and an array, not {returned!r}") from None
+    if slopes.ndim != 1:
+        raise ValueError(f"function: a sub-gradient of one dimension is needed, not of {slopes.ndim}")
+    return number, slopes

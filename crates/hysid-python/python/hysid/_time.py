@@ -45,7 +45,7 @@ def seconds(values: Any) -> np.ndarray:
     if len(missing):
         raise ValueError(f"row {missing[0] + 1} has no time stamp")
     if stamps.dtype.kind == "M" and len(stamps):
-        # Months and years are no number of seconds; dates are.
+        # Months and years have no fixed number of seconds; dates have.
         stamps = stamps.astype("datetime64[D]") if np.datetime_data(stamps.dtype)[0] in "YMW" else stamps
         stamps = stamps - stamps[0]
     return np.ascontiguousarray(stamps / SECOND, dtype=np.float64)

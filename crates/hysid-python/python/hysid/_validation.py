@@ -1,4 +1,4 @@
-"""Judgement on data held out."""
+"""Cross-validation."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._fitting import requested, told
 from hysid._html import number, table
@@ -23,14 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FoldErrors:
-    """What came of a fold.
+    """Result of a fold.
 
     Attributes
     ----------
     held_out : str
-        What was held out, in words.
+        The rows held out, in words.
     train, unseen : Errors
-        Errors on what was fitted to, and on what was held out.
+        Errors on the training rows and on the held-out rows.
     """
 
     held_out: str
@@ -40,17 +41,17 @@ class FoldErrors:
 
 @dataclass(frozen=True)
 class Validation:
-    """What came of all folds.
+    """Result of all folds.
 
     Attributes
     ----------
     folds : tuple of FoldErrors
-        Fold by fold; those that were not reached in time are missing.
+        The folds; those that were not reached in time are missing.
     unseen : Errors
-        Errors over all rows held out together; of a single record, rows are in several folds.
+        Errors over the held-out rows of all folds; of a single record, some rows are in several folds.
     unseen_nrmse_std_percent : float or None
-        Geometric mean over the folds of the error on what was held out, in percent of the standard deviation
-        there: one fold that goes far beyond the others does not decide it.
+        Geometric mean over the folds of the error on held-out rows, in percent of their standard deviation; it
+        limits the influence of a single fold with a large error.
     """
 
     folds: tuple[FoldErrors, ...]
@@ -80,20 +81,20 @@ def validate(
     progress: Callable[[Progress], object] | None = None,
     **options: Any,
 ) -> Validation:
-    """Fit to a part of the data and judge on the rest, in free run, several times.
+    """Cross-validate a model: fit to a part of the data, evaluate free runs on the rest, fold by fold.
 
-    Of several records, some are held out in turn. A single record is cut in time: the model sees its beginning
-    and predicts what follows, with the memory carried over; and blocks are held out from its beginning and
-    middle. Ctrl-C ends it, warns, and returns the folds so far.
+    Several records are held out in turn. A single record is cut in time: the model is fitted to its beginning and
+    simulates what follows, with the memory carried over; two further folds hold out its beginning and its middle.
+    Ctrl-C ends the validation with a warning and returns the finished folds.
 
     Parameters
     ----------
     x, y, time, rate, records
         As of `hysid.fit`.
     folds : int
-        Folds at most, of several records; of a single one there are always five.
+        Maximum number of folds of several records; a single record always gives five.
     time_limit : float, optional
-        Seconds after which to stop: the fold under way is judged with its best model so far.
+        Time in seconds after which to stop; the current fold is evaluated with its best model so far.
     threads : int, optional
         As of `hysid.fit`.
     progress : callable, optional
@@ -104,12 +105,12 @@ def validate(
     Returns
     -------
     Validation
-        Errors fold by fold, and over all.
+        Errors of each fold, and over all folds.
 
     Raises
     ------
     ValueError
-        Data too few to hold any out, and as `hysid.fit`.
+        Too few data to hold any out, and as of `hysid.fit`.
 
     Examples
     --------
@@ -119,15 +120,15 @@ def validate(
     >>> len(validation.folds)
     5
     """
-    if folds < 2:
-        raise ValueError(f"folds {folds}: choose 2 or more")
+    folds = whole("folds", folds, 2)
     named = isinstance(rate, str)
     arranged = columns(x, y, time, None if named else rate, records)
     data, request = requested(arranged, str(rate) if named else "given", options, threads)
+    limit = None if time_limit is None else real("time_limit", time_limit)
     with told(progress) as tell:
-        text, interrupted = _hysid.validate(data, request, folds, threads, time_limit, tell)
+        text, interrupted = _hysid.validate(data, request, folds, threads, limit, tell)
     if interrupted:
-        warn(["interrupted: these are the folds so far"])
+        warn(["interrupted: only the finished folds are returned"])
     found = json.loads(text)
     return Validation(
         tuple(

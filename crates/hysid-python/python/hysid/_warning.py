@@ -1,4 +1,4 @@
-"""The category of all warnings of the package."""
+"""The category of all warnings of this package."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Iterable
 
 
 class HysidWarning(UserWarning):
-    """Something to know that is no error: each says what, why, and what helps."""
+    """A warning of Hysid: it says what is wrong, why, and what helps."""
 
 
 def warn(texts: Iterable[str]) -> None:
-    """Warn of each, as of the line outside of this package that called it."""
+    """Warn of each text, at the caller's line outside of this package."""
     frame = sys._getframe()
     level = 1
     while frame.f_back is not None and frame.f_globals.get("__name__", "").split(".")[0] == "hysid":

@@ -1,17 +1,19 @@
-"""The classical models as functions on arrays: parameters in the user's units and the field's symbols.
+"""The classical models as functions on arrays: parameters in the user's units, with the symbols of the field.
 
-All begin virgin. To fit one to data, name it in `hysid.fit`.
+All start in the virgin state. To fit one to data, name it in `hysid.fit`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 from hysid._data import columns
 
 if TYPE_CHECKING:
@@ -30,34 +32,61 @@ __all__ = [
     "rate_dependent_prandtl_ishlinskii",
 ]
 
+DEGRADATION = ("delta_a", "delta_nu", "delta_eta", "zeta_s", "p", "q", "psi_0", "delta_psi", "lambda")
+"""Parameters of Baber and Noori's degradation and pinching."""
+
 
 def _run(law: str, parameters: dict[str, Any], x: Any, time: Any = None, rate: str | None = None) -> np.ndarray:
     taken = columns(x, None, time, None, None)
     if len(taken.inputs) != 1:
         raise ValueError(f"{law} takes one input, not {len(taken.inputs)}")
     stamps = None if taken.time is None else taken.time.values
-    description = json.dumps({law: parameters}, default=float)
-    output: np.ndarray = _hysid.law(description, taken.inputs[0].values, stamps, rate)
+    output: np.ndarray = _hysid.law(json.dumps({law: parameters}), taken.inputs[0].values, stamps, rate)
     return output
 
 
-def _list(values: Any) -> list[float]:
-    return [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
+def _number(name: str, value: Any) -> float:
+    number = real(name, value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} {number}: a finite number is needed")
+    return number
+
+
+def _numbers(**values: Any) -> dict[str, float]:
+    """Numbers by their names."""
+    return {name: _number(name, value) for name, value in values.items()}
+
+
+def _list(name: str, values: Any) -> list[float]:
+    try:
+        numbers = np.asarray(values, dtype=np.float64).ravel()
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: an array of numbers is needed") from None
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"{name}: finite numbers are needed")
+    return [float(number) for number in numbers]
+
+
+def _named(name: str, values: Mapping[str, Any], keys: Sequence[str]) -> dict[str, float]:
+    """Numbers of a dict, which has exactly these keys."""
+    if set(values) != set(keys):
+        raise ValueError(f"{name}: a dict with the keys {', '.join(keys)} is needed")
+    return {key: _number(f"{name}[{key!r}]", values[key]) for key in keys}
 
 
 def masing(x: Values, thresholds: ArrayLike, slopes: ArrayLike, constant: float = 0.0) -> np.ndarray:
-    """Run a model by Masing's rule: every branch is the virgin curve, twice as large.
+    """Simulate a model by Masing's rule: every branch is the virgin curve, scaled by two.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     thresholds : array of shape (m,)
-        Where the virgin curve bends, in the unit of the input; positive and rising.
+        Inputs at which the slope of the virgin curve changes, in the unit of the input; positive and increasing.
     slopes : array of shape (m + 1,)
         Slopes of the virgin curve below each threshold, and beyond the last.
     constant : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
 
     Returns
     -------
@@ -69,36 +98,41 @@ def masing(x: Values, thresholds: ArrayLike, slopes: ArrayLike, constant: float 
     >>> hysid.classical.masing([0, 3, 0], thresholds=[1.0], slopes=[1.0, 0.0])
     array([ 0.,  1., -1.])
     """
-    parts = {"constant": constant, "thresholds": _list(thresholds), "slopes": _list(slopes)}
+    parts = {
+        **_numbers(constant=constant),
+        "thresholds": _list("thresholds", thresholds),
+        "slopes": _list("slopes", slopes),
+    }
     return _run("masing", parts, x)
 
 
-def _plays(thresholds: Any, weights: Any, linear: float, constant: float) -> dict[str, Any]:
+def _plays(thresholds: Any, weights: Any, linear: float, constant: float, of: str = "") -> dict[str, Any]:
+    """Plays, or dead zones: then `of` begins the names of the arguments."""
     return {
-        "constant": constant,
-        "linear": linear,
-        "thresholds": _list(thresholds),
-        "weights": _list(weights),
+        "constant": _number(f"{of}constant", constant),
+        "linear": _number(f"{of}linear", linear),
+        "thresholds": _list(f"{of}thresholds", thresholds),
+        "weights": _list(f"{of}weights", weights),
     }
 
 
 def prandtl_ishlinskii(
     x: Values, thresholds: ArrayLike, weights: ArrayLike, linear: float = 0.0, constant: float = 0.0
 ) -> np.ndarray:
-    """Run a Prandtl-Ishlinskii model: a sum of plays.
+    """Simulate a Prandtl-Ishlinskii model: a weighted sum of plays.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     thresholds : array of shape (m,)
-        Of the plays, in the unit of the input; positive and rising.
+        Thresholds of the plays, in the unit of the input; positive and increasing.
     weights : array of shape (m,)
-        Of the plays, output for input.
+        Weights of the plays, in the unit of the output per unit of the input.
     linear : float
         Weight of the input itself.
     constant : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
 
     Returns
     -------
@@ -124,20 +158,20 @@ def modified_prandtl_ishlinskii(
     dead_zone_linear: float = 1.0,
     dead_zone_constant: float = 0.0,
 ) -> np.ndarray:
-    """Run a modified Prandtl-Ishlinskii model: plays, then one-sided dead zones that bend their sum.
+    """Simulate a modified Prandtl-Ishlinskii model: a sum of plays, then a sum of one-sided dead zones.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     thresholds, weights : array of shape (m,)
-        Of the plays, as of `prandtl_ishlinskii`.
+        Thresholds and weights of the plays, as of `prandtl_ishlinskii`.
     dead_zone_thresholds, dead_zone_weights : array of shape (k,)
-        Of the dead zones, rising and not 0; and by how much the slope changes there, going away from 0.
+        Thresholds of the dead zones, increasing and not 0; and the change of the slope there, away from 0.
     linear, constant : float
-        Of the plays, as of `prandtl_ishlinskii`.
+        Linear weight and constant of the plays, as of `prandtl_ishlinskii`.
     dead_zone_linear, dead_zone_constant : float
-        Slope of the polygon at 0, and its value there.
+        Slope and value of the dead-zone function at 0.
 
     Returns
     -------
@@ -149,15 +183,24 @@ def modified_prandtl_ishlinskii(
     >>> hysid.classical.modified_prandtl_ishlinskii([0, 3, 0], [1.0], [2.0], [3.0], [1.0])
     array([0., 5., 2.])
     """
-    zones = _plays(dead_zone_thresholds, dead_zone_weights, dead_zone_linear, dead_zone_constant)
+    zones = _plays(dead_zone_thresholds, dead_zone_weights, dead_zone_linear, dead_zone_constant, "dead_zone_")
     parts = {"hysteresis": _plays(thresholds, weights, linear, constant), "superposition": zones}
     return _run("modified-prandtl-ishlinskii", parts, x)
 
 
 def _play_weights(weights: Any) -> dict[str, Any]:
-    if isinstance(weights, Mapping):
-        return {"exponential": dict(weights)}
-    return {"free": _list(weights)}
+    if not isinstance(weights, Mapping):
+        return {"free": _list("weights", weights)}
+    law: dict[str, float] = _named("weights", weights, ("plays", "rho", "tau"))
+    return {"exponential": {**law, "plays": whole("weights['plays']", weights["plays"], 1)}}
+
+
+def _envelope(name: str, values: Any) -> dict[str, float]:
+    symbols = ("a0", "a1", "a2", "a3")
+    numbers = _list(name, values)
+    if len(numbers) != len(symbols):
+        raise ValueError(f"{name}: {', '.join(symbols)} are needed, not {len(numbers)} numbers")
+    return dict(zip(symbols, numbers))
 
 
 def generalized_prandtl_ishlinskii(
@@ -169,22 +212,22 @@ def generalized_prandtl_ishlinskii(
     initial: float = 0.0,
     offset: float = 0.0,
 ) -> np.ndarray:
-    """Run a generalized Prandtl-Ishlinskii model: plays between two bent envelopes.
+    """Simulate a generalized Prandtl-Ishlinskii model: plays between two envelope functions.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     left, right : array of shape (4,)
-        ``a0, a1, a2, a3`` of the envelopes ``a0 tanh(a1 x + a2) + a3``, followed upwards and downwards.
+        ``a0, a1, a2, a3`` of the envelopes ``a0 tanh(a1 x + a2) + a3``, for increasing and for decreasing input.
     spacing : float
-        Distance of the plays' thresholds, of which the first is 0.
+        Distance between the thresholds of the plays; the first is 0.
     weights : array of shape (m,) or dict
-        Of the plays, in the unit of the output; or ``plays``, ``rho`` and ``tau`` of ``rho exp(-tau r)``.
+        Weights of the plays, in the unit of the output; or ``plays``, ``rho`` and ``tau`` of ``rho exp(-tau r)``.
     initial : float
-        Where the plays begin.
+        Initial output of the plays.
     offset : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
 
     Returns
     -------
@@ -199,11 +242,9 @@ def generalized_prandtl_ishlinskii(
     True
     """
     parts = {
-        "offset": offset,
-        "left": dict(zip(("a0", "a1", "a2", "a3"), _list(left))),
-        "right": dict(zip(("a0", "a1", "a2", "a3"), _list(right))),
-        "initial": initial,
-        "spacing": spacing,
+        **_numbers(offset=offset, initial=initial, spacing=spacing),
+        "left": _envelope("left", left),
+        "right": _envelope("right", right),
         "weights": _play_weights(weights),
     }
     return _run("generalized-prandtl-ishlinskii", parts, x)
@@ -221,7 +262,7 @@ def rate_dependent_prandtl_ishlinskii(
     offset: float = 0.0,
     rate: str = "central",
 ) -> np.ndarray:
-    """Run a rate-dependent Prandtl-Ishlinskii model: plays whose thresholds grow with the rate of the input.
+    """Simulate a rate-dependent Prandtl-Ishlinskii model: plays whose thresholds grow with the rate of the input.
 
     Parameters
     ----------
@@ -230,22 +271,22 @@ def rate_dependent_prandtl_ishlinskii(
     time : array of shape (n,)
         Time stamps, increasing.
     spacing : float
-        Distance of the thresholds at rest, in the unit of the input.
+        Distance between the thresholds at rate 0, in the unit of the input.
     weights : array of shape (m,) or dict
-        Of the plays; or ``plays``, ``rho`` and ``tau`` of ``rho exp(-tau r)``.
+        Weights of the plays; or ``plays``, ``rho`` and ``tau`` of ``rho exp(-tau r)``.
     beta : float
-        Growth of every threshold with the rate, in the unit of time; with `growth`, its logarithm is the
-        factor at rest.
+        Growth of every threshold with the rate, in the unit of time; with `growth`, the logarithm of `beta` is the
+        factor at rate 0.
     growth : float, optional
-        Thresholds grow with the logarithm of ``beta + growth |x'|^power`` in place of linearly.
+        If given, thresholds grow with the logarithm of ``beta + growth |x'|^power`` instead of linearly.
     power : float
-        Power of the rate under that logarithm.
+        Exponent of the rate in this logarithm.
     spring : float
         Weight of the input itself.
     offset : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
     rate : str
-        How the rate is found: central, backward or savitzky-golay.
+        Method for the rate: central, backward or savitzky-golay.
 
     Returns
     -------
@@ -258,12 +299,13 @@ def rate_dependent_prandtl_ishlinskii(
     >>> y
     array([0., 2., 1.])
     """
-    grown = {"beta": beta, "lambda": growth, "epsilon": power}
+    thresholds: dict[str, Any] = {"linear": _numbers(beta=beta)}
+    if growth is not None:
+        parameters = {"lambda": _number("growth", growth), "epsilon": _number("power", power)}
+        thresholds = {"logarithmic": {**_numbers(beta=beta), **parameters}}
     parts = {
-        "offset": offset,
-        "spring": spring,
-        "spacing": spacing,
-        "thresholds": {"linear": {"beta": beta}} if growth is None else {"logarithmic": grown},
+        **_numbers(offset=offset, spring=spring, spacing=spacing),
+        "thresholds": thresholds,
         "weights": _play_weights(weights),
     }
     return _run("rate-dependent-prandtl-ishlinskii", parts, x, time, rate)
@@ -277,23 +319,23 @@ def preisach(
     slope: float = 0.0,
     constant: float = 0.0,
 ) -> np.ndarray:
-    """Run the classical Preisach model on a plane of cells.
+    """Simulate the classical Preisach model on a plane of cells.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     lines : array of shape (m + 1,)
-        Where both axes of the plane are cut, in the unit of the input; rising.
+        Grid lines of both axes of the plane, in the unit of the input; increasing.
     cells : array of shape (m (m + 1) / 2,)
         Weights of the cells in the unit of the output, row by row: w00, w10, w11, w20, ... The first index is
         the interval of the upper threshold.
     reversible : array of shape (m,), optional
         Weights of the intervals in the reversible part.
     slope : float
-        Of the reversible part, output for input.
+        Slope of the reversible part, in the unit of the output per unit of the input.
     constant : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
 
     Returns
     -------
@@ -305,13 +347,12 @@ def preisach(
     >>> hysid.classical.preisach([0, 1, -1, 1], lines=[-1.0, 1.0], cells=[2.0])
     array([ 0.,  2., -2.,  2.])
     """
-    cut = _list(lines)
+    grid = _list("lines", lines)
     parts = {
-        "constant": constant,
-        "slope": slope,
-        "lines": cut,
-        "reversible": [0.0] * (len(cut) - 1) if reversible is None else _list(reversible),
-        "cells": _list(cells),
+        **_numbers(constant=constant, slope=slope),
+        "lines": grid,
+        "reversible": [0.0] * (len(grid) - 1) if reversible is None else _list("reversible", reversible),
+        "cells": _list("cells", cells),
     }
     return _run("preisach", parts, x)
 
@@ -328,26 +369,27 @@ def bouc_wen(
     degradation: dict[str, float] | None = None,
     time: ArrayLike | None = None,
 ) -> np.ndarray:
-    """Run a Bouc-Wen law: a spring beside a hysteretic element that yields.
+    """Simulate a Bouc-Wen law: a spring parallel to a hysteretic element that yields.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input, such as a displacement.
     elastic_stiffness, hysteretic_stiffness : float
-        Of the spring, and of the element before it yields; output for input.
+        Stiffness of the spring, and of the hysteretic element before it yields.
     yield_displacement : float
-        In the unit of the input; above 0.
+        Input at which the element yields, in its unit; above 0.
     b : float
         beta / (beta + gamma), 0.05 to 3.
     n : float
         Sharpness of yielding, 1 to 10.
     damping : float
-        Share of the rate in the output; needs `time`.
+        Coefficient of the rate in the output; needs `time`.
     offset : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
     degradation : dict, optional
-        Degradation and pinching of Baber and Noori by its parameters' names.
+        Parameters of the degradation and pinching of Baber and Noori: ``delta_a``, ``delta_nu``, ``delta_eta``,
+        ``zeta_s``, ``p``, ``q``, ``psi_0``, ``delta_psi``, ``lambda``.
     time : array of shape (n,), optional
         Time stamps, increasing.
 
@@ -365,14 +407,16 @@ def bouc_wen(
     if damping != 0.0 and time is None:
         raise ValueError("damping: needs time")
     parts = {
-        "offset": offset,
-        "elastic_stiffness": elastic_stiffness,
-        "hysteretic_stiffness": hysteretic_stiffness,
-        "damping": damping,
-        "yield_displacement": yield_displacement,
-        "b": b,
-        "n": n,
-        "degradation": degradation,
+        **_numbers(
+            offset=offset,
+            elastic_stiffness=elastic_stiffness,
+            hysteretic_stiffness=hysteretic_stiffness,
+            damping=damping,
+            yield_displacement=yield_displacement,
+            b=b,
+            n=n,
+        ),
+        "degradation": None if degradation is None else _named("degradation", degradation, DEGRADATION),
     }
     return _run("bouc-wen", parts, x, time, None if time is None else "central")
 
@@ -388,7 +432,7 @@ def jiles_atherton(
     offset: float = 0.0,
     differential_form: bool = False,
 ) -> np.ndarray:
-    """Run a Jiles-Atherton law: domain walls that are pinned on their way.
+    """Simulate a Jiles-Atherton law: magnetisation by domain walls that are pinned.
 
     Parameters
     ----------
@@ -399,15 +443,15 @@ def jiles_atherton(
     a, k : float
         Width of the anhysteretic curve, and pinning; in the unit of the field, above 0.
     coupling : float
-        The field that the saturated magnetisation adds, 0 to 3 a.
+        Field added by the saturated magnetisation, 0 to 3 a.
     c : float
         Share of the reversible magnetisation, 0 to 0.99.
     permeability : float
-        Share of the field itself in the output.
+        Coefficient of the field in the output.
     offset : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
     differential_form : bool
-        The differential form of 1992 in place of that of 1986.
+        Use the differential form of 1992 instead of that of 1986.
 
     Returns
     -------
@@ -421,13 +465,9 @@ def jiles_atherton(
     (True, True)
     """
     parts = {
-        "offset": offset,
-        "permeability": permeability,
-        "saturation": saturation,
-        "a": a,
-        "k": k,
-        "coupling": coupling,
-        "c": c,
+        **_numbers(
+            offset=offset, permeability=permeability, saturation=saturation, a=a, k=k, coupling=coupling, c=c
+        ),
         "form": "differential" if differential_form else "original",
     }
     return _run("jiles-atherton", parts, x)
@@ -445,7 +485,7 @@ def lugre(
     spring: float = 0.0,
     offset: float = 0.0,
 ) -> np.ndarray:
-    """Run a LuGre law: friction of a contact whose bristles bend before they slip.
+    """Simulate a LuGre law: friction of a contact whose bristles bend before they slip.
 
     Parameters
     ----------
@@ -458,17 +498,17 @@ def lugre(
     presliding : float
         Displacement at which the contact slides, in the unit of the input; above 0.
     stribeck : float
-        Static over sliding friction, less 1; 0 to 10.
+        Static friction divided by sliding friction, minus 1; 0 to 10.
     stribeck_velocity : float
-        Rate at which static friction falls to sliding friction; above 0.
+        Rate at which friction decreases from static to sliding; above 0.
     bristle_damping : float
         Damping of the bristles, in the unit of the output multiplied by that of time.
     viscous : float
-        Viscous friction, output for rate.
+        Viscous friction, in the unit of the output per unit of the rate.
     spring : float
-        Stiffness of a spring beside the contact, output for input.
+        Stiffness of a spring beside the contact, in the unit of the output per unit of the input.
     offset : float
-        In the unit of the output.
+        Constant added to the output, in its unit.
 
     Returns
     -------
@@ -481,14 +521,14 @@ def lugre(
     >>> bool(np.isclose(friction[2], 2.0))
     True
     """
-    parts = {
-        "offset": offset,
-        "spring": spring,
-        "sliding": sliding,
-        "presliding": presliding,
-        "stribeck": stribeck,
-        "stribeck_velocity": stribeck_velocity,
-        "bristle_damping": bristle_damping,
-        "viscous": viscous,
-    }
+    parts = _numbers(
+        offset=offset,
+        spring=spring,
+        sliding=sliding,
+        presliding=presliding,
+        stribeck=stribeck,
+        stribeck_velocity=stribeck_velocity,
+        bristle_damping=bristle_damping,
+        viscous=viscous,
+    )
     return _run("lugre", parts, x, time, "central")

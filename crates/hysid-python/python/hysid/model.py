@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
+from hysid._arguments import real, truth
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
@@ -60,12 +61,12 @@ class Errors:
     max_abs_error: float
 
     def as_dict(self) -> dict[str, Any]:
-        """The errors by their names."""
+        """Give the errors as a dict."""
         return asdict(self)
 
 
 class Prediction(NamedTuple):
-    """A free run with its band, in the unit of the training.
+    """A free run with its prediction band, in the unit of the training.
 
     Attributes
     ----------
@@ -82,19 +83,20 @@ class Prediction(NamedTuple):
 
 @dataclass(frozen=True)
 class Member:
-    """One of several models that answer together.
+    """A member of an ensemble.
 
     Attributes
     ----------
     name : str
-        What it is, such as a network with its way of seeing the input; members of the same name are starts.
+        Its candidate, such as a network with its transform of the input; members with the same name are fits from
+        different random starts.
     kind : str
         Its kind, such as ``"networks"``.
     model : str
         Which model, such as ``"xpnn+"``.
     share, share_outside : float
-        What it counts in the whole while the input stays in the trained range, and once it has left it far;
-        of all members the sum is 1.
+        Its weight in the ensemble before the input leaves the trained range, and after; the weights of all members
+        add up to 1.
     """
 
     name: str
@@ -105,9 +107,9 @@ class Member:
 
 
 class Model:
-    """A fitted model: it simulates in the units of the data it was trained on.
+    """A fitted model, which simulates in the units of its training data.
 
-    Made by `hysid.fit`, or read from a file by `Model.load`. It can be pickled and compared.
+    `hysid.fit` and `Model.load` return models. Models can be pickled and compared.
 
     Attributes
     ----------
@@ -118,18 +120,18 @@ class Model:
     output : str
         Name of the output.
     rate : str or None
-        How the rate of the first input is found: central, backward, savitzky-golay or given.
+        Method for the rate of the first input: central, backward, savitzky-golay or given; None if the model does
+        not use the rate.
     parameters : int
-        Number of parameters that were found from the data.
+        Number of fitted parameters.
     needs_time : bool
-        Whether it can run without time stamps.
+        Whether it needs time stamps.
     members : tuple of Member
-        Those who answer together; empty for a single model.
+        Members of an ensemble; empty for a single model.
     has_band : bool
-        Whether it can `predict` a band.
+        Whether it has a prediction band, see `predict`.
     train, validation : Errors
-        Errors on the data it was trained on; and on data held out before it was trained on all, None if there
-        are none.
+        Errors on the training data, and on held-out data; `validation` is None if no data were held out.
     termination : str
         Why the last training run ended.
     """
@@ -157,7 +159,7 @@ class Model:
         Raises
         ------
         ValueError
-            A file that is damaged, of a later version, or no model.
+            The file is damaged, of a later version, or not a model file.
         """
         with open(path, encoding="utf-8") as file:
             try:
@@ -183,14 +185,15 @@ class Model:
         Model
             The model.
         """
+        if not isinstance(text, str):
+            raise TypeError(f"text: the text of a model file is needed, not {type(text).__name__}")
         return cls(_hysid.Model.from_json(text))
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the model file.
 
-        The file is written beside its place and renamed, so an old file survives a failed write. A model that is
-        there already and differs is kept as ``NAME.bak``. Links are followed, permissions are kept, and pipes and
-        devices are written through.
+        A failed write leaves an old file unchanged. An old model file with other content is kept as ``NAME.bak``.
+        Links are followed, permissions are kept, and pipes and devices are written to directly.
 
         Parameters
         ----------
@@ -202,11 +205,11 @@ class Model:
         Raises
         ------
         FileExistsError
-            There is a file already that is not a model file of Hysid, and `force` is False.
+            The file exists, is not a model file of Hysid, and `force` is False.
         OSError
             The file cannot be written.
         """
-        self._native.save(path, force)
+        self._native.save(path, truth("force", force))
 
     def to_json(self) -> str:
         """Give the text of the model file.
@@ -218,17 +221,17 @@ class Model:
         """
         return self._native.to_json()
 
-    # What it is
+    # Properties
 
     @cached_property
     def description(self) -> dict[str, Any]:
-        """All that stands in the model file."""
+        """Content of the model file."""
         described: dict[str, Any] = json.loads(self.to_json())
         return described
 
     @property
     def name(self) -> str:
-        """Which model it is."""
+        """Name of the model."""
         return str(self.description["model"])
 
     @property
@@ -243,29 +246,29 @@ class Model:
 
     @property
     def rate(self) -> str | None:
-        """How the rate of the first input is found."""
+        """Method for the rate of the first input."""
         rate: str | None = self.description["rate"]
         return rate
 
     @property
     def parameters(self) -> int:
-        """Number of parameters that were found from the data."""
+        """Number of fitted parameters."""
         return self._native.parameters()
 
     @property
     def needs_time(self) -> bool:
-        """Whether it can run without time stamps."""
+        """Whether the model needs time stamps."""
         return self._native.needs_time()
 
     @cached_property
     def members(self) -> tuple[Member, ...]:
-        """Those who answer together; empty for a single model."""
+        """Members of an ensemble; empty for a single model."""
         ensemble = self.description.get("ensemble")
         if ensemble is None:
             return ()
         models = [member["model"] for member in ensemble["members"]]
         found = sorted(_members(ensemble["group"], (), 1.0, 1.0), key=lambda one: one[0])
-        # The outermost group has all in it; below it are the kinds.
+        # The outermost group contains all members; below it are the kinds.
         return tuple(
             Member(path[-1], path[min(1, len(path) - 1)], models[place], inside, outside)
             for place, path, inside, outside in found
@@ -273,17 +276,17 @@ class Model:
 
     @property
     def has_band(self) -> bool:
-        """Whether it can `predict` a band."""
+        """Whether the model has a prediction band, see `predict`."""
         return "band" in self.description
 
     @property
     def train(self) -> Errors:
-        """Errors on the data it was trained on."""
+        """Errors on the training data."""
         return Errors(**self.description["training"]["train"])
 
     @property
     def validation(self) -> Errors | None:
-        """Errors on data held out before it was trained on all."""
+        """Errors on held-out data; None if no data were held out."""
         errors = self.description["training"]["validation"]
         return None if errors is None else Errors(**errors)
 
@@ -300,7 +303,7 @@ class Model:
 
     @property
     def notes(self) -> list[str]:
-        """What to know before relying on the model, in sentences; empty if there is nothing."""
+        """Notes on the limits of this model, in sentences."""
         return self._native.notes()
 
     @property
@@ -308,7 +311,7 @@ class Model:
         """Why the last training run ended."""
         return str(self.description["training"]["termination"])
 
-    # What it does
+    # Simulation
 
     def simulate(
         self,
@@ -319,7 +322,9 @@ class Model:
         *,
         same_units: bool = False,
     ) -> Any:
-        """Run freely over inputs, from the virgin state. Contiguous float64 columns are not copied.
+        """Simulate the output from the inputs, starting in the virgin state.
+
+        Contiguous float64 columns are not copied.
 
         Parameters
         ----------
@@ -328,12 +333,12 @@ class Model:
         time : array of shape (n,), optional
             Time stamps, for a model that needs them.
         rate : array of shape (n,), optional
-            The rate of the first input, for a model that was trained with a given one.
+            The rate of the first input, for a model that was trained with a given rate.
         records : array of shape (n,), optional
-            A label for each row: the memory starts afresh where the label changes.
+            A label for each row; where the label changes, a new record starts in the virgin state.
         same_units : bool
-            Take the numbers as they are, whatever units the names of pandas objects tell. Otherwise known units
-            are converted to those of the training, and others that differ are refused.
+            Do not convert units. Otherwise, units in the names of pandas objects are converted to those of the
+            training, and a conversion that is not known is an error.
 
         Returns
         -------
@@ -343,7 +348,7 @@ class Model:
         Raises
         ------
         ValueError
-            Inputs that the model cannot take.
+            Invalid inputs.
         """
         arranged = self._converted(columns(x, None, time, rate, records), same_units)
         return _like(x, self._simulated(arranged), f"{self.output}_model")
@@ -358,9 +363,9 @@ class Model:
         probability: float = 0.9,
         same_units: bool = False,
     ) -> Prediction:
-        """Run freely as `simulate`, with a band that holds the measured output with this probability.
+        """Simulate with a prediction band that contains the measured output with a given probability.
 
-        The band was calibrated on data held out in training, and holds as far as new data are like them.
+        The band was calibrated on held-out training data and assumes that new data resemble them.
 
         Parameters
         ----------
@@ -369,20 +374,20 @@ class Model:
         time, rate, records : array of shape (n,), optional
             As of `simulate`.
         probability : float
-            0.5 to 0.99.
+            Probability of the band, from 0.5 to 0.99.
         same_units : bool
             As of `simulate`.
 
         Returns
         -------
         Prediction
-            Output, lower and upper edge; each a Series with the index of `x` if that is a pandas object.
+            Output, lower edge and upper edge; each a Series with the index of `x` if that is a pandas object.
 
         Raises
         ------
         ValueError
-            Inputs that the model cannot take, a probability outside these bounds, or a model without a band:
-            ``model="auto"``, or ``members`` above 1, calibrates one where the data are enough to hold some out.
+            Invalid inputs, an invalid probability, or a model without a band: ``model="auto"``, or
+            ``members`` above 1, calibrates one if there are enough data to hold some out.
 
         Examples
         --------
@@ -393,6 +398,7 @@ class Model:
         >>> bool((low < output).all() and (output < high).all())
         True
         """
+        probability = real("probability", probability)
         arranged = self._converted(columns(x, None, time, rate, records), same_units)
         runs = [
             self._native.predict(name, *driving, probability) for name, driving in _of_records(arranged)
@@ -430,14 +436,14 @@ class Model:
         same_units: bool = False,
         after_warm_up: bool = False,
     ) -> Errors:
-        """Judge a free run against the measured output.
+        """Compute the errors of a free run.
 
         Parameters
         ----------
         x : array of shape (n,) or (n, inputs)
             The inputs, in the units of the training.
         y : array of shape (n,)
-            The measured output; NaN is not scored.
+            The measured output; rows with NaN are not scored.
         time, rate, records : array of shape (n,), optional
             As of `simulate`.
         same_units : bool
@@ -453,13 +459,13 @@ class Model:
         Raises
         ------
         ValueError
-            Inputs that the model cannot take, or no measured output at all.
+            Invalid inputs, or no measured output.
         """
         arranged = self._converted(columns(x, y, time, rate, records), same_units)
-        return self._evaluated(arranged, after_warm_up=after_warm_up)
+        return self._evaluated(arranged, after_warm_up=truth("after_warm_up", after_warm_up))
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
-        """Columns in the units of the training, as far as names tell units; says what is converted."""
+        """Columns in the units of the training, converted where names contain units; warns of conversions."""
         if same_units:
             return arranged
         trained = self.description["columns"]
@@ -471,7 +477,7 @@ class Model:
             factor = _hysid.unit_factor(column.name, name)
             if factor is None:
                 return column
-            notes.append(f"{column.name} is converted to the unit of the model's {name} (times {factor:.6g})")
+            notes.append(f"{column.name} is converted to the unit of the model's {name} (factor {factor:.6g})")
             return Column(factor * column.values, name)
 
         pairs = zip(arranged.inputs, trained["inputs"])
@@ -494,7 +500,7 @@ class Model:
         return errors
 
     def step(self, x: Any, time: float | None = None, rate: float | None = None) -> float:
-        """Take the next sample, from the virgin state on: for control loops and structural analyses.
+        """Simulate one sample, for control loops and structural analyses; the first starts in the virgin state.
 
         Parameters
         ----------
@@ -503,7 +509,7 @@ class Model:
         time : float, optional
             Time of the sample, for a model that needs it.
         rate : float, optional
-            The rate of the first input, for a model with one; without it a backward difference is taken.
+            The rate of the first input, for a model that uses it; by default a backward difference.
 
         Returns
         -------
@@ -513,7 +519,7 @@ class Model:
         Raises
         ------
         ValueError
-            Inputs that the model cannot take, or time that does not advance.
+            Invalid inputs, or time that does not advance.
         """
         stepper = self._stepper
         if stepper is None:
@@ -525,7 +531,7 @@ class Model:
         self._stepper = None
 
     def stepper(self) -> Stepper:
-        """Give a stepper of its own, with the methods `step` and `reset`: several can run side by side.
+        """Give an independent stepper with the methods `step` and `reset`.
 
         Returns
         -------
@@ -535,16 +541,16 @@ class Model:
         return self._native.stepper()
 
     def diagnose(self) -> ModelDiagnosis:
-        """Tell what kind of hysteresis the model has learnt.
+        """Determine the properties of the hysteresis of the model.
 
         Returns
         -------
         ModelDiagnosis
-            Found by driving the model, and from its weights.
+            Properties found by probing the model, and from its equations and weights.
         """
         return ModelDiagnosis(json.loads(self._native.diagnose()))
 
-    # Manners
+    # Comparison and display
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Model) and self.to_json() == other.to_json()
@@ -594,7 +600,7 @@ def _of_records(
 
 
 def _like(x: Any, values: np.ndarray, name: str) -> Any:
-    """Values as a Series if that is what came in."""
+    """Values as a Series if the input was a pandas object."""
     if not hasattr(x, "iloc"):
         return values
     import pandas
@@ -605,7 +611,7 @@ def _like(x: Any, values: np.ndarray, name: str) -> Any:
 def _members(
     group: dict[str, Any], above: tuple[str, ...], inside: float, outside: float
 ) -> Iterator[tuple[int, tuple[str, ...], float, float]]:
-    """Place of each member below a group, the names of its groups, and its shares."""
+    """Index of each member of a group, the names of its groups, and its weights."""
     path = (*above, group["name"])
     sums = [sum(voice["weights"][where] for voice in group["voices"]) for where in ("inside", "outside")]
     for voice in group["voices"]:

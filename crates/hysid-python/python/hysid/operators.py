@@ -1,6 +1,6 @@
-"""The elements that every model of hysteresis is built from, as functions on arrays.
+"""The operators that models of hysteresis are built from, as functions on arrays.
 
-All begin virgin: as if the input had rested at 0 for ever and the first sample were a jump from there.
+All start in the virgin state: the input was 0 before the first sample.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
+from hysid._arguments import real
 from hysid._data import Column, columns
 
 if TYPE_CHECKING:
@@ -26,16 +27,16 @@ def _signal(x: Any, time: Any = None) -> tuple[np.ndarray, Column | None]:
 
 
 def relay(x: Values, r: float, s: float = 0.0) -> np.ndarray:
-    """Run a relay: a switch with two thresholds.
+    """Simulate a relay: a switch with two thresholds.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     r : float
-        Half the distance of the thresholds, in the unit of the input; above 0.
+        Half the distance between the thresholds, in the unit of the input; above 0.
     s : float
-        Their middle, in the unit of the input.
+        Mean of the thresholds, in the unit of the input.
 
     Returns
     -------
@@ -47,41 +48,41 @@ def relay(x: Values, r: float, s: float = 0.0) -> np.ndarray:
     >>> hysid.operators.relay([-2, 0, 2, 0, -2], r=1.0)
     array([-1., -1.,  1.,  1., -1.])
     """
-    return _hysid.relay(_signal(x)[0], r, s)
+    return _hysid.relay(_signal(x)[0], real("r", r), real("s", s))
 
 
 def play(x: Values, r: float) -> np.ndarray:
-    """Run a play: a slider in a slot, the backlash of gears.
+    """Simulate a play, such as the backlash of gears.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     r : float
-        Half the width of the slot, in the unit of the input; 0 or more.
+        Threshold: half the width of the backlash, in the unit of the input; 0 or more.
 
     Returns
     -------
     array of shape (n,)
-        Where the slider is, in the unit of the input.
+        Position of the driven part, in the unit of the input.
 
     Examples
     --------
     >>> hysid.operators.play([0, 3, 0], r=1.0)
     array([0., 2., 1.])
     """
-    return _hysid.play(_signal(x)[0], r)
+    return _hysid.play(_signal(x)[0], real("r", r))
 
 
 def stop(x: Values, r: float) -> np.ndarray:
-    """Run a stop: a spring and a slider in series.
+    """Simulate a stop: a spring and a friction slider in series.
 
     Parameters
     ----------
     x : array of shape (n,)
         The input.
     r : float
-        Elongation of the spring at which the slider gives way, in the unit of the input; above 0.
+        Threshold: elongation of the spring at which the slider slips, in the unit of the input; above 0.
 
     Returns
     -------
@@ -93,11 +94,11 @@ def stop(x: Values, r: float) -> np.ndarray:
     >>> hysid.operators.stop([0, 3, 0], r=1.0)
     array([ 0.,  1., -1.])
     """
-    return _hysid.stop(_signal(x)[0], r)
+    return _hysid.stop(_signal(x)[0], real("r", r))
 
 
 def deteriorating_stop(x: Values, r: float, beta: float) -> np.ndarray:
-    """Run a stop that wears out by sliding.
+    """Simulate a deteriorating stop, whose strength decreases as it slides.
 
     Parameters
     ----------
@@ -106,23 +107,23 @@ def deteriorating_stop(x: Values, r: float, beta: float) -> np.ndarray:
     r : float
         Threshold, in the unit of the input; above 0.
     beta : float
-        The way that it can slide before it has no strength left, in the unit of the input; above 0.
+        Capacity: the slip after which no strength is left, in the unit of the input; above 0.
 
     Returns
     -------
     array of shape (n,)
-        What is left of the stop's elongation, in the unit of the input.
+        Output of the stop, in the unit of the input.
 
     Examples
     --------
     >>> hysid.operators.deteriorating_stop([0, 3, 0, 3], r=1.0, beta=8.0)
     array([ 0.   ,  0.75 , -0.625,  0.5  ])
     """
-    return _hysid.deteriorating_stop(_signal(x)[0], r, beta)
+    return _hysid.deteriorating_stop(_signal(x)[0], real("r", r), real("beta", beta))
 
 
 def relaxation(x: Values, time: ArrayLike, tau: float) -> np.ndarray:
-    """Run a relaxation element: a spring and a dashpot in series.
+    """Simulate a relaxation element: a spring and a dashpot in series.
 
     Parameters
     ----------
@@ -147,4 +148,4 @@ def relaxation(x: Values, time: ArrayLike, tau: float) -> np.ndarray:
     values, stamps = _signal(x, time)
     if stamps is None:
         raise ValueError("time: an array is needed")
-    return _hysid.relaxation(values, stamps.values, tau)
+    return _hysid.relaxation(values, stamps.values, real("tau", tau))

@@ -1,4 +1,4 @@
-"""Pictures of data and models, with matplotlib. Every function returns the axes that it drew on."""
+"""Plots of data and models with matplotlib. Every function returns its axes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class _Run:
         self.y = taken.output.values if taken.output else None
         self.simulated = None if model is None else model._simulated(taken)
         if self.simulated is not None and self.y is not None:
-            # Beside a measured curve, the way to its beginning would only confuse.
+            # The simulated rows before the first measured one would only confuse.
             self.simulated = np.where(np.isnan(self.y), np.nan, self.simulated)
 
     def records(self) -> list[slice]:
@@ -75,22 +75,22 @@ def loops(
     model: Model | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the output over the first input: measured, of a model's free run, or both.
+    """Plot the output over the first input: measured, simulated by a model, or both.
 
     Parameters
     ----------
     x, y, time, rate, records
-        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Where it is blank, nothing
-        is drawn.
+        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Rows where it is NaN are not
+        drawn.
     model : Model, optional
-        Whose free run is drawn.
+        Model whose free run is drawn.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        With the picture.
+        The axes with the plot.
 
     Examples
     --------
@@ -121,22 +121,22 @@ def histories(
     model: Model | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the output over time, or over rows if there is no time: measured, of a free run, or both.
+    """Plot the output over time, or over rows if there is no time: measured, simulated, or both.
 
     Parameters
     ----------
     x, y, time, rate, records
-        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Where it is blank, nothing
-        is drawn.
+        Data, as of `hysid.Model.evaluate`; `y` may be left out if there is a model. Rows where it is NaN are not
+        drawn.
     model : Model, optional
-        Whose free run is drawn.
+        Model whose free run is drawn.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        With the picture.
+        The axes with the plot.
     """
     ax = _axes(ax)
     run = _Run(model, x, y, time, rate, records)
@@ -161,7 +161,7 @@ def errors(
     *,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the error of a free run, model less measured, over time or rows.
+    """Plot the error of a free run, model minus measured, over time or rows.
 
     Parameters
     ----------
@@ -170,12 +170,12 @@ def errors(
     x, y, time, rate, records
         Data, as of `hysid.Model.evaluate`.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        With the picture; its title tells the root mean square.
+        The axes with the plot; the title is the RMSE.
     """
     ax = _axes(ax)
     run = _Run(model, x, y, time, rate, records)
@@ -193,31 +193,31 @@ def errors(
 
 
 def convergence(model: Model, *, ax: Axes | None = None) -> Axes:
-    """Draw how the training error fell, run by run.
+    """Plot the training error over the epochs, run by run.
 
     Parameters
     ----------
     model : Model
-        A model that was found by a search.
+        A model fitted by iterations.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        Error in percent of the output's standard deviation over epochs: thin the fits to a part of the data,
-        which tell the validation error, thick what was trained on all.
+        Error in percent of the output's standard deviation over epochs: thin lines for fits to a part of the data
+        (cross-validation), thick lines for fits to all data.
 
     Raises
     ------
     ValueError
-        A model that was found at once, or one of several members.
+        A model fitted without iterations, or an ensemble.
     """
     runs = model.description["training"]["runs"]
     if model.members:
-        raise ValueError(f"{model.name} has no one training: its {len(model.members)} members have")
+        raise ValueError(f"{model.name} is an ensemble: only its {len(model.members)} members have training runs")
     if not runs:
-        raise ValueError(f"{model.name} was found at once, without a search")
+        raise ValueError(f"{model.name} was fitted without iterations")
     ax = _axes(ax)
     for run in runs:
         epochs = [point["epoch"] for point in run["history"]]
@@ -249,30 +249,30 @@ def _play_weights(law: dict[str, Any], name: str) -> tuple[list[float], list[flo
 
 
 def thresholds(model: Model, *, ax: Axes | None = None) -> Axes:
-    """Draw the thresholds of a model's elements, in the unit of the first input.
+    """Plot the thresholds of a model's operators, in the unit of the first input.
 
     Parameters
     ----------
     model : Model
         A network, or one of masing, prandtl-ishlinskii and modified-prandtl-ishlinskii.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        Of a classical model, weights over thresholds. Of a network, the thresholds of its stops from small to
-        large; the line is half the trained range: what lies above it does not slip at rest.
+        For a classical model, weights over thresholds. For a network, the thresholds of its stops from small to
+        large; the line is half the trained range: stops above it do not slip if the input is slow.
 
     Raises
     ------
     ValueError
-        A model that has no thresholds, or one of several members, or whose input is companded.
+        A model without thresholds, an ensemble, or a model whose input is companded.
     """
     described = model.description
     network = described.get("network")
     if model.members:
-        raise ValueError(f"{model.name} has no thresholds of its own: its {len(model.members)} members have")
+        raise ValueError(f"{model.name} is an ensemble: only its {len(model.members)} members have thresholds")
     _not_companded(model)
     if network is None:
         ((name, law),) = described["law"].items()
@@ -297,14 +297,14 @@ def thresholds(model: Model, *, ax: Axes | None = None) -> Axes:
 
 
 def preisach_plane(model: Model, *, ax: Axes | None = None) -> Axes:
-    """Draw the plane of a Preisach model: the weight of its relays over their thresholds.
+    """Plot the Preisach plane of a model: the density of relays over their thresholds.
 
     Parameters
     ----------
     model : Model
         Fitted with ``model="preisach"``.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
@@ -341,19 +341,19 @@ COLOURS: dict[str, str] = {"yes": "tab:green", "no": "tab:red", "not testable": 
 
 
 def diagnosis(found: Diagnosis | ModelDiagnosis, *, ax: Axes | None = None) -> Axes:
-    """Draw the verdicts of a diagnosis.
+    """Plot the verdicts of a diagnosis.
 
     Parameters
     ----------
     found : Diagnosis or ModelDiagnosis
         Of data, or of a model.
     ax : Axes, optional
-        Where to draw; new ones if not given.
+        Axes to draw on; by default new ones.
 
     Returns
     -------
     Axes
-        A bar for each property: the measure that decides, as a multiple of its threshold; green is yes.
+        A bar for each property: its index as a multiple of the threshold; green means yes.
     """
     ax = _axes(ax)
     findings = list(reversed(found.properties))
@@ -361,7 +361,7 @@ def diagnosis(found: Diagnosis | ModelDiagnosis, *, ax: Axes | None = None) -> A
         colour = COLOURS[finding.verdict]
         length = 0.0
         if finding.index is not None and finding.threshold:
-            # Nobody needs to see how many times beyond five.
+            # Larger multiples carry no information.
             length = float(np.clip(finding.index / finding.threshold, -5.0, 5.0))
             ax.barh(place, length, color=colour, height=0.6)
         text = finding.verdict

@@ -1,4 +1,4 @@
-"""Progress of a fit on the screen."""
+"""A progress bar for fits."""
 
 from __future__ import annotations
 
@@ -41,5 +41,5 @@ class tqdm_progress:  # noqa: N801 - used like a function
         self._bar.update(max(0, int(_STEPS * progress.done) - self._bar.n))
 
     def close(self) -> None:
-        """Take the bar away."""
+        """Remove the bar."""
         self._bar.close()

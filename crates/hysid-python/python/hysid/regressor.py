@@ -20,42 +20,43 @@ __all__ = ["HysteresisRegressor"]
 class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     """A model of hysteresis as an estimator of scikit-learn.
 
-    Rows are samples in the order of time: a model with memory answers to what came before. `predict` is a free
-    run over the rows in their order, from the virgin state; measured outputs are never looked at. Time stamps
-    and the labels of records are columns of `X` that `time` and `record` name, so that they stay with their rows
-    in a pipeline or a cross-validation, of which ``GroupKFold`` over the records is the one to choose: a shuffled
-    split, such as ``ShuffleSplit``, takes rows out of their order, of which `fit` warns.
+    Rows are samples in the order of time, because the output of a model with memory depends on earlier rows.
+    `predict` is a free run over the rows in this order, from the virgin state; it does not use measured outputs. Time
+    stamps and labels of records are columns of `X`, named by `time` and `record`, so that they stay with their rows in
+    a pipeline or a cross-validation. For cross-validation use ``GroupKFold`` over the records; `fit` warns of a
+    shuffled split, such as ``ShuffleSplit``, because it destroys the order.
 
     Parameters
     ----------
     time : str or int, optional
-        The column of `X` with the time stamps, increasing within each record; by its name in a pandas object,
-        or its place.
+        The column of `X` with the time stamps, increasing within each record: its name in a pandas object, or its
+        index.
     record : str or int, optional
-        The column of `X` that tells the records apart: the memory starts afresh where it changes.
+        The column of `X` with the labels of the records; where the label changes, a new record starts in the virgin
+        state.
     rate : str, default "auto"
         As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
     model : str, optional
-        As of `hysid.fit`: without a choice, the slow and accurate ``"auto"``. In a search or a cross-validation
-        name a model, which takes seconds.
+        As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
+        model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
     warm_up, training, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, thresholds, sign, dead_zones, free_weights : optional
     logarithmic_thresholds, degradation, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
-        Seed of all randomness: an int is the seed of `hysid.fit`.
+        Seed of all random numbers; an int is the seed of `hysid.fit`.
 
     Attributes
     ----------
     model_ : Model
         The fitted model.
     n_iter_ : int
-        Epochs of the longest training run, of any member; 1 for a model that is found at once.
+        Epochs of the longest training run of any member; 1 for a model fitted without iterations.
     n_features_in_ : int
-        Columns of `X`.
+        Number of columns of `X`.
     feature_names_in_ : array of shape (n_features_in_,)
-        Their names, if `X` had any.
+        Names of the columns, if `X` had any.
 
     Examples
     --------
@@ -145,13 +146,13 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         X : array of shape (n, columns)
             Inputs in the user's units, and the columns of time and records if there are any; rows in order.
         y : array of shape (n,)
-            The measured output. NaN is a blank: such a row drives the memory, and is neither trained on nor
-            scored.
+            The measured output. NaN means no measurement: such a row drives the memory, but is neither trained on
+            nor scored.
 
         Returns
         -------
         HysteresisRegressor
-            Itself.
+            This estimator.
         """
         if y is None:
             name = type(self).__name__
@@ -183,7 +184,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         return self
 
     def predict(self, X: Any) -> np.ndarray:  # noqa: N803 - scikit-learn's name
-        """Run freely over rows in their order.
+        """Simulate the output for the rows in their order.
 
         Parameters
         ----------
@@ -201,7 +202,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         return self.model_._simulated(columns)
 
     def score(self, X: Any, y: Any, sample_weight: Any = None) -> float:  # noqa: N803
-        """Give the coefficient of determination of a free run; blank outputs are passed over.
+        """Give the coefficient of determination of a free run; rows with NaN are not scored.
 
         Parameters
         ----------
@@ -225,7 +226,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     def _validated(self, X: Any, reset: bool) -> np.ndarray:  # noqa: N803
         X = without_mask(X, "X")  # noqa: N806
         if hasattr(X, "columns") and self.record in getattr(X, "columns", ()):
-            # Labels may be words; only where they change matters.
+            # Labels may be words; it matters only where they change.
             labels = X[self.record].to_numpy()
             X = X.assign(**{str(self.record): np.unique(labels, return_inverse=True)[1]})  # noqa: N806
         few = 2 if reset else 1

@@ -1,4 +1,4 @@
-"""Synthetic specimens: laws that are known, to learn with and to test against."""
+"""Synthetic specimens with known laws, to learn with and to test with."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ from typing import Any
 import numpy as np
 
 from hysid import _hysid
+from hysid._arguments import real, whole
 
 __all__ = ["Records", "Specimen", "specimen", "specimens"]
 
 
 @dataclass(frozen=True)
 class Records:
-    """Measured data, or such as could have been.
+    """Data of a specimen.
 
     Attributes
     ----------
     x, y : array of shape (n,)
-        Input and output; NaN in `y` is a blank.
+        Input and output; NaN in `y` means no measurement.
     time : array of shape (n,) or None
         Time stamps.
     records : array of shape (n,)
@@ -35,7 +36,7 @@ class Records:
     names: dict[str, str]
 
     def frame(self) -> Any:
-        """Give them as a pandas DataFrame.
+        """Give the data as a pandas DataFrame.
 
         Returns
         -------
@@ -52,18 +53,18 @@ class Records:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A synthetic specimen: where its law comes from, and data to train and to test on.
+    """A synthetic specimen: the source of its law, and training and test data.
 
     Attributes
     ----------
     name : str
         Its name.
     example : str
-        The example of the paper that it stands for.
+        The example of the paper that it replaces.
     summary : str
-        What it is, in one line.
+        Description in one line.
     published, designed : str
-        Which laws and values are published, and which are ours.
+        The laws and values that are published, and those that we designed.
     training, testing : str
         How the data are made.
     """
@@ -77,22 +78,22 @@ class Specimen:
     testing: str
 
     def data(self, noise: float = 0.0, seed: int = 1) -> tuple[Records, Records]:
-        """Make its data: as `hysid generate` writes them.
+        """Make the data that `hysid generate` writes.
 
         Parameters
         ----------
         noise : float
-            Deviation of Gaussian noise on the output, in percent of the output's own standard deviation.
+            Standard deviation of Gaussian noise on the output, in percent of that of the output.
         seed : int
-            Seed of the noise; training and test data get different noise from the same seed.
+            Seed of the noise; training and test data get different noise.
 
         Returns
         -------
         train, test : Records
-            The test data are never trained on. Where they begin with blank outputs, the input of those rows
-            only brings the memory to where the test begins.
+            If the test data begin with NaN outputs, the input of these rows only sets the memory for the test.
         """
-        return self._records(False, noise, seed), self._records(True, noise, seed)
+        percent, number = real("noise", noise), whole("seed", seed)
+        return self._records(False, percent, number), self._records(True, percent, number)
 
     def _records(self, test: bool, noise: float, seed: int) -> Records:
         data = _hysid.specimen(self.name, test, noise, seed)
@@ -112,12 +113,12 @@ class Specimen:
 
 
 def specimens() -> list[Specimen]:
-    """Give all specimens, in the order of the paper's examples.
+    """List all specimens, in the order of the paper's examples.
 
     Returns
     -------
     list of Specimen
-        Each with what is known about it.
+        All specimens.
 
     Examples
     --------
@@ -128,7 +129,7 @@ def specimens() -> list[Specimen]:
 
 
 def specimen(name: str) -> Specimen:
-    """Give the specimen of this name.
+    """Find a specimen by its name.
 
     Parameters
     ----------
@@ -138,12 +139,12 @@ def specimen(name: str) -> Specimen:
     Returns
     -------
     Specimen
-        It makes data to train and to test on.
+        The specimen; its method `data` makes training and test data.
 
     Raises
     ------
     ValueError
-        There is none of this name.
+        There is no specimen with this name.
 
     Examples
     --------

@@ -51,14 +51,14 @@ impl Checkpoint {
     /// # Errors
     /// Bytes that are truncated, damaged, of another version, or no checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let refused = |text: &str| Err(Error::Checkpoint(format!("{text}: begin the fit anew")));
+        let refused = |text: &str| Err(Error::Checkpoint(format!("{text}: start a new fit")));
         if bytes.is_empty() {
             return refused("the checkpoint is empty");
         }
         let Some(rest) = bytes.strip_prefix(MAGIC) else {
             return match bytes.starts_with(&MAGIC[..16]) {
                 true => refused("the checkpoint was written by another version of hysid"),
-                false => refused("this is no checkpoint of hysid"),
+                false => refused("this is not a Hysid checkpoint"),
             };
         };
         let Some((sum, content)) = rest.split_first_chunk::<4>() else {

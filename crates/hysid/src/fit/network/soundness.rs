@@ -32,5 +32,5 @@ pub(super) fn require(is_sound: bool, what: &str) -> Result<()> {
     if is_sound {
         return Ok(());
     }
-    Err(Error::Checkpoint(format!("the checkpoint contradicts itself ({what}): begin the fit anew")))
+    Err(Error::Checkpoint(format!("the checkpoint is inconsistent ({what}): start a new fit")))
 }

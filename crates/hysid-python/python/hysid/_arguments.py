@@ -1,0 +1,62 @@
+"""Checks of arguments, with errors in the words of Python: the native module speaks of its own types."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+import numpy as np
+
+__all__ = ["real", "truth", "whole"]
+
+LARGEST = 2**64 - 1
+"""The largest whole number that the native module takes."""
+
+
+def real(name: str, value: Any) -> float:
+    """A number as a float.
+
+    Raises
+    ------
+    TypeError
+        Something else, also text with a number.
+    """
+    if not isinstance(value, (str, bytes)):
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            pass
+    raise TypeError(f"{name} {value!r}: a number is needed")
+
+
+def whole(name: str, value: Any, low: int = 0, high: int = LARGEST) -> int:
+    """A whole number within bounds.
+
+    Raises
+    ------
+    TypeError
+        Something else, such as a number with decimals.
+    ValueError
+        A number outside the bounds.
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} {value!r}: a whole number is needed") from None
+    if not low <= number <= high:
+        bounds = f"{low} or more" if high == LARGEST else f"{low} to {high}"
+        raise ValueError(f"{name} {number}: choose {bounds}")
+    return number
+
+
+def truth(name: str, value: Any) -> bool:
+    """True or False.
+
+    Raises
+    ------
+    TypeError
+        Something else.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} {value!r}: True or False is needed")
+    return bool(value)
