@@ -14,7 +14,7 @@ def report() -> str:
         models=["masing", "prandtl-ishlinskii", "modified-prandtl-ishlinskii"],
         seed=1,
     )
-    return "".join(f"{row.label}: {row.test.rmse:.4f}\n" for row in comparison)
+    return "".join(f"{row.name}: {row.test.rmse:.4f}\n" for row in comparison)
 
 
 if __name__ == "__main__":

@@ -392,7 +392,7 @@ fn options_outside_their_meaning_are_refused() {
         ("ridge", FitOptions { ridge: Some(-1.0), ..good.clone() }),
         ("decay", FitOptions { decay: Some(f64::NAN), ..good.clone() }),
         ("time", FitOptions { rate: Some(RateMethod::Central), ..good.clone() }),
-        ("given rate", FitOptions { rate: Some(RateMethod::Given), ..good.clone() }),
+        ("measured rate", FitOptions { rate: Some(RateMethod::Given), ..good.clone() }),
     ];
     for (word, options) in bad {
         let text = refused(&options).unwrap_or_else(|| panic!("accepted: {options:?}"));
