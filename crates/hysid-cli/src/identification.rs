@@ -131,10 +131,8 @@ impl Identified {
 
     /// Writes the report on the model, which is written already.
     pub fn write_report(&self, page: &Destination, model: &Path, sets: &[(&str, &Dataset)]) -> Result<()> {
-        files::write_page(page, &self.report(model, sets)?).context(
-            "the model was written, but not its \
-                                                                     report",
-        )
+        files::write_page(page, &self.report(model, sets)?)
+            .context("the model was written, but not its report")
     }
 
     fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {

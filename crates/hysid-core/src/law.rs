@@ -2,16 +2,16 @@
 //!
 //! | law | equation | memory |
 //! |---|---|---|
-//! | [`Masing`] | `y = y* + 2 g((x - x*)/2)` from the turning point `(x*, y*)` | turning points |
-//! | [`PrandtlIshlinskii`] | `y = c + w_0 x + Σ_i w_i p_{r_i}[x]`, plays `p` | plays |
-//! | [`ModifiedPrandtlIshlinskii`] | `y = S(c + w_0 x + Σ_i w_i p_{r_i}[x])`, `S` a rising polygon | plays |
-//! | [`GeneralizedPrandtlIshlinskii`] | plays between two curved envelopes | plays |
-//! | [`RateDependentPrandtlIshlinskii`] | plays whose thresholds grow with the rate | plays |
-//! | [`Preisach`] | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
-//! | [`NeuroMadelung`] | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
-//! | [`BoucWen`] | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
-//! | [`JilesAtherton`] | differential equation of the magnetisation | magnetisation |
-//! | [`Lugre`] | friction of bristles that bend before they slip | deflection |
+//! | [`Masing`](masing::Masing) | `y = y* + 2 g((x - x*)/2)` from the turning point `(x*, y*)` | turning points |
+//! | [`PrandtlIshlinskii`](prandtl_ishlinskii::PrandtlIshlinskii) | `y = c + w_0 x + Σ_i w_i p_{r_i}[x]`, plays `p` | plays |
+//! | [`ModifiedPrandtlIshlinskii`](modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii) | `y = S(c + w_0 x + Σ_i w_i p_{r_i}[x])`, `S` a rising polygon | plays |
+//! | [`GeneralizedPrandtlIshlinskii`](generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii) | plays between two curved envelopes | plays |
+//! | [`RateDependentPrandtlIshlinskii`](rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii) | plays whose thresholds grow with the rate | plays |
+//! | [`Preisach`](preisach::Preisach) | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
+//! | [`NeuroMadelung`](neuro_madelung::NeuroMadelung) | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
+//! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
+//! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
+//! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //!
 //! Each module gives the equations, the source and the properties of its law. The parameters have the field's
 //! symbols. The state is separate from the law. Laws are fitted to the same records as networks, and
@@ -213,46 +213,27 @@ impl Dimension {
     }
 }
 
-/// Methods of any law that are those of the law that it is.
-macro_rules! each_law {
-    ($($law:ident)*:) => {};
-    ($($law:ident)*: $(#[$doc:meta])* $name:ident($($argument:ident: $of:ty),*) -> $result:ty; $($more:tt)*) => {
-        $(#[$doc])*
-        pub fn $name(&self $(, $argument: $of)*) -> $result {
-            each_law!(@match self, $name($($argument),*), $($law)*)
-        }
-
-        each_law! { $($law)*: $($more)* }
-    };
-    (@match $self:ident, $name:ident $arguments:tt, $($law:ident)*) => {
-        match $self {
-            $(Self::$law(law) => each_law!(@call law, $name $arguments),)*
-        }
-    };
-    (@call $law:ident, $name:ident ($($argument:ident),*)) => { $law.$name($($argument),*) };
-}
-
 /// Makes of the laws one type that is any of them.
 macro_rules! any_of {
-    ($($law:ident),* $(,)?) => {
+    ($($module:ident::$law:ident),* $(,)?) => {
         /// Any one of the classical models.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
         pub enum Classical {
-            $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law),)*
+            $(#[doc = concat!("See [`", stringify!($module), "::", stringify!($law), "`].")] $law($module::$law),)*
         }
 
         /// The state of any one of the classical models.
         #[derive(Debug, Clone)]
         pub enum ClassicalState {
-            $(#[doc = concat!("Of [`", stringify!($law), "`].")] $law(<$law as Law>::State),)*
+            $(#[doc = concat!("Of [`", stringify!($module), "::", stringify!($law), "`].")] $law(<$module::$law as Law>::State),)*
         }
 
         impl Classical {
             /// What holds for the law with any parameters.
             pub fn facts(&self) -> &'static Facts {
                 match self {
-                    $(Self::$law(_) => &<$law as Law>::FACTS,)*
+                    $(Self::$law(_) => &<$module::$law as Law>::FACTS,)*
                 }
             }
 
@@ -295,30 +276,48 @@ macro_rules! any_of {
                 })
             }
 
-            each_law! { $($law)*:
-                /// As [`Law::parameters`].
-                parameters() -> Vec<Parameter>;
-                /// As [`Law::sees_rate`].
-                sees_rate() -> bool;
-                /// As [`Law::is_step_free`].
-                is_step_free() -> bool;
-                /// As [`Law::memory_properties`].
-                memory_properties(about_origin: bool) -> Vec<(Property, bool)>;
-                /// As [`Law::output_bound`].
-                output_bound(x: Interval, rate: Interval) -> Interval;
+            /// As [`Law::parameters`].
+            pub fn parameters(&self) -> Vec<Parameter> {
+                match self {
+                    $(Self::$law(law) => law.parameters(),)*
+                }
             }
-        }
 
-        impl Classical {
+            /// As [`Law::sees_rate`].
+            pub fn sees_rate(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.sees_rate(),)*
+                }
+            }
+
+            /// As [`Law::is_step_free`].
+            pub fn is_step_free(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.is_step_free(),)*
+                }
+            }
+
+            /// As [`Law::memory_properties`].
+            pub fn memory_properties(&self, about_origin: bool) -> Vec<(Property, bool)> {
+                match self {
+                    $(Self::$law(law) => law.memory_properties(about_origin),)*
+                }
+            }
+
+            /// As [`Law::output_bound`].
+            pub fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
+                match self {
+                    $(Self::$law(law) => law.output_bound(x, rate),)*
+                }
+            }
+
             /// The output of each sample in a free run from the virgin state.
             pub fn run(&self, samples: &[Sample]) -> Vec<f64> {
                 match self {
                     $(Self::$law(law) => series::run(law, samples),)*
                 }
             }
-        }
 
-        impl Classical {
             /// Continues a free run from a state of this law.
             pub(crate) fn run_on(&self, state: &mut ClassicalState, samples: &[Sample], outputs: &mut [f64]) {
                 match (self, state) {
@@ -330,41 +329,30 @@ macro_rules! any_of {
             }
         }
 
-        $(impl From<$law> for Classical {
-            fn from(law: $law) -> Self {
+        $(impl From<$module::$law> for Classical {
+            fn from(law: $module::$law) -> Self {
                 Self::$law(law)
             }
         })*
     };
 }
 
-use bouc_wen::BoucWen;
-use generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
-use jiles_atherton::JilesAtherton;
-use lugre::Lugre;
-use masing::Masing;
-use modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
-use neuro_madelung::NeuroMadelung;
-use prandtl_ishlinskii::PrandtlIshlinskii;
-use preisach::Preisach;
-use rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
-
-/// Calls a macro with every law: a new one is its file and a word here.
+/// Calls a macro with every law, as its module and its type.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! for_each_law {
     ($macro:ident) => {
         $macro! {
-            Masing,
-            PrandtlIshlinskii,
-            ModifiedPrandtlIshlinskii,
-            GeneralizedPrandtlIshlinskii,
-            RateDependentPrandtlIshlinskii,
-            Preisach,
-            NeuroMadelung,
-            BoucWen,
-            JilesAtherton,
-            Lugre,
+            masing::Masing,
+            prandtl_ishlinskii::PrandtlIshlinskii,
+            modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii,
+            generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii,
+            rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii,
+            preisach::Preisach,
+            neuro_madelung::NeuroMadelung,
+            bouc_wen::BoucWen,
+            jiles_atherton::JilesAtherton,
+            lugre::Lugre,
         }
     };
 }

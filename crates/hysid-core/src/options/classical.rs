@@ -5,17 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::for_each_law;
 use crate::law::Law;
-use crate::law::bouc_wen::BoucWen;
 use crate::law::facts::{Facts, Identification, Rate};
-use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
-use crate::law::jiles_atherton::JilesAtherton;
-use crate::law::lugre::Lugre;
-use crate::law::masing::Masing;
-use crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
-use crate::law::neuro_madelung::NeuroMadelung;
-use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use crate::law::preisach::Preisach;
-use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
 use crate::options::input_options::InputOptions;
 use crate::options::network::SEED;
 
@@ -29,8 +19,8 @@ const RANDOM_STOPS: Facts = Facts {
     )
 };
 
-macro_rules! rival {
-    ($($law:ident),* $(,)?) => {
+macro_rules! classical_model {
+    ($($module:ident::$law:ident),* $(,)?) => {
         /// A model other than a network and `auto`.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "kebab-case")]
@@ -47,7 +37,7 @@ macro_rules! rival {
             /// What is true of it whatever its parameters.
             pub fn facts(self) -> &'static Facts {
                 match self {
-                    $(Self::$law => &<$law as Law>::FACTS,)*
+                    $(Self::$law => &<crate::law::$module::$law as Law>::FACTS,)*
                     Self::RandomStops => &RANDOM_STOPS,
                 }
             }
@@ -55,7 +45,7 @@ macro_rules! rival {
     };
 }
 
-for_each_law!(rival);
+for_each_law!(classical_model);
 
 impl ClassicalModel {
     /// The name on the command line and in model files.

@@ -187,7 +187,8 @@ pub const OPTIONS: [FitOption; 27] = [
         group: Training,
         meaning: "Random networks, populations or parameters to start from",
         values: Values::Count(1, MOST_STARTS),
-        default: "8; 1 for trainers other than levenberg-marquardt; neuro-madelung 16",
+        default: "8; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and \
+                  neuro-madelung, 32 for generalized-prandtl-ishlinskii",
         used_by: |_, _| true,
     },
     FitOption {
@@ -196,7 +197,8 @@ pub const OPTIONS: [FitOption; 27] = [
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
                   iterations of the sub-gradient method; a hybrid shares them out in halves",
         values: Values::Count(0, MOST_EPOCHS),
-        default: "40; 2000 for trainers other than levenberg-marquardt; neuro-madelung 60",
+        default: "40; 2000 for trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and \
+                  neuro-madelung",
         used_by: |_, _| true,
     },
     FitOption {
@@ -255,7 +257,8 @@ pub const OPTIONS: [FitOption; 27] = [
         group: Classical,
         meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops",
         values: NEURONS,
-        default: "10 to 60, by model",
+        default: "10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for \
+                  random-stops, otherwise 30",
         used_by: of_auto,
     },
     FitOption {
@@ -289,7 +292,7 @@ pub const OPTIONS: [FitOption; 27] = [
         meaning: "Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its \
                   own, in place of an exponential law",
         values: Values::Truth,
-        default: "by model",
+        default: "true",
         used_by: of_none,
     },
     FitOption {

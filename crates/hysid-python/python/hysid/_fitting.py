@@ -146,11 +146,12 @@ def fit(
         sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.
     starts : int, optional
         Random networks, populations or parameters to start from. Default: 8; 1 for trainers other than
-        levenberg-marquardt; neuro-madelung 16.
+        levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and neuro-madelung, 32 for
+        generalized-prandtl-ishlinskii.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; a hybrid shares them out in halves. Default: 40; 2000 for
-        trainers other than levenberg-marquardt; neuro-madelung 60.
+        trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and neuro-madelung.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional
@@ -169,7 +170,8 @@ def fit(
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
     operators : int, optional
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops. Default:
-        10 to 60, by model.
+        10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for
+        random-stops, otherwise 30.
     thresholds : array of numbers, optional
         Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
         input. Default: chosen by cross-validation.
@@ -179,7 +181,7 @@ def fit(
         Dead zones on each side of modified-prandtl-ishlinskii. Default: 6.
     free_weights : bool, optional
         Give each play of generalized-prandtl-ishlinskii or rate-dependent-prandtl-ishlinskii a weight of its
-        own, in place of an exponential law. Default: by model.
+        own, in place of an exponential law. Default: true.
     logarithmic_thresholds : bool, optional
         Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
         linear.

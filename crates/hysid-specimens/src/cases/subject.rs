@@ -1,5 +1,6 @@
 //! What is measured in a case: any law, untouched at the beginning of each record.
 
+use hysid_core::law::series::samples_of;
 use hysid_core::law::{Law, Sample};
 
 /// A law that gives the outputs of a record from its samples.
@@ -38,7 +39,7 @@ impl Subject {
 
     /// The outputs at all inputs where time does not matter.
     pub fn run_still(&self, inputs: &[f64]) -> Vec<f64> {
-        let samples: Vec<Sample> = inputs.iter().map(|&x| Sample { x, rate: 0.0, step: 0.0 }).collect();
+        let samples = samples_of(inputs);
         self.run(&samples)
     }
 

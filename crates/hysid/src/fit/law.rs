@@ -14,24 +14,15 @@ pub mod preisach;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod search;
 
+use hysid_core::for_each_law;
+
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::search::{Identified, SearchObserver};
-use crate::law::bouc_wen::BoucWen;
-use crate::law::generalized_prandtl_ishlinskii::GeneralizedPrandtlIshlinskii;
-use crate::law::jiles_atherton::JilesAtherton;
-use crate::law::lugre::Lugre;
-use crate::law::masing::Masing;
-use crate::law::modified_prandtl_ishlinskii::ModifiedPrandtlIshlinskii;
-use crate::law::neuro_madelung::NeuroMadelung;
-use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
-use crate::law::preisach::Preisach;
-use crate::law::rate_dependent_prandtl_ishlinskii::RateDependentPrandtlIshlinskii;
 use crate::law::{Classical, Law};
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
-use hysid_core::for_each_law;
 
 /// A law that can be identified from data.
 pub trait Identify: Law {
@@ -83,7 +74,7 @@ impl<L: LeastSquaresLaw> Identify for L {
 }
 
 macro_rules! fit {
-    ($($law:ident),* $(,)?) => {
+    ($($module:ident::$law:ident),* $(,)?) => {
         /// Fits a classical law. The observer is called after every round of a search; a fit without rounds
         /// checks `stop`.
         ///
@@ -99,7 +90,9 @@ macro_rules! fit {
             stop: StopCheck<'_>,
         ) -> Result<Identified<Classical>> {
             match options.model {
-                $(ClassicalModel::$law => $law::identify(data, options, observer, stop).map(any),)*
+                $(ClassicalModel::$law => {
+                    crate::law::$module::$law::identify(data, options, observer, stop).map(any)
+                })*
                 ClassicalModel::RandomStops => unreachable!("random stops are a network"),
             }
         }

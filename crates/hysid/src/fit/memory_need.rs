@@ -7,8 +7,12 @@
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::auto;
+use crate::fit::law::{
+    generalized_prandtl_ishlinskii, masing, modified_prandtl_ishlinskii, neuro_madelung, prandtl_ishlinskii,
+    preisach,
+};
 use crate::fit::network::curvature::has_few_rows;
-use crate::fit::network::random_stops::HIDDEN;
+use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
 use crate::network::Architecture;
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -154,14 +158,14 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         largest_of(sums.0 + copies, [sums, (copies, format!("{rows} rows"), FEWER_ROWS)])
     };
     let operators = |default: usize| options.operators.unwrap_or(default);
+    let given = options.thresholds.as_ref().map(Vec::len);
+    let plays = |default: usize| linear(given.unwrap_or(default) as f64 + 3.0, given.unwrap_or(default));
     match options.model {
-        ClassicalModel::PrandtlIshlinskii | ClassicalModel::Masing => {
-            let plays = options.thresholds.as_ref().map_or(operators(30), Vec::len);
-            linear(plays as f64 + 3.0, plays)
-        }
+        ClassicalModel::PrandtlIshlinskii => plays(operators(prandtl_ishlinskii::OPERATORS)),
+        ClassicalModel::Masing => plays(operators(masing::OPERATORS)),
         ClassicalModel::ModifiedPrandtlIshlinskii => {
-            let plays = options.thresholds.as_ref().map_or(operators(20), Vec::len);
-            let zones = 2 * options.dead_zones.unwrap_or(6);
+            let plays = given.unwrap_or(operators(modified_prandtl_ishlinskii::OPERATORS));
+            let zones = 2 * options.dead_zones.unwrap_or(modified_prandtl_ishlinskii::DEAD_ZONES);
             let sums = linear((plays + zones + 3) as f64, plays);
             // Plays of every row are stored for each grid, and copied for each fold that is under way.
             let plays_of_rows = (3.0 + 2.0 * threads) * scored * (plays + 6) as f64;
@@ -173,7 +177,7 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             )
         }
         ClassicalModel::Preisach => {
-            let intervals = operators(30) as f64;
+            let intervals = operators(preisach::INTERVALS) as f64;
             let cells = 0.5 * intervals * (intervals + 1.0) + intervals + 3.0;
             let coarse = linear(233.0, 20);
             let fine = 3.0 * cells * cells;
@@ -185,7 +189,8 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
         }
         ClassicalModel::RandomStops => {
             let inputs = data.names().inputs.len() + if options.shaping.history { HISTORY_INPUTS } else { 0 };
-            let (stops, hidden) = (operators(300), options.hidden.unwrap_or(HIDDEN));
+            let (stops, hidden) =
+                (operators(RandomStopsOptions::default().stops), options.hidden.unwrap_or(HIDDEN));
             let features = (stops + hidden + 3) as f64;
             let weights = (hidden * stops) as f64;
             let mut need = linear(features, stops);
@@ -193,9 +198,9 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             need
         }
         _ => {
-            let starts = options.starts.unwrap_or(32) as f64;
+            let starts = options.starts.unwrap_or(generalized_prandtl_ishlinskii::STARTS) as f64;
             let compared = scored.min(ROWS_OF_A_SEARCH as f64);
-            let variables = operators(12).max(options.hidden.unwrap_or(8) * 5) as f64;
+            let variables = operators(12).max(options.hidden.unwrap_or(neuro_madelung::HIDDEN) * 5) as f64;
             let residuals = (starts + 3.0 * variables * threads) * compared + 24.0 * starts * 20.0;
             let taken_by = format!("residuals of {starts} starts");
             largest_of(

@@ -8,20 +8,18 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{OptionError, Result};
+use crate::fit::law::Identify;
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
-use crate::law::series::{Series, slope, work};
-use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
-
-use crate::law::play_weights::MOST_PLAYS;
-
-use crate::fit::law::Identify;
 use crate::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
 };
+use crate::law::play_weights::MOST_PLAYS;
+use crate::law::series::{Series, slope, work};
+use crate::options::classical::ClassicalOptions;
+use crate::stop_check::StopCheck;
 
 /// An envelope rises by at least this share of its full height over the range of the input: otherwise
 /// it would leap where the input leaves the range.
@@ -31,7 +29,7 @@ const SMALLEST_SHARE: f64 = 0.1;
 const OPERATORS: usize = 10;
 
 /// Default number of starts of the search.
-const STARTS: usize = 32;
+pub(crate) const STARTS: usize = 32;
 
 /// Default number of iterations of each start.
 const EPOCHS: usize = 60;

@@ -4,22 +4,15 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::law::Identify;
 use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
+use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
-
-use crate::fit::law::Identify;
-use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
-
-/// Default number of starts of the search.
-const STARTS: usize = 8;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 40;
 
 impl Identify for JilesAtherton {
     fn identify(

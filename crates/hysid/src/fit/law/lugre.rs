@@ -6,19 +6,13 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::lugre::{Lugre, STRIBECK_BOUNDS};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
-
-/// Default number of starts of the search.
-const STARTS: usize = 8;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 40;
 
 /// Elementary operations of a row, roughly.
 const OPERATIONS_A_ROW: usize = 60;

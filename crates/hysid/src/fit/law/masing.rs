@@ -2,23 +2,17 @@
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::LeastSquaresLaw;
-use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::FoldSums;
-use crate::fit::law::linear::Gatherer;
-use crate::fit::law::linear::TrainingRows;
-use crate::fit::law::linear::logarithmic;
-use crate::law::masing::Masing;
-use crate::law::masing::MasingParts;
-use crate::operator::play;
-use crate::operator::stop;
+use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::law::{LeastSquaresLaw, grids};
+use crate::law::masing::{Masing, MasingParts};
+use crate::operator::{play, stop};
 use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
 /// Default number of plays.
-const OPERATORS: usize = 30;
+pub(crate) const OPERATORS: usize = 30;
 
 /// Linear least squares with a penalty on the bends of the virgin curve, chosen by cross-validation.
 impl LeastSquaresLaw for Masing {

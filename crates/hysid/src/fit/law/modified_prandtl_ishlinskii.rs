@@ -11,9 +11,8 @@
 
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
-use crate::fit::law::LeastSquaresLaw;
-use crate::fit::law::grids;
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
+use crate::fit::law::{LeastSquaresLaw, grids};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
@@ -30,10 +29,10 @@ use crate::validation::RowFolds;
 use rayon::prelude::*;
 
 /// Default number of plays.
-const OPERATORS: usize = 20;
+pub(crate) const OPERATORS: usize = 20;
 
 /// Default number of dead zones on each side.
-const DEAD_ZONES: usize = 6;
+pub(crate) const DEAD_ZONES: usize = 6;
 
 /// Most dead zones on each side.
 const MOST_DEAD_ZONES: usize = 100;

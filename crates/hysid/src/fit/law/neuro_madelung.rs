@@ -18,8 +18,10 @@ use rayon::prelude::*;
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
+use crate::fit::law::Identify;
 use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
 use crate::law::Law;
+use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
 use crate::linear_algebra::{Symmetric, dot};
@@ -30,9 +32,6 @@ use crate::options::classical::ClassicalOptions;
 use crate::stop_check::{Pace, StopCheck};
 use crate::termination::Termination;
 
-use crate::fit::law::Identify;
-use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
-
 /// Weight of the squared parameters beside the mean square error of the scaled output.
 const DECAY: f64 = 1e-5;
 /// Share of the data that judges the starts.
@@ -40,7 +39,7 @@ const HELD_OUT: f64 = 0.25;
 /// After so many epochs of free run half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 8;
 /// Default number of tanh neurons.
-const HIDDEN: usize = 8;
+pub(crate) const HIDDEN: usize = 8;
 
 /// Default number of starts of the search.
 const STARTS: usize = 16;

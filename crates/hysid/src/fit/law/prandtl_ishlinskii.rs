@@ -2,13 +2,9 @@
 
 use crate::data::record::Dataset;
 use crate::error::Result;
-use crate::fit::law::LeastSquaresLaw;
-use crate::fit::law::grids;
 use crate::fit::law::grids::best_on_grids;
-use crate::fit::law::linear::FoldSums;
-use crate::fit::law::linear::Gatherer;
-use crate::fit::law::linear::TrainingRows;
-use crate::fit::law::linear::logarithmic;
+use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::law::{LeastSquaresLaw, grids};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use crate::operator::play;
 use crate::optimise::non_negative::{Bounds, Penalty};
@@ -16,7 +12,7 @@ use crate::options::classical::{ClassicalOptions, Sign};
 use crate::stop_check::StopCheck;
 
 /// Default number of plays.
-const OPERATORS: usize = 30;
+pub(crate) const OPERATORS: usize = 30;
 
 /// Linear least squares with a ridge penalty chosen by cross-validation.
 impl LeastSquaresLaw for PrandtlIshlinskii {

@@ -24,7 +24,7 @@ use crate::stop_check::StopCheck;
 use crate::validation::RowFolds;
 
 /// Default number of intervals of each axis.
-const INTERVALS: usize = 30;
+pub(crate) const INTERVALS: usize = 30;
 
 /// Most intervals on which the penalty is chosen; what is chosen is then taken for the finer plane.
 const INTERVALS_FOR_CHOICE: usize = 20;

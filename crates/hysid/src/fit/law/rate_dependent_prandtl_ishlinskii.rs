@@ -4,19 +4,18 @@
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
+use crate::fit::law::Identify;
 use crate::fit::law::search::{
-    Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+    Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
 use crate::law::Law;
 use crate::law::play_weights::MOST_PLAYS;
-use crate::law::series::{Series, work};
-use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
-
-use crate::fit::law::Identify;
 use crate::law::rate_dependent_prandtl_ishlinskii::{
     PlayWeights, RateDependentPrandtlIshlinskii, Thresholds,
 };
+use crate::law::series::{Series, work};
+use crate::options::classical::ClassicalOptions;
+use crate::stop_check::StopCheck;
 
 /// Which form the thresholds have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,9 +31,6 @@ const OPERATORS: usize = 10;
 
 /// Default number of starts of the search.
 const STARTS: usize = 16;
-
-/// Default number of iterations of each start.
-const EPOCHS: usize = 40;
 
 impl Identify for RateDependentPrandtlIshlinskii {
     fn identify(

@@ -53,6 +53,12 @@ const ROUNDS_TO_PROVE_ITSELF: usize = 6;
 /// Starts that are never given up.
 const FINALISTS: usize = 2;
 
+/// Starts of a search unless the user or the law says otherwise.
+pub(crate) const STARTS: usize = 8;
+
+/// Iterations of each start unless the user or the law says otherwise.
+pub(crate) const EPOCHS: usize = 40;
+
 /// Bounds of a searched parameter and the scale it is searched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Variable {
