@@ -26,7 +26,7 @@ pub struct AutoOptions {
     pub only: Option<Box<FitSpec>>,
     /// Largest number of members; 1 for a single model.
     pub members: usize,
-    /// Starts of a randomly initialized candidate, on all data.
+    /// Starts of a randomly initialized candidate.
     pub starts: usize,
     /// Method of the rate of the first input; `None` for candidates without rate.
     pub rate: Option<RateMethod>,
@@ -65,8 +65,8 @@ impl Default for AutoOptions {
         Self {
             model: Automatic::Auto,
             only: None,
-            members: 32,
-            starts: 8,
+            members: 6,
+            starts: 2,
             rate: None,
             always_rate: false,
             deterioration: None,

@@ -25,6 +25,7 @@
 mod candidates;
 mod combination;
 mod prior;
+mod pruning;
 mod score;
 mod selection;
 mod single;
@@ -42,15 +43,18 @@ use crate::error::{Error, Result};
 use crate::fit::network::{Fitted, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::{Selection, WarmUp};
-use crate::model::{Band, Found, HeldOutRow, Model, Predictor, Provenance};
+use crate::model::{
+    Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
+};
 use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds};
 use candidates::{Candidate, candidates, quick};
-use combination::Combination;
+use combination::{Combination, Leaf};
 use prior::Evidence;
+use pruning::Pruning;
 use selection::selection;
 use stages::Stages;
 use trial::{Bench, HeldOut, Trial, fit_members};
@@ -58,9 +62,6 @@ use work::Work;
 
 /// Most folds.
 const MOST_FOLDS: usize = 5;
-
-/// Starts of a random candidate on each fold.
-const STARTS_ON_FOLDS: usize = 4;
 
 /// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
 const MOST_ROWS: usize = 6000;
@@ -127,17 +128,18 @@ fn without_folds(
 ) -> Result<Fitted> {
     let mut trials = [Trial::of(candidate.clone())];
     let starts = if candidate.is_random() { options.starts.min(options.members) } else { 1 };
-    fit_members(&mut trials, &[starts], few, work);
+    let wanted: Vec<(usize, usize)> = (0..starts).map(|start| (0, start)).collect();
+    fit_members(&mut trials, &wanted, few, work);
     let [trial] = trials;
-    if trial.members.is_empty() || options.members == 1 {
-        let model = trial.members.into_iter().next().unwrap_or(alone);
+    let members: Vec<Model> = trial.members.into_values().collect();
+    if members.is_empty() || options.members == 1 {
+        let model = members.into_iter().next().unwrap_or(alone);
         let provenance = provenance_of(&model, None, None, work);
         return Ok(Fitted { model: model.with_provenance(provenance), evaluations: work.done() });
     }
-    let combination = Combination::alone(candidate.kind, 0);
-    let trials = [trial];
-    let members = |_: usize| trials[0].members.clone();
-    let body = Predictor::Ensemble(combination.ensemble(&trials, members, data.input_range(0))?);
+    let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
+    let group = Group { name: trial.candidate.name(), nodes: (0..members.len()).map(node).collect() };
+    let body = Predictor::Ensemble(Ensemble::new(members, group, data.input_range(0))?);
     let model = ensemble(body, data, options, None, None, work)?;
     Ok(Fitted { model, evaluations: work.done() })
 }
@@ -158,21 +160,22 @@ impl Chosen<'_, '_, '_> {
     fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { folds, work, .. } = self.bench;
         let fit = |model| Ok(Fitted { model, evaluations: work.done() });
-        let Some(all) = Combination::of(&self.trials, folds, self.evidence, |_| true) else {
+        let Some(all) = self.combination(|_| true) else {
             let model = self.without_validation(alone);
             let provenance = provenance_of(&model, None, None, work);
             return fit(model.with_provenance(provenance));
         };
-        // A single model is distilled from more than one.
-        let most =
-            if self.options.members == 1 { AutoOptions::default().members } else { self.options.members };
-        let kept = all.members_kept(&self.trials, most);
-        let combination = all.only(|place| kept[place] > 0).unwrap_or(all);
-        let selection = self.selection(&combination, &kept);
+        let wanted: Vec<(usize, usize)> = all.leaves().iter().map(|leaf| (leaf.place, leaf.start)).collect();
+        fit_members(&mut self.trials, &wanted, self.bench.data, work);
+        // Those that there was no time for are left out.
+        let is_fitted = |leaf: Leaf| self.trials[leaf.place].members.contains_key(&leaf.start);
+        let Some(combination) = all.only(is_fitted).or_else(|| self.of_fitted()) else {
+            return fit(self.without_validation(alone));
+        };
+        let selection = self.selection(&combination);
         let validation = combination.validation(&self.trials, folds, &self.data.names().output);
-        let members = |place: usize| self.trials[place].members[..kept[place]].to_vec();
-        let body =
-            Predictor::Ensemble(combination.ensemble(&self.trials, members, self.data.input_range(0))?);
+        let members = |place: usize, start: usize| self.trials[place].members.get(&start).cloned();
+        let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
         if self.options.members == 1
             && let Some(model) = self.single(&combination, &ensemble, selection)?
@@ -183,17 +186,36 @@ impl Chosen<'_, '_, '_> {
         fit(ensemble.with_band(band))
     }
 
+    /// The candidates' starts with their weights by the folds that are `counted`, no more than are needed.
+    fn combination(&self, counted: impl Fn(usize) -> bool + Copy + Sync) -> Option<Combination> {
+        let (folds, evidence) = (self.bench.folds, self.evidence);
+        let all = Combination::of(&self.trials, folds, evidence, counted)?;
+        // A single model is distilled from more than one.
+        let default = AutoOptions::default().members;
+        let most = if self.options.members == 1 { default } else { self.options.members };
+        if self.options.only.is_some() {
+            return all.first(most);
+        }
+        Some(Pruning { trials: &self.trials, folds, evidence, most }.of(all, counted))
+    }
+
+    /// Of the starts that have been fitted to everything.
+    fn of_fitted(&self) -> Option<Combination> {
+        let all = Combination::of(&self.trials, self.bench.folds, self.evidence, |_| true)?;
+        all.only(|leaf| self.trials[leaf.place].members.contains_key(&leaf.start))
+    }
+
     /// The model with the lowest training error of those that were fitted to everything before the observer asked
     /// to stop.
     fn without_validation(&self, alone: Model) -> Model {
         let error = |model: &&Model| model.provenance().trained_error().rmse;
-        let members = self.trials.iter().flat_map(|trial| &trial.members);
+        let members = self.trials.iter().flat_map(|trial| trial.members.values());
         let lowest = members.chain([&alone]).min_by(|a, b| error(a).total_cmp(&error(b)));
         lowest.cloned().unwrap_or(alone)
     }
 
-    fn selection(&self, combination: &Combination, kept: &[usize]) -> Selection {
-        let mut selection = selection(&self.trials, self.bench.folds, combination, kept);
+    fn selection(&self, combination: &Combination) -> Selection {
+        let mut selection = selection(&self.trials, self.bench.folds, combination);
         selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
         selection.one_loop = self.evidence == Evidence::OneLoop;
         selection.dropped = self.dropped.iter().map(Candidate::name).collect();
@@ -214,9 +236,7 @@ impl Chosen<'_, '_, '_> {
     fn rows_held_out(&self, combination: &Combination) -> Vec<HeldOutRow> {
         let folds = self.bench.folds;
         let of_fold = |fold: usize| {
-            let of_others = (folds.len() > 1)
-                .then(|| Combination::of(&self.trials, folds, self.evidence, |other| other != fold))
-                .flatten();
+            let of_others = (folds.len() > 1).then(|| self.combination(|other| other != fold)).flatten();
             of_others.as_ref().unwrap_or(combination).rows(&self.trials, folds, fold)
         };
         (0..folds.len()).flat_map(of_fold).collect()

@@ -1,12 +1,13 @@
 //! Combination of candidates: the weighted median of kinds, each the weighted median of its best candidates.
-//! The same tree of weights predicts held-out data and, with members instead of candidates, is the ensemble.
+//! The same tree of weights predicts held-out data from the fits to folds and, with the fits of the same starts to
+//! everything, is the ensemble.
 
 use crate::data::metrics::Errors;
 use crate::error::Result;
 use crate::fit::auto::candidates::Kind;
 use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
-use crate::fit::auto::trial::{HeldOut, Trial};
+use crate::fit::auto::trial::{HeldOut, Rows, Trial};
 use crate::model::{
     Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Weights, disagreement,
 };
@@ -23,10 +24,20 @@ const POWER_OF_KINDS: f64 = 3.0;
 /// Share of the weight of its kind below which a candidate does not count.
 const TOO_LITTLE: f64 = 0.02;
 
-/// Candidates with their weights: a tree whose members are places among the trials.
+/// A start of a candidate: what it predicts of the folds is validated, and its fit to everything is a member of
+/// the ensemble.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Leaf {
+    /// Place of the candidate among the trials.
+    pub place: usize,
+    pub start: usize,
+}
+
+/// Starts of candidates with their weights: a tree whose members are leaves.
 #[derive(Debug, Clone)]
 pub(super) struct Combination {
     group: Group,
+    leaves: Vec<Leaf>,
 }
 
 impl Combination {
@@ -43,7 +54,8 @@ impl Combination {
         let score = |kind: &Group| {
             let prior = |(place, share): &(usize, Weights)| share.inside * trials[*place].prior(evidence);
             let prior: f64 = kind.shares().iter().map(prior).sum();
-            Score::of(&predictions(kind, trials, folds), folds, counted).with_prior(prior)
+            let of_place = |place: usize, fold: usize, row: usize| trials[place].predicted[fold][row];
+            Score::of(&predictions(kind, of_place, folds), folds, counted).with_prior(prior)
         };
         let scores: Vec<Score> = kinds.iter().map(score).collect();
         let power = match evidence {
@@ -53,32 +65,81 @@ impl Combination {
         let weights = weights(&scores, power, kinds.len());
         let nodes = kinds.into_iter().zip(weights);
         let nodes = nodes.map(|(group, weights)| Node { weights, kind: NodeKind::Group(group) });
-        Group { name: "all".into(), nodes: nodes.collect() }
-            .map_members(&mut |place| Some(NodeKind::Member(place)))
-            .map(|group| Self { group })
+        let all = Group { name: "all".into(), nodes: nodes.collect() };
+        let mut leaves = Vec::new();
+        let group = all.map_members(&mut |place| {
+            let nodes = (0..trials[place].starts.len()).map(|start| {
+                leaves.push(Leaf { place, start });
+                Node { weights: Weights::equal(), kind: NodeKind::Member(leaves.len() - 1) }
+            });
+            let nodes: Vec<Node> = nodes.collect();
+            let name = trials[place].candidate.name();
+            (!nodes.is_empty()).then_some(NodeKind::Group(Group { name, nodes }))
+        })?;
+        Some(Self { group, leaves })
     }
 
-    /// A single candidate.
-    pub fn alone(kind: Kind, place: usize) -> Self {
-        let node = |kind| Node { weights: Weights::equal(), kind };
-        let kind = Group { name: kind.name().into(), nodes: vec![node(NodeKind::Member(place))] };
-        Self { group: Group { name: "all".into(), nodes: vec![node(NodeKind::Group(kind))] } }
+    /// The starts that count.
+    pub fn leaves(&self) -> &[Leaf] {
+        &self.leaves
+    }
+
+    /// The tree, whose members are places among [`Combination::leaves`].
+    pub fn group(&self) -> &Group {
+        &self.group
+    }
+
+    /// Starts of a candidate that count.
+    pub fn members(&self, place: usize) -> usize {
+        self.leaves.iter().filter(|leaf| leaf.place == place).count()
     }
 
     /// What each candidate counts in the whole, by its place.
     pub fn shares(&self) -> Vec<(usize, Weights)> {
-        self.group.shares()
+        let mut shares: Vec<(usize, Weights)> = Vec::new();
+        for (leaf, weights) in self.group.shares() {
+            let place = self.leaves[leaf].place;
+            match shares.iter_mut().find(|(other, _)| *other == place) {
+                Some((_, sum)) => {
+                    sum.inside += weights.inside;
+                    sum.outside += weights.outside;
+                }
+                None => shares.push((place, weights)),
+            }
+        }
+        shares
     }
 
-    /// Only the candidates that are kept; `None` if these count nothing.
-    pub fn only(&self, is_kept: impl Fn(usize) -> bool) -> Option<Self> {
-        let mut keep = |place| is_kept(place).then_some(NodeKind::Member(place));
-        self.group.map_members(&mut keep).map(|group| Self { group })
+    /// Only the leaves that are kept; `None` if these count nothing.
+    pub fn only(&self, is_kept: impl Fn(Leaf) -> bool) -> Option<Self> {
+        let mut leaves = Vec::new();
+        let mut keep = |leaf: usize| {
+            let leaf = self.leaves[leaf];
+            is_kept(leaf).then(|| {
+                leaves.push(leaf);
+                NodeKind::Member(leaves.len() - 1)
+            })
+        };
+        let group = self.group.map_members(&mut keep)?;
+        Some(Self { group, leaves })
+    }
+
+    /// What is known beforehand of its candidates, in the mean.
+    pub fn prior(&self, trials: &[Trial], evidence: Evidence) -> f64 {
+        let of_candidate = |(place, share): (usize, Weights)| share.inside * trials[place].prior(evidence);
+        self.shares().into_iter().map(of_candidate).sum()
     }
 
     /// What it predicts of the rows of each fold.
     pub fn predictions(&self, trials: &[Trial], folds: &[HeldOut]) -> Vec<Vec<f64>> {
-        predictions(&self.group, trials, folds)
+        let of_leaf = |leaf: usize, fold: usize, row: usize| self.predicted(trials, leaf, fold)[row];
+        predictions(&self.group, of_leaf, folds)
+    }
+
+    /// What a leaf predicts of the rows of a fold.
+    pub fn predicted<'t>(&self, trials: &'t [Trial], leaf: usize, fold: usize) -> &'t [f64] {
+        let Leaf { place, start } = self.leaves[leaf];
+        &trials[place].starts[start][fold].predicted
     }
 
     /// Its score on all folds.
@@ -95,86 +156,58 @@ impl Combination {
         pooled.errors(output)
     }
 
-    /// Fits of each candidate that its share asks for, of at most so many in all and so many starts.
-    pub fn members_wanted(&self, trials: &[Trial], most: usize, starts: usize) -> Vec<usize> {
-        let mut wanted = vec![0; trials.len()];
-        for (place, share) in self.shares() {
-            let fair = (share.inside.max(share.outside) * most as f64).ceil() as usize;
-            let starts = if trials[place].candidate.is_random() { starts } else { 1 };
-            wanted[place] = starts.min(fair.max(1));
-        }
-        wanted
+    /// The first `most` leaves at most: the first of each candidate before the second of any, and those that
+    /// count most before the others.
+    pub fn first(&self, most: usize) -> Option<Self> {
+        let share = |leaf: &Leaf| {
+            let of_place = self.shares().into_iter().find(|(place, _)| *place == leaf.place);
+            of_place.map_or(0.0, |(_, share)| share.inside.max(share.outside))
+        };
+        let mut order: Vec<(Leaf, f64)> = self.leaves.iter().map(|leaf| (*leaf, share(leaf))).collect();
+        let by_place = |a: &Leaf, b: &Leaf| a.place.cmp(&b.place);
+        order.sort_by(|(a, of_a), (b, of_b)| {
+            a.start.cmp(&b.start).then(of_b.total_cmp(of_a)).then(by_place(a, b))
+        });
+        order.truncate(most);
+        self.only(|leaf| order.iter().any(|(kept, _)| *kept == leaf))
     }
 
-    /// Members of each candidate that are kept, at most `most` in all: the first of each candidate before the
-    /// second of any, and those that count most before the others.
-    pub fn members_kept(&self, trials: &[Trial], most: usize) -> Vec<usize> {
-        let mut all: Vec<(usize, f64, usize)> = Vec::new();
-        for (place, share) in self.shares() {
-            let share = share.inside.max(share.outside);
-            all.extend((0..trials[place].members.len()).map(|round| (round, share, place)));
-        }
-        all.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2)));
-        all.truncate(most);
-        let mut kept = vec![0; trials.len()];
-        all.into_iter().for_each(|(_, _, place)| kept[place] += 1);
-        kept
-    }
-
-    /// The ensemble of so many models of each candidate.
+    /// The ensemble of the models of each leaf; leaves without a model are left out.
     ///
     /// # Errors
     /// None that a combination of complete trials could cause.
     pub fn ensemble(
         &self,
-        trials: &[Trial],
-        models: impl Fn(usize) -> Vec<Model>,
+        model: impl Fn(usize, usize) -> Option<Model>,
         range: (f64, f64),
     ) -> Result<Ensemble> {
         let mut members: Vec<Model> = Vec::new();
-        let mut of_candidate = |place: usize| {
-            let nodes: Vec<Node> = models(place)
-                .into_iter()
-                .map(|model| {
-                    members.push(model);
-                    Node { weights: Weights::equal(), kind: NodeKind::Member(members.len() - 1) }
-                })
-                .collect();
-            let name = trials[place].candidate.name();
-            (!nodes.is_empty()).then_some(NodeKind::Group(Group { name, nodes }))
+        let mut of_leaf = |leaf: usize| {
+            let Leaf { place, start } = self.leaves[leaf];
+            model(place, start).map(|model| {
+                members.push(model);
+                NodeKind::Member(members.len() - 1)
+            })
         };
-        let group = self.group.map_members(&mut of_candidate);
+        let group = self.group.map_members(&mut of_leaf);
         let nothing = || Group { name: "all".into(), nodes: Vec::new() };
         Ensemble::new(members, group.unwrap_or_else(nothing), range)
     }
 
-    /// Rows of a fold with their errors and the disagreement of all starts of all candidates.
+    /// Rows of a fold with their errors and the disagreement of all leaves.
     pub fn rows(&self, trials: &[Trial], folds: &[HeldOut], fold: usize) -> Vec<HeldOutRow> {
-        let held_out = &folds[fold];
-        let mut starts: Vec<(usize, usize)> = Vec::new();
-        let group = self.group.map_members(&mut |place| {
-            let nodes = (0..trials[place].starts.len()).map(|start| {
-                starts.push((place, start));
-                Node { weights: Weights::equal(), kind: NodeKind::Member(starts.len() - 1) }
-            });
-            Some(NodeKind::Group(Group { name: String::new(), nodes: nodes.collect() }))
-        });
-        let Some(group) = group else { return Vec::new() };
-        let mut medians = MedianBuffers::new(&group);
+        let Rows { measured, outside, .. } = &folds[fold].rows;
+        let mut medians = MedianBuffers::new(&self.group);
         let row = |row: usize| {
-            let outside = held_out.outside[row];
-            let of_start = |leaf: usize| {
-                let (place, start) = starts[leaf];
-                trials[place].starts[start][fold].predicted[row]
-            };
+            let of_leaf = |leaf: usize| self.predicted(trials, leaf, fold)[row];
             HeldOutRow {
-                error: held_out.measured[row] - medians.output(&group, outside, of_start),
-                disagreement: disagreement(medians.predictions(&group, outside, of_start)),
-                outside,
-                weight: 1.0 / held_out.measured.len() as f64,
+                error: measured[row] - medians.output(&self.group, outside[row], of_leaf),
+                disagreement: disagreement(medians.predictions(&self.group, outside[row], of_leaf)),
+                outside: outside[row],
+                weight: 1.0 / measured.len() as f64,
             }
         };
-        (0..held_out.measured.len()).map(row).collect()
+        (0..measured.len()).map(row).collect()
     }
 }
 
@@ -203,14 +236,18 @@ fn of_kind(
     (!nodes.is_empty()).then(|| Group { name: kind.name().into(), nodes })
 }
 
-/// What a tree predicts of the rows of each fold.
-fn predictions(group: &Group, trials: &[Trial], folds: &[HeldOut]) -> Vec<Vec<f64>> {
+/// What a tree predicts of the rows of each fold; `of_member` gives that of a member, by fold and row.
+pub(super) fn predictions<R: AsRef<Rows>>(
+    group: &Group,
+    of_member: impl Fn(usize, usize, usize) -> f64,
+    folds: &[R],
+) -> Vec<Vec<f64>> {
     let mut medians = MedianBuffers::new(group);
-    let mut of_fold = |(fold, held_out): (usize, &HeldOut)| -> Vec<f64> {
+    let mut of_fold = |(fold, rows): (usize, &R)| -> Vec<f64> {
         let row = |(row, &outside): (usize, &f64)| {
-            medians.output(group, outside, |place| trials[place].predicted[fold][row])
+            medians.output(group, outside, |member| of_member(member, fold, row))
         };
-        held_out.outside.iter().enumerate().map(row).collect()
+        rows.as_ref().outside.iter().enumerate().map(row).collect()
     };
     folds.iter().enumerate().map(&mut of_fold).collect()
 }
@@ -225,6 +262,8 @@ mod tests {
     use super::*;
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::fit::auto::candidates::Candidate;
+    use crate::fit::auto::pruning::Pruning;
+    use crate::fit::auto::trial::OnFold;
     use crate::fit::identify;
     use crate::network::Family;
     use crate::options::FitSpec;
@@ -239,8 +278,8 @@ mod tests {
         Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
     }
 
-    /// Trials of all kinds whose predictions are off by chance, inside and outside by factors of their own, with
-    /// one to eight members.
+    /// Trials of all kinds whose predictions are off by chance, inside and outside by factors of their own, from
+    /// one to three starts.
     fn trials(model: &Model, folds: &[HeldOut], generator: &mut Xoshiro256PlusPlus) -> Vec<Trial> {
         let requests = [
             FitSpec::Network(FitOptions { model: Family::Xpnn, ..FitOptions::default() }),
@@ -250,22 +289,26 @@ mod tests {
         let count = 1 + (generator.random::<u64>() % 14) as usize;
         let one = |_| {
             let request = &requests[(generator.random::<u64>() % 3) as usize];
-            let mut off = || 10f64.powf(8.0 * generator.random::<f64>() - 6.0);
-            let (inside, outside) = (off(), off());
             let mut trial = Trial::of(Candidate::alone(request));
-            let predicted = folds.iter().map(|fold| {
-                let rows = fold.measured.iter().zip(&fold.outside);
-                rows.map(|(y, o)| y + if *o > 0.5 { outside } else { inside }).collect()
-            });
-            trial.predicted = predicted.collect();
-            trial.starts = vec![Vec::new()];
-            trial.members = vec![model.clone(); 1 + (generator.random::<u64>() % 8) as usize];
+            for start in 0..=(generator.random::<u64>() % 3) as usize {
+                let mut off = || 10f64.powf(8.0 * generator.random::<f64>() - 6.0);
+                let (inside, outside) = (off(), off());
+                let predicted = |fold: &HeldOut| {
+                    let rows = fold.rows.measured.iter().zip(&fold.rows.outside);
+                    rows.map(|(y, o)| y + if *o > 0.5 { outside } else { inside }).collect()
+                };
+                let of_folds = folds.iter().map(predicted);
+                trial.add_start(
+                    of_folds.map(|predicted| OnFold { model: model.clone(), predicted }).collect(),
+                );
+                trial.members.insert(start, model.clone());
+            }
             trial
         };
         (0..count).map(one).collect()
     }
 
-    /// However many members may stay, what stays is an ensemble that predicts.
+    /// However many members may stay, what stays is an ensemble that answers what was validated.
     #[test]
     fn any_number_of_members_is_an_ensemble() {
         let data = data();
@@ -279,32 +322,39 @@ mod tests {
         let mut generator = Xoshiro256PlusPlus::seed_from_u64(7);
         for _ in 0..100 {
             let trials = trials(&model, &folds, &mut generator);
-            let all = Combination::of(&trials, &folds, Evidence::SeveralLoops, |_| true).unwrap();
+            let evidence = Evidence::SeveralLoops;
+            let all = Combination::of(&trials, &folds, evidence, |_| true).unwrap();
+            let smallest = all.score(&trials, &folds).sum();
             for most in 1..=12 {
-                let kept = all.members_kept(&trials, most);
-                let having: usize = all.shares().iter().map(|(place, _)| trials[*place].members.len()).sum();
-                assert_eq!(kept.iter().sum::<usize>(), most.min(having));
-                let combination = all.only(|place| kept[place] > 0).unwrap();
-                let members = |place: usize| trials[place].members[..kept[place]].to_vec();
-                let ensemble = combination.ensemble(&trials, members, (-1.0, 1.0)).unwrap();
-                assert_eq!(ensemble.members().len(), most.min(having));
-                let shares = combination.shares();
-                for share in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
-                    let sum: f64 = shares.iter().map(|(_, weights)| share(weights)).sum();
-                    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+                let first = all.first(most).unwrap();
+                assert_eq!(first.leaves().len(), most.min(all.leaves().len()));
+                let pruning = Pruning { trials: &trials, folds: &folds, evidence, most };
+                let pruned = pruning.of(all.clone(), |_| true);
+                assert!(pruned.leaves().len() <= most);
+                if all.leaves().len() <= most {
+                    // At most 2 % more, in both classes.
+                    let score = pruned.score(&trials, &folds).sum();
+                    assert!(score <= smallest + 2.0 * 1.02f64.ln() + 1e-9, "{score} and {smallest}");
                 }
-                let predictions = combination.predictions(&trials, &folds);
-                assert!(predictions.iter().flatten().all(|y| y.is_finite()));
-                // Where its members say what was predicted of the folds, the ensemble answers what was validated.
-                let of_member: Vec<usize> =
-                    shares.iter().flat_map(|(place, _)| vec![*place; kept[*place]]).collect();
-                let mut medians = MedianBuffers::new(ensemble.group());
-                for (fold, (held_out, validated)) in folds.iter().zip(&predictions).enumerate() {
-                    for (row, (&outside, validated)) in held_out.outside.iter().zip(validated).enumerate() {
-                        let said = |member: usize| trials[of_member[member]].predicted[fold][row];
-                        let answer = medians.output(ensemble.group(), outside, said);
-                        let size = validated.abs().max(1.0);
-                        assert!((answer - validated).abs() < 1e-9 * size, "{answer} and {validated}");
+                for combination in [first, pruned] {
+                    let members = |place: usize, start: usize| trials[place].members.get(&start).cloned();
+                    let ensemble = combination.ensemble(members, (-1.0, 1.0)).unwrap();
+                    assert_eq!(ensemble.members().len(), combination.leaves().len());
+                    let shares = combination.shares();
+                    for share in [|weights: &Weights| weights.inside, |weights: &Weights| weights.outside] {
+                        let sum: f64 = shares.iter().map(|(_, weights)| share(weights)).sum();
+                        assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+                    }
+                    let predictions = combination.predictions(&trials, &folds);
+                    assert!(predictions.iter().flatten().all(|y| y.is_finite()));
+                    let mut medians = MedianBuffers::new(ensemble.group());
+                    for (fold, (held_out, validated)) in folds.iter().zip(&predictions).enumerate() {
+                        for (row, validated) in validated.iter().enumerate() {
+                            let said = |member: usize| combination.predicted(&trials, member, fold)[row];
+                            let answer = medians.output(ensemble.group(), held_out.rows.outside[row], said);
+                            let size = validated.abs().max(1.0);
+                            assert!((answer - validated).abs() < 1e-9 * size, "{answer} and {validated}");
+                        }
                     }
                 }
             }

@@ -5,7 +5,7 @@
 //! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
 //! ```
 
-use crate::fit::auto::trial::HeldOut;
+use crate::fit::auto::trial::Rows;
 use crate::model::Weights;
 
 /// Rows of a class in a fold below which it says nothing of the class.
@@ -30,10 +30,10 @@ pub(super) struct Score {
 
 impl Score {
     /// Of what is predicted on each fold; of the folds that are `counted`, by their place.
-    pub fn of(predicted: &[Vec<f64>], folds: &[HeldOut], counted: impl Fn(usize) -> bool) -> Self {
-        let counted: Vec<(&Vec<f64>, &HeldOut)> = predicted
+    pub fn of<R: AsRef<Rows>>(predicted: &[Vec<f64>], folds: &[R], counted: impl Fn(usize) -> bool) -> Self {
+        let counted: Vec<(&Vec<f64>, &Rows)> = predicted
             .iter()
-            .zip(folds)
+            .zip(folds.iter().map(R::as_ref))
             .enumerate()
             .filter(|(fold, _)| counted(*fold))
             .map(|(_, fold)| fold)
@@ -48,7 +48,7 @@ impl Score {
             }))
         };
         let all = || {
-            let of_fold = |(predicted, fold): &(&Vec<f64>, &HeldOut)| {
+            let of_fold = |(predicted, fold): &(&Vec<f64>, &Rows)| {
                 logarithm(squares(predicted, fold).map(|(square, _)| square), fold.deviation)
             };
             mean(counted.iter().map(of_fold)).unwrap_or_default()
@@ -82,7 +82,7 @@ impl Score {
 }
 
 /// Squared error of each row, and how far outside the trained range it is.
-fn squares<'a>(predicted: &'a [f64], fold: &'a HeldOut) -> impl Iterator<Item = (f64, f64)> + 'a {
+fn squares<'a>(predicted: &'a [f64], fold: &'a Rows) -> impl Iterator<Item = (f64, f64)> + 'a {
     let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
     rows.map(|((predicted, measured), outside)| ((predicted - measured) * (predicted - measured), *outside))
 }

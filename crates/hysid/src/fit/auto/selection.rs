@@ -6,16 +6,11 @@ use crate::fit::auto::trial::{HeldOut, Trial};
 use crate::model::Weights;
 use crate::model::selection::{CandidateResult, Selection};
 
-/// Of a combination of which so many members of each candidate are kept.
-pub(super) fn selection(
-    trials: &[Trial],
-    folds: &[HeldOut],
-    combination: &Combination,
-    kept: &[usize],
-) -> Selection {
+/// Of a combination.
+pub(super) fn selection(trials: &[Trial], folds: &[HeldOut], combination: &Combination) -> Selection {
     let shares = combination.shares();
     let without = |place: usize| {
-        let others = combination.only(|other| other != place)?;
+        let others = combination.only(|leaf| leaf.place != place)?;
         Some(others.score(trials, folds).percent())
     };
     let result = |(place, trial): (usize, &Trial)| {
@@ -25,7 +20,7 @@ pub(super) fn selection(
             kind: trial.candidate.kind.name().into(),
             error_percent: Score::of(&trial.predicted, folds, |_| true).percent(),
             share: share.unwrap_or(Weights { inside: 0.0, outside: 0.0 }),
-            members: kept[place],
+            members: combination.members(place),
             without_percent: share.and_then(|_| without(place)),
         }
     };

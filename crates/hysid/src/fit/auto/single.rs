@@ -6,12 +6,11 @@ use rayon::prelude::*;
 
 use crate::data::record::{Dataset, Record, Thinning};
 use crate::error::Result;
-use crate::fit::auto::STARTS_ON_FOLDS;
 use crate::fit::auto::candidates::{Candidate, Kind};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Trial, fit_members};
+use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Rows, Trial, fit_members};
 use crate::fit::auto::work::Work;
 use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
@@ -20,6 +19,7 @@ use crate::options::auto::AutoOptions;
 
 /// Starts from which a model is distilled, on everything and on each fold.
 const STARTS: usize = 12;
+const STARTS_ON_A_FOLD: usize = 4;
 
 /// Shares of the measured input on which the ensemble teaches beside the data: paths that nobody measured,
 /// but that the model may meet.
@@ -80,16 +80,12 @@ impl Makers<'_, '_, '_> {
 
     /// The fit to everything with the lowest training error.
     fn plain(&mut self, place: usize) -> Option<Model> {
-        let mut wanted = vec![0; self.trials.len()];
-        wanted[place] = if self.trials[place].candidate.is_random() {
-            STARTS_ON_FOLDS.min(self.options.starts)
-        } else {
-            1
-        };
+        let wanted: Vec<(usize, usize)> =
+            (0..self.trials[place].starts.len()).map(|start| (place, start)).collect();
         fit_members(self.trials, &wanted, self.bench.data, self.bench.work);
         let error =
             |model: &&Model| model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY);
-        let members = self.trials[place].members.iter();
+        let members = self.trials[place].members.values();
         members.min_by(|a, b| error(a).total_cmp(&error(b))).cloned()
     }
 
@@ -100,10 +96,9 @@ impl Makers<'_, '_, '_> {
         let mut predicted = Vec::new();
         for (fold, held_out) in self.bench.folds.iter().enumerate() {
             let training = &held_out.fold.train;
-            let of_fold = |place: usize| {
-                self.trials[place].starts.iter().map(|folds| folds[fold].model.clone()).collect()
-            };
-            let of_fold = self.combination.ensemble(self.trials, of_fold, training.input_range(0))?;
+            let of_fold =
+                |place: usize, start: usize| Some(self.trials[place].starts[start][fold].model.clone());
+            let of_fold = self.combination.ensemble(of_fold, training.input_range(0))?;
             let of_fold = Model::new(
                 Predictor::Ensemble(of_fold),
                 InputTransform::default(),
@@ -112,7 +107,7 @@ impl Makers<'_, '_, '_> {
                 ensemble.provenance().clone().into(),
             )?;
             let Some(model) =
-                distilled(&of_fold, candidate, starts.min(STARTS_ON_FOLDS), training, self.bench.work)?
+                distilled(&of_fold, candidate, starts.min(STARTS_ON_A_FOLD), training, self.bench.work)?
             else {
                 return Ok(None);
             };
@@ -198,12 +193,13 @@ fn distilled(
 /// Rows held out with the errors of a single model.
 pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<HeldOutRow> {
     let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
-        let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
+        let Rows { measured, outside, .. } = &fold.rows;
+        let rows = predicted.iter().zip(measured).zip(outside);
         rows.map(|((predicted, measured), outside)| HeldOutRow {
             error: measured - predicted,
             disagreement: 0.0,
             outside: *outside,
-            weight: 1.0 / fold.measured.len() as f64,
+            weight: 1.0 / fold.rows.measured.len() as f64,
         })
         .collect()
     };

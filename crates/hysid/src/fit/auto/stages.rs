@@ -5,12 +5,11 @@
 
 use rayon::prelude::*;
 
-use crate::fit::auto::STARTS_ON_FOLDS;
 use crate::fit::auto::candidates::{Candidate, Kind};
 use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::{Bench, Trial, fit_members};
+use crate::fit::auto::trial::{Bench, Trial};
 use crate::model::Model;
 use crate::options::auto::AutoOptions;
 
@@ -20,9 +19,6 @@ const SIDE_BY_SIDE: usize = 4;
 /// A candidate is dropped if its first start predicts the first folds with more than so many times the error of
 /// the best candidate so far.
 const HOPELESS: f64 = 3.0;
-
-/// A candidate gets further starts if its first predicts with at most so many times the error of the best.
-const WORTH_MORE_STARTS: f64 = 2.0;
 
 /// A law is tried on the folds if its error on what it was fitted to in haste is at most so many times the
 /// error of the best candidate so far on what was held out.
@@ -56,12 +52,11 @@ impl Stages<'_, '_, '_> {
         let promising = self.screened(laws);
         self.first_starts(promising, None);
         self.further_starts();
-        self.further_members();
     }
 
     fn expect(&self, others: usize, laws: usize) {
         let folds = self.bench.folds.len();
-        let further = others / 3 * (STARTS_ON_FOLDS - 1) * folds;
+        let further = others / 3 * self.options.starts.saturating_sub(1) * folds;
         let first = (others + laws / 4) * (folds + 1);
         self.bench.work.expect(first + laws + further + self.options.members);
     }
@@ -75,7 +70,7 @@ impl Stages<'_, '_, '_> {
             let begun = self.trials.len();
             self.trials.extend(waiting.by_ref().take(SIDE_BY_SIDE).map(Trial::of));
             if let Some(model) = first.take() {
-                self.trials[begun].members.push(model);
+                self.trials[begun].members.insert(0, model);
             }
             let places: Vec<usize> = (begun..self.trials.len()).collect();
             let (first_folds, other_folds) = self.first_folds();
@@ -148,30 +143,18 @@ impl Stages<'_, '_, '_> {
         worth.into_iter().map(|(law, _)| law).collect()
     }
 
-    /// Further starts of the candidates whose first does not fall far behind the best.
+    /// Further starts of the random candidates that count.
     fn further_starts(&mut self) {
-        let all: Vec<usize> = (0..self.bench.folds.len()).collect();
-        let Some(best) = self.best(&all) else { return };
-        let is_worth_more = |trial: &Trial| {
-            let score = self.score(trial, &trial.predicted, &all);
-            trial.is_complete() && trial.candidate.is_random() && is_within(score, best, WORTH_MORE_STARTS)
-        };
-        let places: Vec<usize> =
-            (0..self.trials.len()).filter(|&place| is_worth_more(&self.trials[place])).collect();
-        let to_come = places.len() * (STARTS_ON_FOLDS - 1) * self.bench.folds.len();
-        self.bench.work.expect(to_come + self.options.members);
-        for start in 1..STARTS_ON_FOLDS {
+        let Bench { folds, work, .. } = self.bench;
+        let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
+        let is_random = |place: &usize| self.trials[*place].candidate.is_random();
+        let places = combination.shares().into_iter().map(|(place, _)| place);
+        let places: Vec<usize> = places.filter(is_random).collect();
+        let further = self.options.starts.saturating_sub(1);
+        work.expect(places.len() * further * folds.len() + self.options.members);
+        for start in 1..=further {
             self.bench.try_start(&mut self.trials, &places, start);
         }
-    }
-
-    /// The members that the shares of the candidates ask for.
-    fn further_members(&mut self) {
-        let Bench { data, folds, work } = self.bench;
-        let Some(combination) = Combination::of(&self.trials, folds, self.evidence, |_| true) else { return };
-        let (most, starts) = (self.options.members.max(2), self.options.starts);
-        let wanted = combination.members_wanted(&self.trials, most, starts);
-        fit_members(&mut self.trials, &wanted, data, work);
     }
 
     /// The lowest scores of any candidate so far, on some folds.

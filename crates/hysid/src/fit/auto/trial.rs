@@ -1,5 +1,7 @@
 //! Candidates on folds: the predictions of each start of each candidate for held-out data.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::data::record::Dataset;
@@ -9,10 +11,28 @@ use crate::fit::auto::work::Work;
 use crate::model::{Excursion, Model, Predictions};
 use crate::validation::Fold;
 
-/// The rows of a fold that are held out, and what is known of them.
+/// A fold with its held-out rows.
 #[derive(Debug, Clone)]
 pub(super) struct HeldOut {
     pub fold: Fold,
+    pub rows: Rows,
+}
+
+impl HeldOut {
+    pub fn of(fold: Fold) -> Self {
+        Self { rows: Rows::of(&fold), fold }
+    }
+}
+
+impl AsRef<Rows> for HeldOut {
+    fn as_ref(&self) -> &Rows {
+        &self.rows
+    }
+}
+
+/// The held-out rows of a fold that have an output.
+#[derive(Debug, Clone)]
+pub(super) struct Rows {
     /// Measured output of each row.
     pub measured: Vec<f64>,
     /// How far outside the fold's training range the record has been there, 0 to 1.
@@ -21,8 +41,14 @@ pub(super) struct HeldOut {
     pub deviation: f64,
 }
 
-impl HeldOut {
-    pub fn of(fold: Fold) -> Self {
+impl AsRef<Rows> for Rows {
+    fn as_ref(&self) -> &Rows {
+        self
+    }
+}
+
+impl Rows {
+    fn of(fold: &Fold) -> Self {
         let range = fold.train.input_range(0);
         let (mut measured, mut outside) = (Vec::new(), Vec::new());
         for record in fold.held_out.records() {
@@ -38,7 +64,14 @@ impl HeldOut {
         let count = measured.len() as f64;
         let mean = measured.iter().sum::<f64>() / count;
         let variance = measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>() / count;
-        Self { fold, measured, outside, deviation: variance.sqrt().max(f64::MIN_POSITIVE) }
+        Self { measured, outside, deviation: variance.sqrt().max(f64::MIN_POSITIVE) }
+    }
+
+    /// Only the first of every `step` rows.
+    pub fn every(&self, step: usize) -> Self {
+        let thinned = |values: &[f64]| values.iter().copied().step_by(step).collect();
+        let (measured, outside) = (thinned(&self.measured), thinned(&self.outside));
+        Self { measured, outside, deviation: self.deviation }
     }
 }
 
@@ -65,8 +98,8 @@ pub(super) struct Trial {
     pub starts: Vec<Vec<OnFold>>,
     /// The median of what the starts predict, fold by fold.
     pub predicted: Vec<Vec<f64>>,
-    /// Fits to everything, from the first start on.
-    pub members: Vec<Model>,
+    /// Fits to everything, by their start.
+    pub members: BTreeMap<usize, Model>,
     /// The models of the start that is under way, fold by fold.
     under_way: Vec<Option<OnFold>>,
 }
@@ -74,8 +107,13 @@ pub(super) struct Trial {
 impl Trial {
     /// A candidate that was not tried yet.
     pub fn of(candidate: Candidate) -> Self {
-        let (starts, predicted, members, under_way) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { candidate, starts, predicted, members, under_way }
+        Self {
+            candidate,
+            starts: Vec::new(),
+            predicted: Vec::new(),
+            members: BTreeMap::new(),
+            under_way: Vec::new(),
+        }
     }
 
     /// True if it was tried and fitted to everything at least once.
@@ -103,7 +141,14 @@ impl Trial {
     fn end_start(&mut self, folds: usize) {
         let under_way = std::mem::take(&mut self.under_way);
         let of_folds: Option<Vec<OnFold>> = under_way.into_iter().collect();
-        let Some(of_folds) = of_folds.filter(|of_folds| of_folds.len() == folds) else { return };
+        if let Some(of_folds) = of_folds.filter(|of_folds| of_folds.len() == folds) {
+            self.add_start(of_folds);
+        }
+    }
+
+    /// Adds a start that has been fitted to every fold.
+    pub fn add_start(&mut self, of_folds: Vec<OnFold>) {
+        let folds = of_folds.len();
         self.starts.push(of_folds);
         let median = |fold: usize| {
             let starts: Vec<&[f64]> =
@@ -167,7 +212,7 @@ impl Bench<'_, '_, '_> {
         on_everything: bool,
     ) {
         let of_trial = |&trial: &usize| {
-            let is_missing = on_everything && trials[trial].members.len() == start;
+            let is_missing = on_everything && !trials[trial].members.contains_key(&start);
             let everything = is_missing.then_some(Job { trial, start, fold: None });
             everything.into_iter().chain(folds.iter().map(move |&fold| Job {
                 trial,
@@ -184,7 +229,9 @@ impl Bench<'_, '_, '_> {
                     trial.under_way.resize(self.folds.len(), None);
                     trial.under_way[fold] = Some(on_fold);
                 }
-                (Some(Fitted::OnEverything(model)), _) => trial.members.push(model),
+                (Some(Fitted::OnEverything(model)), _) => {
+                    trial.members.insert(job.start, model);
+                }
                 _ => {}
             }
         }
@@ -209,20 +256,17 @@ impl Bench<'_, '_, '_> {
     }
 }
 
-/// Fits candidates to everything until each has as many members as are wanted of it.
-pub(super) fn fit_members(trials: &mut [Trial], wanted: &[usize], data: &Dataset, work: &Work) {
-    let jobs: Vec<(usize, usize)> = trials
-        .iter()
-        .zip(wanted)
-        .enumerate()
-        .flat_map(|(place, (trial, &wanted))| (trial.members.len()..wanted).map(move |start| (place, start)))
-        .collect();
-    let fitted: Vec<Option<Model>> = jobs
-        .par_iter()
-        .map(|&(place, start)| work.fit(&trials[place].candidate, data, start).ok().flatten())
-        .collect();
-    for (&(place, _), model) in jobs.iter().zip(fitted) {
-        trials[place].members.extend(model);
+/// Fits candidates to everything, each given by its place and start, unless that has been done.
+pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data: &Dataset, work: &Work) {
+    let is_missing = |(place, start): &&(usize, usize)| !trials[*place].members.contains_key(start);
+    let missing: Vec<&(usize, usize)> = wanted.iter().filter(is_missing).collect();
+    let fit =
+        |&&(place, start): &&(usize, usize)| work.fit(&trials[place].candidate, data, start).ok().flatten();
+    let fitted: Vec<Option<Model>> = missing.par_iter().map(fit).collect();
+    for (&&(place, start), model) in missing.iter().zip(fitted) {
+        if let Some(model) = model {
+            trials[place].members.insert(start, model);
+        }
     }
 }
 
