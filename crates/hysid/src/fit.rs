@@ -88,7 +88,9 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
         validation_nrmse_percent: None,
     };
     let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
-    finished(data, options, &seen, Predictor::Law(found.law), found.evaluations, termination, runs)
+    let body = Predictor::Law(found.law);
+    let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
+    Ok(Fitted { searched: found.searched, ..fitted })
 }
 
 fn finished(
@@ -110,8 +112,6 @@ fn finished(
         runs,
         selection: None,
     };
-    Ok(Fitted {
-        model: Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?,
-        evaluations,
-    })
+    let model = Model::new(body, seen.preprocessing.clone(), options.rate, data, found)?;
+    Ok(Fitted::of(model, evaluations))
 }

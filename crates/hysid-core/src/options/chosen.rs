@@ -192,6 +192,7 @@ impl NamedOptions {
             shaping: self.shaping(),
             starts: self.starts,
             epochs: self.epochs,
+            near: Vec::new(),
             seed: self.seed.unwrap_or(defaults.seed),
         }
     }

@@ -114,6 +114,10 @@ pub struct ClassicalOptions {
     pub starts: Option<usize>,
     /// Iterations of each start; the model's own default if `None`.
     pub epochs: Option<usize>,
+    /// Parameters found by the search of a similar fit, from which alone the search begins; empty for random
+    /// starts. It is not stored.
+    #[serde(skip)]
+    pub near: Vec<f64>,
     /// Seed of all random numbers.
     pub seed: u64,
 }
@@ -147,6 +151,7 @@ impl ClassicalOptions {
             shaping: InputOptions::default(),
             starts: None,
             epochs: None,
+            near: Vec::new(),
             seed: SEED,
         }
     }

@@ -64,7 +64,7 @@ use work::Work;
 const MOST_FOLDS: usize = 5;
 
 /// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
-const MOST_ROWS: usize = 6000;
+const MOST_ROWS: usize = 4000;
 
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
@@ -135,13 +135,13 @@ fn without_folds(
     if members.is_empty() || options.members == 1 {
         let model = members.into_iter().next().unwrap_or(alone);
         let provenance = provenance_of(&model, None, None, work);
-        return Ok(Fitted { model: model.with_provenance(provenance), evaluations: work.done() });
+        return Ok(Fitted::of(model.with_provenance(provenance), work.done()));
     }
     let node = |member| Node { weights: Weights::equal(), kind: NodeKind::Member(member) };
     let group = Group { name: trial.candidate.name(), nodes: (0..members.len()).map(node).collect() };
     let body = Predictor::Ensemble(Ensemble::new(members, group, data.input_range(0))?);
     let model = ensemble(body, data, options, None, None, work)?;
-    Ok(Fitted { model, evaluations: work.done() })
+    Ok(Fitted::of(model, work.done()))
 }
 
 /// What was tried, from which the model is made.
@@ -159,7 +159,7 @@ impl Chosen<'_, '_, '_> {
     /// The ensemble, or the single model that was requested; `alone` where nothing was tried in time.
     fn fit(mut self, alone: Model) -> Result<Fitted> {
         let Bench { folds, work, .. } = self.bench;
-        let fit = |model| Ok(Fitted { model, evaluations: work.done() });
+        let fit = |model| Ok(Fitted::of(model, work.done()));
         let Some(all) = self.combination(|_| true) else {
             let model = self.without_validation(alone);
             let provenance = provenance_of(&model, None, None, work);

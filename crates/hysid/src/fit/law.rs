@@ -69,7 +69,13 @@ impl<L: LeastSquaresLaw> Identify for L {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         let (law, termination) = (L::fitted(data, options, stop)?, Termination::Converged);
-        Ok(Identified { law, train_nrmse_percent: f64::NAN, evaluations: 1, termination })
+        Ok(Identified {
+            law,
+            train_nrmse_percent: f64::NAN,
+            evaluations: 1,
+            termination,
+            searched: Vec::new(),
+        })
     }
 }
 
@@ -103,6 +109,6 @@ for_each_law!(fit);
 
 /// The same as one of all laws.
 fn any(found: Identified<impl Into<Classical>>) -> Identified<Classical> {
-    let Identified { law, train_nrmse_percent, evaluations, termination } = found;
-    Identified { law: law.into(), train_nrmse_percent, evaluations, termination }
+    let Identified { law, train_nrmse_percent, evaluations, termination, searched } = found;
+    Identified { law: law.into(), train_nrmse_percent, evaluations, termination, searched }
 }

@@ -136,6 +136,16 @@ pub struct Fitted {
     pub model: Model,
     /// Evaluations of the objective, all starts together, gradients included.
     pub evaluations: usize,
+    /// Parameters found by the search of a law, from which a similar fit can begin
+    /// ([`near`](crate::options::classical::ClassicalOptions::near)); empty for other models.
+    pub searched: Vec<f64>,
+}
+
+impl Fitted {
+    /// A model that no similar fit can begin from.
+    pub(crate) fn of(model: Model, evaluations: usize) -> Self {
+        Self { model, evaluations, searched: Vec::new() }
+    }
 }
 
 /// Identifies a network.

@@ -68,15 +68,17 @@ const LAYERED_RANDOM_STOPS: (usize, usize) = (100, 100);
 const STARTS_OF_A_SEARCH: usize = 4;
 const ROWS_OF_A_SEARCH: usize = 1500;
 
-/// Starts and epochs of a search that only tells whether a law is worth more.
+/// Starts and epochs of a search that tells whether a law is worth more, and of the searches that begin with what
+/// it found.
 const STARTS_IN_HASTE: usize = 2;
-const EPOCHS_IN_HASTE: usize = 12;
+const EPOCHS_IN_HASTE: usize = 16;
+const EPOCHS_NEAR: usize = 12;
 
 /// Stops of a candidate that is quickly fitted.
 const QUICK_STOPS: usize = 60;
 
 /// Rows that a network's early iterations use at most.
-const THIN: usize = 3000;
+const THIN: usize = 1500;
 
 impl Candidate {
     /// A model that the user has decided for.
@@ -148,6 +150,18 @@ impl Candidate {
             (options.starts, options.epochs) = (Some(STARTS_IN_HASTE), Some(EPOCHS_IN_HASTE));
         }
         hasty
+    }
+
+    /// The same searched from parameters that were found in haste, if any.
+    pub fn near(&self, searched: Vec<f64>) -> Self {
+        let mut near = self.clone();
+        if let FitSpec::Classical(options) = &mut near.request
+            && !searched.is_empty()
+        {
+            options.epochs = options.epochs.or(Some(EPOCHS_NEAR));
+            options.near = searched;
+        }
+        near
     }
 
     /// The rows that it is fitted to: all, or some of many. The memory runs through all.
@@ -297,7 +311,8 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     laws
 }
 
-/// The laws that are searched, each in all its variants.
+/// The laws that are searched, each in all its variants. Where there is a rate, the variants without it are left
+/// out: the weight of the rate may be 0.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
     let searched = ClassicalModel::ALL.iter().copied().filter(|model| model.is_searched());
     let with_rate = |model: ClassicalModel| ClassicalOptions {
@@ -306,7 +321,8 @@ fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
         ..of_law(options, model)
     };
     let wanted = searched.filter(|model| !model.needs_rate() || options.rate.is_some());
-    wanted.flat_map(|model| variants(&with_rate(model))).collect()
+    let all = wanted.flat_map(|model| variants(&with_rate(model)));
+    all.filter(|law| law.rate.is_some() || options.rate.is_none() || !law.model.uses_rate()).collect()
 }
 
 fn of_network(

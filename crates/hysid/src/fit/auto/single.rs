@@ -182,8 +182,8 @@ fn distilled(
     let fitted: Vec<Option<(f64, Model)>> = (0..starts)
         .into_par_iter()
         .map(|start| {
-            let Some(model) = work.fit(candidate, &taught, start)? else { return Ok(None) };
-            Ok(Some((distance(&model)?, model)))
+            let Some(fitted) = work.fit(candidate, &taught, start)? else { return Ok(None) };
+            Ok(Some((distance(&fitted.model)?, fitted.model)))
         })
         .collect::<Result<_>>()?;
     let nearest = fitted.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));

@@ -10,6 +10,7 @@ use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, Trial};
+use crate::fit::network::Progress;
 use crate::model::Model;
 use crate::options::auto::AutoOptions;
 
@@ -17,12 +18,17 @@ use crate::options::auto::AutoOptions;
 const SIDE_BY_SIDE: usize = 4;
 
 /// A candidate is dropped if its first start predicts the first folds with more than so many times the error of
-/// the best candidate so far.
+/// the best candidate so far, or if so many of its kind are better.
 const HOPELESS: f64 = 3.0;
+const HOPEFUL_OF_KIND: usize = 4;
 
 /// A law is tried on the folds if its error on what it was fitted to in haste is at most so many times the
 /// error of the best candidate so far on what was held out.
 const WORTH_A_TRIAL: f64 = 2.0;
+
+/// A law fitted in haste is given up if, up to an epoch, its error is more than so many times what it may be in the
+/// end.
+const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 
 /// Networks that are tried with other penalties too.
 const REFINED: usize = 2;
@@ -61,33 +67,62 @@ impl Stages<'_, '_, '_> {
         self.bench.work.expect(first + laws + further + self.options.members);
     }
 
-    /// One start of each, a few candidates at a time: on the first folds, and on the others and everything if
-    /// it is not hopeless.
+    /// One start of each: on the first folds, and of the best of each kind on the others and everything. The very
+    /// first few are tried on all, should that be all there is time for.
     fn first_starts(&mut self, candidates: Vec<Candidate>, first: Option<Model>) {
-        let mut first = first;
-        let mut waiting = candidates.into_iter().peekable();
-        while waiting.peek().is_some() {
-            let begun = self.trials.len();
-            self.trials.extend(waiting.by_ref().take(SIDE_BY_SIDE).map(Trial::of));
-            if let Some(model) = first.take() {
-                self.trials[begun].members.insert(0, model);
-            }
-            let places: Vec<usize> = (begun..self.trials.len()).collect();
-            let (first_folds, other_folds) = self.first_folds();
-            // The very first are fitted to everything at once, should that be all there is time for.
-            self.bench.try_folds(&mut self.trials, &places, 0, &first_folds, begun == 0);
-            let best = self.best(&first_folds);
-            let (hopeful, hopeless): (Vec<usize>, Vec<usize>) =
-                places.into_iter().partition(|&place| self.is_hopeful(place, &first_folds, best));
-            self.bench.try_folds(&mut self.trials, &hopeful, 0, &other_folds, true);
-            self.bench.end_start(&mut self.trials, &hopeful);
-            self.dropped.extend(hopeless.iter().map(|&place| self.trials[place].candidate.clone()));
-            let mut place = 0;
-            self.trials.retain(|_| {
-                place += 1;
-                !hopeless.contains(&(place - 1))
-            });
+        let begun = self.trials.len();
+        self.trials.extend(candidates.into_iter().map(Trial::of));
+        if let Some((model, trial)) = first.zip(self.trials.get_mut(begun)) {
+            trial.members.insert(0, model);
         }
+        let (first_folds, other_folds) = self.first_folds();
+        let all: Vec<usize> = (begun..self.trials.len()).collect();
+        let urgent = if begun == 0 { all.len().min(SIDE_BY_SIDE) } else { 0 };
+        let (urgent, others) = all.split_at(urgent);
+        self.bench.try_folds(&mut self.trials, urgent, 0, &first_folds, true);
+        self.bench.try_folds(&mut self.trials, urgent, 0, &other_folds, false);
+        for few in others.chunks(SIDE_BY_SIDE) {
+            self.bench.try_folds(&mut self.trials, few, 0, &first_folds, false);
+        }
+        let hopeful = self.hopeful(&all, &first_folds);
+        let (tried, hopeful): (Vec<usize>, Vec<usize>) =
+            hopeful.into_iter().partition(|place| urgent.contains(place));
+        self.bench.end_start(&mut self.trials, &tried);
+        for few in hopeful.chunks(SIDE_BY_SIDE) {
+            self.bench.try_folds(&mut self.trials, few, 0, &other_folds, true);
+            self.bench.end_start(&mut self.trials, few);
+        }
+        let is_dropped = |place: &usize| !tried.contains(place) && !hopeful.contains(place);
+        let dropped: Vec<usize> = all.into_iter().filter(is_dropped).collect();
+        self.dropped.extend(dropped.iter().map(|&place| self.trials[place].candidate.clone()));
+        let mut place = 0;
+        self.trials.retain(|_| {
+            place += 1;
+            !dropped.contains(&(place - 1))
+        });
+    }
+
+    /// Of the candidates at some places, the best of each kind on these folds, best first, unless their errors are
+    /// far above that of the best.
+    fn hopeful(&self, places: &[usize], folds: &[usize]) -> Vec<usize> {
+        let score = |&place: &usize| {
+            let trial = &self.trials[place];
+            let predicted = trial.predicted_so_far(folds)?;
+            Some((place, self.score(trial, &predicted, folds)))
+        };
+        let mut scored: Vec<(usize, Score)> = places.iter().filter_map(score).collect();
+        let Some(best) = lowest(scored.iter().map(|(_, score)| *score)) else { return Vec::new() };
+        let best = lowest([best].into_iter().chain(self.best(folds))).unwrap_or(best);
+        let above = |score: &Score| (score.inside - best.inside).min(score.outside - best.outside);
+        scored.retain(|(_, score)| above(score) <= HOPELESS.ln());
+        scored.sort_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
+        let mut of_kinds = [0; Kind::ALL.len()];
+        scored.retain(|(place, _)| {
+            let of_kind = &mut of_kinds[self.trials[*place].candidate.kind as usize];
+            *of_kind += 1;
+            *of_kind <= HOPEFUL_OF_KIND
+        });
+        scored.into_iter().map(|(place, _)| place).collect()
     }
 
     /// The folds on which a candidate shows whether it is hopeless, and the others. Of a single record the first
@@ -95,12 +130,6 @@ impl Stages<'_, '_, '_> {
     fn first_folds(&self) -> (Vec<usize>, Vec<usize>) {
         let last = self.bench.folds.len() - 1;
         (0..=last).partition(|&fold| fold == 0 || fold == last && last > 2)
-    }
-
-    fn is_hopeful(&self, place: usize, folds: &[usize], best: Option<Score>) -> bool {
-        let trial = &self.trials[place];
-        let Some(predicted) = trial.predicted_so_far(folds) else { return false };
-        best.is_none_or(|best| is_within(self.score(trial, &predicted, folds), best, HOPELESS))
     }
 
     /// Of what a candidate predicts on some folds, with what is known of it beforehand.
@@ -127,18 +156,26 @@ impl Stages<'_, '_, '_> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return laws };
         let few = self.bench.data.thinned(ROWS_IN_HASTE);
-        let error = |law: &Candidate| {
-            let model = self.bench.work.fit(&law.in_haste(), &few, 0).ok().flatten()?;
-            model.provenance().trained_error().nrmse_std_percent
+        let most_percent = |law: &Candidate| {
+            100.0 * (best.inside + WORTH_A_TRIAL.ln() - self.evidence.prior(law.asked())).exp()
         };
-        let errors: Vec<Option<f64>> = laws.par_iter().map(error).collect();
-        let is_worth = |law: &Candidate, error: &Option<f64>| {
-            let prior = self.evidence.prior(law.asked());
-            let score = |percent: f64| (0.01 * percent).max(f64::MIN_POSITIVE).ln() + prior;
-            error.is_some_and(|error| score(error) <= best.inside + WORTH_A_TRIAL.ln())
+        let fit = |law: Candidate| {
+            let most = most_percent(&law);
+            let is_promising = |progress: &Progress| {
+                let allowed = PROMISING.iter().find(|(epoch, _)| progress.epoch <= *epoch);
+                let allowed = allowed.map_or(1.0, |(_, times)| *times);
+                progress.train_nrmse_percent.is_nan() || progress.train_nrmse_percent <= allowed * most
+            };
+            let fitted = self.bench.work.fit_while(&law.in_haste(), &few, 0, is_promising).ok().flatten();
+            let error = fitted
+                .as_ref()
+                .and_then(|fitted| fitted.model.provenance().trained_error().nrmse_std_percent);
+            let is_worth = error.is_some_and(|error| error <= most);
+            (law.near(fitted.map_or_else(Vec::new, |fitted| fitted.searched)), is_worth)
         };
-        let (worth, not): (Vec<_>, Vec<_>) =
-            laws.into_iter().zip(errors).partition(|(law, error)| is_worth(law, error));
+        let tried: Vec<(Candidate, bool)> = laws.into_par_iter().map(fit).collect();
+        let is_worth = |(_, is_worth): &(Candidate, bool)| *is_worth;
+        let (worth, not): (Vec<_>, Vec<_>) = tried.into_iter().partition(is_worth);
         self.dropped.extend(not.into_iter().map(|(law, _)| law));
         worth.into_iter().map(|(law, _)| law).collect()
     }
@@ -160,12 +197,11 @@ impl Stages<'_, '_, '_> {
     /// The lowest scores of any candidate so far, on some folds.
     fn best(&self, folds: &[usize]) -> Option<Score> {
         let complete = self.trials.iter().filter(|trial| trial.is_complete());
-        let scores = complete.map(|trial| self.score(trial, &trial.predicted, folds));
-        scores.reduce(|a, b| Score { inside: a.inside.min(b.inside), outside: a.outside.min(b.outside) })
+        lowest(complete.map(|trial| self.score(trial, &trial.predicted, folds)))
     }
 }
 
-/// True if a score is, in either class, at most so many times the best.
-fn is_within(score: Score, best: Score, times: f64) -> bool {
-    score.inside <= best.inside + times.ln() || score.outside <= best.outside + times.ln()
+/// The lowest scores of each class.
+fn lowest(scores: impl Iterator<Item = Score>) -> Option<Score> {
+    scores.reduce(|a, b| Score { inside: a.inside.min(b.inside), outside: a.outside.min(b.outside) })
 }

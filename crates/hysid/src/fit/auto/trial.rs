@@ -180,7 +180,7 @@ struct Job {
 
 /// What came of a job.
 #[allow(clippy::large_enum_variant)]
-enum Fitted {
+enum Tried {
     OnFold(OnFold),
     OnEverything(Model),
 }
@@ -221,15 +221,15 @@ impl Bench<'_, '_, '_> {
             }))
         };
         let jobs: Vec<Job> = places.iter().flat_map(of_trial).collect();
-        let fitted: Vec<Option<Fitted>> = jobs.par_iter().map(|job| self.run(trials, job)).collect();
+        let fitted: Vec<Option<Tried>> = jobs.par_iter().map(|job| self.run(trials, job)).collect();
         for (job, fitted) in jobs.iter().zip(fitted) {
             let trial = &mut trials[job.trial];
             match (fitted, job.fold) {
-                (Some(Fitted::OnFold(on_fold)), Some(fold)) => {
+                (Some(Tried::OnFold(on_fold)), Some(fold)) => {
                     trial.under_way.resize(self.folds.len(), None);
                     trial.under_way[fold] = Some(on_fold);
                 }
-                (Some(Fitted::OnEverything(model)), _) => {
+                (Some(Tried::OnEverything(model)), _) => {
                     trial.members.insert(job.start, model);
                 }
                 _ => {}
@@ -242,17 +242,18 @@ impl Bench<'_, '_, '_> {
         places.iter().for_each(|&place| trials[place].end_start(self.folds.len()));
     }
 
-    fn run(&self, trials: &[Trial], job: &Job) -> Option<Fitted> {
+    fn run(&self, trials: &[Trial], job: &Job) -> Option<Tried> {
         let candidate = &trials[job.trial].candidate;
         // A candidate that fails on a fold is none; why, its name alone would not tell the user.
         let Some(fold) = job.fold else {
-            return self.work.fit(candidate, self.data, job.start).ok().flatten().map(Fitted::OnEverything);
+            let fitted = self.work.fit(candidate, self.data, job.start).ok().flatten()?;
+            return Some(Tried::OnEverything(fitted.model));
         };
         let fold = &self.folds[fold].fold;
-        let model = self.work.fit(candidate, &fold.train, job.start).ok().flatten()?;
+        let model = self.work.fit(candidate, &fold.train, job.start).ok().flatten()?.model;
         let predicted = fold.predicted_by(&model).ok()?;
         let is_sound = predicted.iter().all(|y| y.is_finite());
-        is_sound.then_some(Fitted::OnFold(OnFold { model, predicted }))
+        is_sound.then_some(Tried::OnFold(OnFold { model, predicted }))
     }
 }
 
@@ -260,8 +261,10 @@ impl Bench<'_, '_, '_> {
 pub(super) fn fit_members(trials: &mut [Trial], wanted: &[(usize, usize)], data: &Dataset, work: &Work) {
     let is_missing = |(place, start): &&(usize, usize)| !trials[*place].members.contains_key(start);
     let missing: Vec<&(usize, usize)> = wanted.iter().filter(is_missing).collect();
-    let fit =
-        |&&(place, start): &&(usize, usize)| work.fit(&trials[place].candidate, data, start).ok().flatten();
+    let fit = |&&(place, start): &&(usize, usize)| {
+        let fitted = work.fit(&trials[place].candidate, data, start).ok().flatten();
+        fitted.map(|fitted| fitted.model)
+    };
     let fitted: Vec<Option<Model>> = missing.par_iter().map(fit).collect();
     for (&&(place, start), model) in missing.iter().zip(fitted) {
         if let Some(model) = model {

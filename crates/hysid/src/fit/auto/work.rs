@@ -8,7 +8,7 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::identify;
-use crate::fit::network::{Observer, Progress, SharedObserver};
+use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
 use crate::model::Model;
 
 /// The observer, shared by all fits.
@@ -65,16 +65,33 @@ impl<'o, 'a> Work<'o, 'a> {
     ///
     /// # Errors
     /// As [`identify`].
-    pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Model>> {
+    pub fn fit(&self, candidate: &Candidate, data: &Dataset, start: usize) -> Result<Option<Fitted>> {
+        self.fit_while(candidate, data, start, |_| true)
+    }
+
+    /// As [`Work::fit`], ended early once its progress is not `promising`.
+    ///
+    /// # Errors
+    /// As [`identify`].
+    pub fn fit_while(
+        &self,
+        candidate: &Candidate,
+        data: &Dataset,
+        start: usize,
+        promising: impl Fn(&Progress) -> bool + Sync,
+    ) -> Result<Option<Fitted>> {
         if self.is_stopped() {
             return Ok(None);
         }
         let request = candidate.request(start);
-        let fitted =
-            identify(candidate.rows_of(data).as_ref(), &request, &mut |progress| self.observe(progress))?;
+        let mut observe = |progress: &Progress| match promising(progress) {
+            true => self.observe(progress),
+            false => ControlFlow::Break(()),
+        };
+        let fitted = identify(candidate.rows_of(data).as_ref(), &request, &mut observe)?;
         self.fits().done += 1;
         // What was stopped on its way is worse than what it is compared with.
-        Ok((!self.is_stopped()).then_some(fitted.model))
+        Ok((!self.is_stopped()).then_some(fitted))
     }
 
     /// Tells the observer of a fit on its way.

@@ -132,7 +132,7 @@ impl<'a> Training<'a> {
         let law = whole.law(walk.parameters()).validated()?;
         let evaluations = self.walks.evaluations() + walk.evaluations();
         let train_nrmse_percent = walk.nrmse_percent();
-        Ok(Identified { law, train_nrmse_percent, evaluations, termination })
+        Ok(Identified { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
 
     /// Half of the epochs teacher forced, then the others in free run; the observer is called for `rounds` in all.

@@ -145,14 +145,19 @@ pub struct Identified<L> {
     pub evaluations: usize,
     /// Why the search ended.
     pub termination: Termination,
+    /// The parameters found by search, from which a similar fit can begin ([`ClassicalOptions::near`]); empty
+    /// for a law that is not searched in this way.
+    pub searched: Vec<f64>,
 }
 
 /// How much is searched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Effort {
     pub starts: usize,
     pub epochs: usize,
     pub seed: u64,
+    /// Parameters from which alone the search begins; empty for random starts.
+    pub near: Vec<f64>,
 }
 
 impl Effort {
@@ -162,6 +167,7 @@ impl Effort {
             starts: options.starts.unwrap_or(starts),
             epochs: options.epochs.unwrap_or(epochs),
             seed: options.seed,
+            near: options.near.clone(),
         }
     }
 
@@ -190,6 +196,7 @@ impl Found {
             train_nrmse_percent: self.train_nrmse_percent,
             evaluations: self.evaluations,
             termination: self.termination,
+            searched: self.parameters.clone(),
         }
     }
 }
@@ -247,11 +254,11 @@ pub(crate) fn search<F: Family>(
     let variation = target.len() as f64 * deviation * deviation;
     let objective = Objective { family, series, target, variation, stop };
 
-    let begun = beginnings(&objective, effort);
+    let begun = beginnings(&objective, &effort);
     if begun.first().is_none_or(|best| best.value().square_residual == UNFINISHED) {
         return Err(Error::Stopped);
     }
-    let drawn = effort.starts * DRAWS_PER_START;
+    let drawn = if effort.near.is_empty() { effort.starts * DRAWS_PER_START } else { 1 };
     let plan = Plan {
         rounds: effort.epochs,
         spared: 0,
@@ -279,9 +286,16 @@ pub(crate) fn search<F: Family>(
     })
 }
 
-/// The best of many points that lie apart: those that the data suggest and random ones.
-fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: Effort) -> Vec<Descent> {
+/// The point that was asked for, or else the best of many points that lie apart: those that the data suggest and
+/// random ones.
+fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: &Effort) -> Vec<Descent> {
     let variables = objective.family.variables();
+    if effort.near.len() == variables.len() {
+        let places = variables.iter().zip(&effort.near).map(|(variable, &value)| variable.place(value));
+        let u: Vec<f64> = places.collect();
+        let value = objective.value(&u);
+        return vec![Descent::new(u, value)];
+    }
     let suggested = objective.family.suggestions();
     let draw = |index: usize| -> Vec<f64> {
         if let Some(values) = suggested.get(index) {

@@ -212,7 +212,7 @@ impl<'a> Fitting<'a> {
         };
         let body = Predictor::Network { network, scaling };
         let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
-        Ok(Fitted { model, evaluations })
+        Ok(Fitted::of(model, evaluations))
     }
 
     /// All starts on everything, thinned if it is much.
