@@ -25,7 +25,6 @@
 mod candidates;
 mod combination;
 mod prior;
-mod pruning;
 mod score;
 mod selection;
 mod single;
@@ -54,7 +53,6 @@ use crate::validation::{PooledErrors, folds};
 use candidates::{Candidate, candidates, quick};
 use combination::{Combination, Leaf};
 use prior::Evidence;
-use pruning::Pruning;
 use selection::selection;
 use stages::Stages;
 use trial::{Bench, HeldOut, Trial, fit_members};
@@ -187,7 +185,7 @@ impl Chosen<'_, '_, '_> {
     }
 
     /// The candidates' starts with their weights by the folds that are `counted`, no more than are needed.
-    fn combination(&self, counted: impl Fn(usize) -> bool + Copy + Sync) -> Option<Combination> {
+    fn combination(&self, counted: impl Fn(usize) -> bool + Copy) -> Option<Combination> {
         let (folds, evidence) = (self.bench.folds, self.evidence);
         let all = Combination::of(&self.trials, folds, evidence, counted)?;
         // A single model is distilled from more than one.
@@ -196,7 +194,7 @@ impl Chosen<'_, '_, '_> {
         if self.options.only.is_some() {
             return all.first(most);
         }
-        Some(Pruning { trials: &self.trials, folds, evidence, most }.of(all, counted))
+        all.smallest(&self.trials, folds, evidence, counted, most)
     }
 
     /// Of the starts that have been fitted to everything.

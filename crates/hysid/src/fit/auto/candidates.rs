@@ -70,7 +70,7 @@ const ROWS_OF_A_SEARCH: usize = 1500;
 
 /// Starts and epochs of a search that tells whether a law is worth more, and of the searches that begin with what
 /// it found.
-const STARTS_IN_HASTE: usize = 2;
+const STARTS_IN_HASTE: usize = 4;
 const EPOCHS_IN_HASTE: usize = 16;
 const EPOCHS_NEAR: usize = 12;
 

@@ -1,10 +1,9 @@
-//! Combination of candidates: the weighted median of kinds, each the weighted median of its best candidates.
-//! The same tree of weights predicts held-out data from the fits to folds and, with the fits of the same starts to
-//! everything, is the ensemble.
+//! Combination of candidates: the weighted median of the best, each the median of its starts. The same tree of
+//! weights predicts held-out data from the fits to folds and, with the fits of the same starts to everything, is
+//! the ensemble.
 
 use crate::data::metrics::Errors;
 use crate::error::Result;
-use crate::fit::auto::candidates::Kind;
 use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
 use crate::fit::auto::trial::{HeldOut, Rows, Trial};
@@ -13,15 +12,18 @@ use crate::model::{
 };
 use crate::validation::PooledErrors;
 
-/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates of a kind (theory.md (11.6)), and the
-/// number of candidates with a weight.
-const POWER_IN_KIND: f64 = 8.0;
-const MOST_IN_KIND: usize = 3;
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates (theory.md (11.6)), and the number of
+/// candidates with a weight.
+const POWER: f64 = 4.0;
+const MOST_CANDIDATES: usize = 8;
 
-/// The same among kinds.
-const POWER_OF_KINDS: f64 = 3.0;
+/// Fewest starts of an ensemble, where there are so many: the median of three is robust.
+const FEWEST: usize = 3;
 
-/// Share of the weight of its kind below which a candidate does not count.
+/// Largest error of fewer starts on held-out data, relative to that of all.
+const WORTH: f64 = 1.02;
+
+/// Share of the whole weight below which a candidate does not count.
 const TOO_LITTLE: f64 = 0.02;
 
 /// A start of a candidate: what it predicts of the folds is validated, and its fit to everything is a member of
@@ -49,22 +51,23 @@ impl Combination {
         evidence: Evidence,
         counted: impl Fn(usize) -> bool + Copy,
     ) -> Option<Self> {
-        let of_kind = |kind: &Kind| of_kind(*kind, trials, folds, evidence, counted);
-        let kinds: Vec<Group> = Kind::ALL.iter().filter_map(of_kind).collect();
-        let score = |kind: &Group| {
-            let prior = |(place, share): &(usize, Weights)| share.inside * trials[*place].prior(evidence);
-            let prior: f64 = kind.shares().iter().map(prior).sum();
-            let of_place = |place: usize, fold: usize, row: usize| trials[place].predicted[fold][row];
-            Score::of(&predictions(kind, of_place, folds), folds, counted).with_prior(prior)
+        let places: Vec<usize> = (0..trials.len()).filter(|&place| trials[place].is_complete()).collect();
+        let score = |&place: &usize| {
+            Score::of(&trials[place].predicted, folds, counted).with_prior(trials[place].prior(evidence))
         };
-        let scores: Vec<Score> = kinds.iter().map(score).collect();
+        let scores: Vec<Score> = places.iter().map(score).collect();
         let power = match evidence {
-            Evidence::SeveralLoops => POWER_OF_KINDS,
-            Evidence::OneLoop => prior::POWER_OF_KINDS,
+            Evidence::SeveralLoops => POWER,
+            Evidence::OneLoop => prior::POWER,
         };
-        let weights = weights(&scores, power, kinds.len());
-        let nodes = kinds.into_iter().zip(weights);
-        let nodes = nodes.map(|(group, weights)| Node { weights, kind: NodeKind::Group(group) });
+        let weights = weights(&scores, power, MOST_CANDIDATES);
+        let sum = |weight: fn(&Weights) -> f64| weights.iter().map(weight).sum::<f64>();
+        let (inside, outside) = (sum(|weights| weights.inside), sum(|weights| weights.outside));
+        let counts = |weights: &Weights| {
+            weights.inside >= TOO_LITTLE * inside || weights.outside >= TOO_LITTLE * outside
+        };
+        let nodes = places.into_iter().zip(weights).filter(|(_, weights)| counts(weights));
+        let nodes = nodes.map(|(place, weights)| Node { weights, kind: NodeKind::Member(place) });
         let all = Group { name: "all".into(), nodes: nodes.collect() };
         let mut leaves = Vec::new();
         let group = all.map_members(&mut |place| {
@@ -82,11 +85,6 @@ impl Combination {
     /// The starts that count.
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
-    }
-
-    /// The tree, whose members are places among [`Combination::leaves`].
-    pub fn group(&self) -> &Group {
-        &self.group
     }
 
     /// Starts of a candidate that count.
@@ -137,7 +135,7 @@ impl Combination {
     }
 
     /// What a leaf predicts of the rows of a fold.
-    pub fn predicted<'t>(&self, trials: &'t [Trial], leaf: usize, fold: usize) -> &'t [f64] {
+    fn predicted<'t>(&self, trials: &'t [Trial], leaf: usize, fold: usize) -> &'t [f64] {
         let Leaf { place, start } = self.leaves[leaf];
         &trials[place].starts[start][fold].predicted
     }
@@ -145,6 +143,26 @@ impl Combination {
     /// Its score on all folds.
     pub fn score(&self, trials: &[Trial], folds: &[HeldOut]) -> Score {
         Score::of(&self.predictions(trials, folds), folds, |_| true)
+    }
+
+    /// The fewest leaves whose error on the folds that are `counted` is at most 2 % above that of all; at most
+    /// `most`.
+    pub fn smallest(
+        &self,
+        trials: &[Trial],
+        folds: &[HeldOut],
+        evidence: Evidence,
+        counted: impl Fn(usize) -> bool + Copy,
+        most: usize,
+    ) -> Option<Self> {
+        let error = |combination: &Self| {
+            let score = Score::of(&combination.predictions(trials, folds), folds, counted);
+            score.with_prior(combination.prior(trials, evidence)).sum() / 2.0
+        };
+        let enough = error(self) + WORTH.ln();
+        let of_fewer = (FEWEST.min(most)..most).filter_map(|count| self.first(count));
+        let mut of_fewer = of_fewer.filter(|fewer| error(fewer) <= enough);
+        of_fewer.next().or_else(|| self.first(most))
     }
 
     /// Its errors on everything that was held out.
@@ -211,43 +229,18 @@ impl Combination {
     }
 }
 
-/// The best candidates of a kind with their weights; `None` if none is complete.
-fn of_kind(
-    kind: Kind,
-    trials: &[Trial],
-    folds: &[HeldOut],
-    evidence: Evidence,
-    counted: impl Fn(usize) -> bool + Copy,
-) -> Option<Group> {
-    let is_of_kind = |place: &usize| trials[*place].candidate.kind == kind && trials[*place].is_complete();
-    let places: Vec<usize> = (0..trials.len()).filter(is_of_kind).collect();
-    let score = |&place: &usize| {
-        Score::of(&trials[place].predicted, folds, counted).with_prior(trials[place].prior(evidence))
-    };
-    let scores: Vec<Score> = places.iter().map(score).collect();
-    let weights = weights(&scores, POWER_IN_KIND, MOST_IN_KIND);
-    let sum = |weight: fn(&Weights) -> f64| weights.iter().map(weight).sum::<f64>();
-    let (inside, outside) = (sum(|weights| weights.inside), sum(|weights| weights.outside));
-    let counts =
-        |weights: &Weights| weights.inside >= TOO_LITTLE * inside || weights.outside >= TOO_LITTLE * outside;
-    let nodes = places.into_iter().zip(weights).filter(|(_, weights)| counts(weights));
-    let nodes: Vec<Node> =
-        nodes.map(|(place, weights)| Node { weights, kind: NodeKind::Member(place) }).collect();
-    (!nodes.is_empty()).then(|| Group { name: kind.name().into(), nodes })
-}
-
 /// What a tree predicts of the rows of each fold; `of_member` gives that of a member, by fold and row.
-pub(super) fn predictions<R: AsRef<Rows>>(
+fn predictions(
     group: &Group,
     of_member: impl Fn(usize, usize, usize) -> f64,
-    folds: &[R],
+    folds: &[HeldOut],
 ) -> Vec<Vec<f64>> {
     let mut medians = MedianBuffers::new(group);
-    let mut of_fold = |(fold, rows): (usize, &R)| -> Vec<f64> {
+    let mut of_fold = |(fold, held_out): (usize, &HeldOut)| -> Vec<f64> {
         let row = |(row, &outside): (usize, &f64)| {
             medians.output(group, outside, |member| of_member(member, fold, row))
         };
-        rows.as_ref().outside.iter().enumerate().map(row).collect()
+        held_out.rows.outside.iter().enumerate().map(row).collect()
     };
     folds.iter().enumerate().map(&mut of_fold).collect()
 }
@@ -262,7 +255,6 @@ mod tests {
     use super::*;
     use crate::data::record::{ColumnNames, Dataset, Record};
     use crate::fit::auto::candidates::Candidate;
-    use crate::fit::auto::pruning::Pruning;
     use crate::fit::auto::trial::OnFold;
     use crate::fit::identify;
     use crate::network::Family;
@@ -324,19 +316,18 @@ mod tests {
             let trials = trials(&model, &folds, &mut generator);
             let evidence = Evidence::SeveralLoops;
             let all = Combination::of(&trials, &folds, evidence, |_| true).unwrap();
-            let smallest = all.score(&trials, &folds).sum();
+            let error = all.score(&trials, &folds).sum();
             for most in 1..=12 {
                 let first = all.first(most).unwrap();
                 assert_eq!(first.leaves().len(), most.min(all.leaves().len()));
-                let pruning = Pruning { trials: &trials, folds: &folds, evidence, most };
-                let pruned = pruning.of(all.clone(), |_| true);
-                assert!(pruned.leaves().len() <= most);
-                if all.leaves().len() <= most {
-                    // At most 2 % more, in both classes.
-                    let score = pruned.score(&trials, &folds).sum();
-                    assert!(score <= smallest + 2.0 * 1.02f64.ln() + 1e-9, "{score} and {smallest}");
+                let smallest = all.smallest(&trials, &folds, evidence, |_| true, most).unwrap();
+                let found = smallest.leaves().len();
+                assert!(found <= most && found >= FEWEST.min(most).min(all.leaves().len()));
+                if found < most.min(all.leaves().len()) {
+                    let score = smallest.score(&trials, &folds).sum();
+                    assert!(score <= error + 2.0 * WORTH.ln() + 1e-9, "{score} and {error}");
                 }
-                for combination in [first, pruned] {
+                for combination in [first, smallest] {
                     let members = |place: usize, start: usize| trials[place].members.get(&start).cloned();
                     let ensemble = combination.ensemble(members, (-1.0, 1.0)).unwrap();
                     assert_eq!(ensemble.members().len(), combination.leaves().len());

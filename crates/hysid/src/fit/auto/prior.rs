@@ -26,8 +26,8 @@ const OTHER_SPEED: f64 = 1.5;
 /// How much wider a band is for data of one loop, on the generated cases.
 pub(super) const WIDER_BAND: f64 = 1.6;
 
-/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among kinds for data of one loop (theory.md (11.6)).
-pub(super) const POWER_OF_KINDS: f64 = 8.0;
+/// Power `p` of the weights `(e^S / e^{S_best})^{-p}` for data of one loop (theory.md (11.6)).
+pub(super) const POWER: f64 = 8.0;
 
 /// Whether the data tell candidates apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

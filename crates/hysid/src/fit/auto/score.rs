@@ -5,7 +5,7 @@
 //! w = (e^S / e^{S_best})^{-p}                                              theory.md (11.6)
 //! ```
 
-use crate::fit::auto::trial::Rows;
+use crate::fit::auto::trial::{HeldOut, Rows};
 use crate::model::Weights;
 
 /// Rows of a class in a fold below which it says nothing of the class.
@@ -30,10 +30,10 @@ pub(super) struct Score {
 
 impl Score {
     /// Of what is predicted on each fold; of the folds that are `counted`, by their place.
-    pub fn of<R: AsRef<Rows>>(predicted: &[Vec<f64>], folds: &[R], counted: impl Fn(usize) -> bool) -> Self {
+    pub fn of(predicted: &[Vec<f64>], folds: &[HeldOut], counted: impl Fn(usize) -> bool) -> Self {
         let counted: Vec<(&Vec<f64>, &Rows)> = predicted
             .iter()
-            .zip(folds.iter().map(R::as_ref))
+            .zip(folds.iter().map(|fold| &fold.rows))
             .enumerate()
             .filter(|(fold, _)| counted(*fold))
             .map(|(_, fold)| fold)

@@ -24,12 +24,6 @@ impl HeldOut {
     }
 }
 
-impl AsRef<Rows> for HeldOut {
-    fn as_ref(&self) -> &Rows {
-        &self.rows
-    }
-}
-
 /// The held-out rows of a fold that have an output.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
@@ -39,12 +33,6 @@ pub(super) struct Rows {
     pub outside: Vec<f64>,
     /// Standard deviation of the measured output, in its unit.
     pub deviation: f64,
-}
-
-impl AsRef<Rows> for Rows {
-    fn as_ref(&self) -> &Rows {
-        self
-    }
 }
 
 impl Rows {
@@ -65,13 +53,6 @@ impl Rows {
         let mean = measured.iter().sum::<f64>() / count;
         let variance = measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>() / count;
         Self { measured, outside, deviation: variance.sqrt().max(f64::MIN_POSITIVE) }
-    }
-
-    /// Only the first of every `step` rows.
-    pub fn every(&self, step: usize) -> Self {
-        let thinned = |values: &[f64]| values.iter().copied().step_by(step).collect();
-        let (measured, outside) = (thinned(&self.measured), thinned(&self.outside));
-        Self { measured, outside, deviation: self.deviation }
     }
 }
 
