@@ -71,8 +71,7 @@ fn nodes(
     let (low, high) = ensemble.range();
     let words = format!(
         "The members of a candidate are fits from different random starts. A weighted median combines the \
-         candidates of each kind, and another one the kinds; the share is the resulting weight of a \
-         candidate. Errors are those of free runs on held-out data, geometric means over the folds. In \
+         candidates; the share is the weight of a candidate. Errors are those of free runs on held-out data, geometric means over the folds. In \
          parentheses: the change of the error without the candidate. Of two numbers, the first is for rows \
          before the first input leaves the trained range ({} to {}), the second for the rows after. The \
          cost was measured on this machine, on one thread.",

@@ -13,7 +13,7 @@
 //! so far; `o` is 0 inside and 1 from 6 % of the range on.
 //!
 //! The median is robust: one diverging fit does not change it. Nodes are nested (starts of one model form a
-//! group, models of a kind the next), so that a kind gains no weight by its number of members.
+//! group), so that a model gains no weight by its number of starts.
 
 use serde::{Deserialize, Serialize};
 

@@ -103,7 +103,7 @@ pub const OPTIONS: [FitOption; 27] = [
         meaning: "Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts \
                   that are combined",
         values: Values::Count(1, MOST_MEMBERS),
-        default: "32 for auto, otherwise 1",
+        default: "6 for auto, otherwise 1",
         used_by: |_, _| true,
     },
     FitOption {
@@ -187,7 +187,7 @@ pub const OPTIONS: [FitOption; 27] = [
         group: Training,
         meaning: "Random networks, populations or parameters to start from",
         values: Values::Count(1, MOST_STARTS),
-        default: "8; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and \
+        default: "8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and \
                   neuro-madelung, 32 for generalized-prandtl-ishlinskii",
         used_by: |_, _| true,
     },

@@ -2,18 +2,19 @@
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`].
 //! 2. *Candidates*: networks, random stops and all classical laws, with and without rate, deterioration,
-//!    relaxation and companding. Each is fitted to every fold, from several starts if it is random; its
-//!    prediction is the median of its starts. Laws with searched parameters are first fitted with few epochs,
-//!    and dropped if their errors are far above the best.
-//! 3. *Weights*: candidates of a kind are weighted by their scores, and the best three are combined by their
-//!    weighted median; the kinds likewise. Rows inside and outside the trained range have separate scores.
-//! 4. *Fitted to all data* of the candidates with a weight: an [`Ensemble`](crate::model::Ensemble), or one
-//!    small model.
+//!    relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
+//!    those with a weight once more from another start; the prediction of a candidate is the median of its
+//!    starts. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far
+//!    above the best.
+//! 3. *Weights*: the best eight candidates are weighted by their scores and combined by their weighted median.
+//!    Rows inside and outside the trained range have separate scores.
+//! 4. *Members*: the fewest starts whose error on the folds is at most 1 % above that of all, fitted to all
+//!    data: an [`Ensemble`](crate::model::Ensemble), or one small model.
 //! 5. *Prediction band*, calibrated on the folds.
 //!
 //! ```text
 //! S = mean over the folds f of ln(rmse_f / σ_f)                                             theory.md (11.5)
-//! w = (e^S / e^{S_best})^{-p},    p = 8 among the best three of a kind, 3 among kinds       theory.md (11.6)
+//! w = (e^S / e^{S_best})^{-p},    p = 4, and 8 for data of one loop                         theory.md (11.6)
 //! ```
 //!
 //! `S` is the score of a candidate, `rmse_f` its error on fold `f`, `σ_f` the standard deviation of the

@@ -21,7 +21,7 @@ const MOST_CANDIDATES: usize = 8;
 const FEWEST: usize = 3;
 
 /// Largest error of fewer starts on held-out data, relative to that of all.
-const WORTH: f64 = 1.02;
+const WORTH: f64 = 1.01;
 
 /// Share of the whole weight below which a candidate does not count.
 const TOO_LITTLE: f64 = 0.02;
@@ -145,7 +145,7 @@ impl Combination {
         Score::of(&self.predictions(trials, folds), folds, |_| true)
     }
 
-    /// The fewest leaves whose error on the folds that are `counted` is at most 2 % above that of all; at most
+    /// The fewest leaves whose error on the folds that are `counted` is at most 1 % above that of all; at most
     /// `most`.
     pub fn smallest(
         &self,
