@@ -20,7 +20,10 @@ const SIDE_BY_SIDE: usize = 4;
 /// A candidate is dropped if its first start predicts the first folds with more than so many times the error of
 /// the best candidate so far, or if so many of its kind are better.
 const HOPELESS: f64 = 3.0;
-const HOPEFUL_OF_KIND: usize = 4;
+const HOPEFUL_OF_KIND: usize = 6;
+
+/// With so many folds at most, all are first folds.
+const FEW_FOLDS: usize = 3;
 
 /// A law is tried on the folds if its error on what it was fitted to in haste is at most so many times the
 /// error of the best candidate so far on what was held out.
@@ -126,10 +129,10 @@ impl Stages<'_, '_, '_> {
     }
 
     /// The folds on which a candidate shows whether it is hopeless, and the others. Of a single record the first
-    /// is a forecast, the last a block from its middle.
+    /// is a forecast, the last a block from its middle. Few folds are all needed to tell.
     fn first_folds(&self) -> (Vec<usize>, Vec<usize>) {
         let last = self.bench.folds.len() - 1;
-        (0..=last).partition(|&fold| fold == 0 || fold == last && last > 2)
+        (0..=last).partition(|&fold| fold == 0 || fold == last || last < FEW_FOLDS)
     }
 
     /// Of what a candidate predicts on some folds, with what is known of it beforehand.
