@@ -81,8 +81,8 @@ impl ClassicalModel {
 pub struct ClassicalOptions {
     /// The model.
     pub model: ClassicalModel,
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops; the model's own
-    /// default if `None`.
+    /// Plays, breakpoints, intervals of each axis of a Preisach plane, random stops, or stops of a Duhem
+    /// neural network; the model's own default if `None`.
     pub operators: Option<usize>,
     /// Thresholds of the plays of a Masing, Prandtl-Ishlinskii or modified Prandtl-Ishlinskii model, in the
     /// unit of the input.
@@ -100,8 +100,11 @@ pub struct ClassicalOptions {
     pub degradation: bool,
     /// True for a Jiles-Atherton law in the form of 1992, false for that of 1986.
     pub differential_form: bool,
-    /// Tanh neurons of a neuro-Madelung model or beside random stops.
+    /// Tanh neurons of a neuro-Madelung model, of a Duhem neural network or beside random stops.
     pub hidden: Option<usize>,
+    /// States of a Duhem neural network; its own default if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub states: Option<usize>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
@@ -142,6 +145,7 @@ impl ClassicalOptions {
             degradation: false,
             differential_form: false,
             hidden: None,
+            states: None,
             deterioration: None,
             rate: None,
             shaping: InputOptions::default(),

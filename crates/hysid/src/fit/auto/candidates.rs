@@ -299,7 +299,10 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
 
 /// The laws that are searched, each in all its variants.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let searched = ClassicalModel::ALL.iter().copied().filter(|model| model.is_searched());
+    let searched = ClassicalModel::ALL
+        .iter()
+        .copied()
+        .filter(|model| model.is_searched() && *model != ClassicalModel::DuhemNn);
     let with_rate = |model: ClassicalModel| ClassicalOptions {
         rate: options.rate.filter(|_| model.uses_rate()),
         starts: Some(STARTS_OF_A_SEARCH),
