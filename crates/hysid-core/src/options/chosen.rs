@@ -110,8 +110,12 @@ impl NamedOptions {
         match (self.members, alone) {
             (None | Some(0 | 1), alone) => alone,
             (Some(_), mut alone) => {
-                if let FitSpec::Network(options) = &mut alone {
-                    options.starts = 1;
+                match &mut alone {
+                    FitSpec::Network(options) => options.starts = 1,
+                    FitSpec::Classical(options) if options.model == ClassicalModel::DuhemNn => {
+                        options.starts = Some(1);
+                    }
+                    FitSpec::Classical(_) | FitSpec::Auto(_) => {}
                 }
                 FitSpec::Auto(used.of_auto(rate, always_rate, Some(Box::new(alone))))
             }

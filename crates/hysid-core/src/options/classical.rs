@@ -68,6 +68,11 @@ impl ClassicalModel {
         self == Self::RandomStops
     }
 
+    /// True if another seed gives another model of much the same error: medians of several are then better.
+    pub fn is_random(self) -> bool {
+        matches!(self, Self::RandomStops | Self::DuhemNn)
+    }
+
     /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
     pub fn is_searched(self) -> bool {
         self.facts().identification == Identification::Search

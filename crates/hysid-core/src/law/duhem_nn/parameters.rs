@@ -51,9 +51,10 @@ impl Layout {
         self.stops.end
     }
 
-    /// True for `ln c` and `ln τ`, which have no decay.
-    pub fn is_logarithm(&self, index: usize) -> bool {
-        self.ln_path_leaks.contains(&index) || self.ln_relaxation_times.contains(&index)
+    /// True for a parameter on which weight decay acts; false for `ln c`, `ln τ` and the weights of the stops,
+    /// which are large for a small threshold.
+    pub fn has_decay(&self, index: usize) -> bool {
+        index < self.ln_path_leaks.start
     }
 
     /// The cell with these parameters and output weights.

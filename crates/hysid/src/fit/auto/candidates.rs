@@ -121,7 +121,7 @@ impl Candidate {
     pub fn is_random(&self) -> bool {
         match &self.request {
             FitSpec::Network(_) => true,
-            FitSpec::Classical(options) => options.model == ClassicalModel::RandomStops,
+            FitSpec::Classical(options) => options.model.is_random(),
             FitSpec::Auto(_) => false,
         }
     }
