@@ -119,7 +119,7 @@ impl Law for DuhemNn {
         ..Facts::searched(
             "duhem-nn",
             &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
-            1.25,
+            1.5,
         )
     };
 

@@ -1,7 +1,7 @@
 //! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`].
-//! 2. *Candidates*: networks, random stops and all classical laws, with and without rate, deterioration,
+//! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate, deterioration,
 //!    relaxation and companding. Each is fitted to every fold, from several starts if it is random; its
 //!    prediction is the median of its starts. Laws with searched parameters are first fitted with few epochs,
 //!    and dropped if their errors are far above the best.

@@ -203,8 +203,9 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             let layout = Layout::new(duhem_nn::shape_of(options, data.has_time()));
             let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
             let busy = threads.min(starts);
-            // Gram matrix, curvature, its damped copy and the part of it that moves.
-            let derivatives = (m + p) * (m + p) + 3.0 * p * p + p * m + 270.0 * (m + p);
+            // Gram matrix, curvature and its damped copy, two at a time, each of which is written below its
+            // diagonal only.
+            let derivatives = 1.5 * (m + p) * (m + p) + p * m + 270.0 * (m + p);
             let all = busy * derivatives + starts * 6.0 * (p + m * m) + 2.0 * copies;
             let taken_by = format!("derivatives by {p} searched parameters");
             largest_of(
