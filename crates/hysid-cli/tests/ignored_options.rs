@@ -43,6 +43,10 @@ fn a_value_that_a_model_cannot_have_is_refused_before_the_fit() {
     for (options, words) in [
         ("--model neuro-madelung --hidden 500", "hidden 500: neuro-madelung has at most 100"),
         ("--model preisach --operators 300", "operators 300: preisach has at most 200"),
+        ("--model preisach --operators 0", "operators 0: preisach has at least 1"),
+        ("--model duhem-nn --operators 101", "operators 101: duhem-nn has at most 100"),
+        ("--model duhem-nn --hidden 101", "hidden 101: duhem-nn has at most 100"),
+        ("--model duhem-nn --states 0", "--states"),
     ] {
         let ran = bench.run(&format!("fit good.csv {options} -o model.json"));
         assert_eq!(ran.status, Some(2), "{}", ran.stderr);

@@ -12,12 +12,14 @@
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
+//! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
 //!
 //! Each module gives the equations, the source and the properties of its law. The parameters have the field's
 //! symbols. The state is separate from the law. Laws are fitted to the same records as networks, and
 //! [`Classical`] is any one of them.
 
 pub mod bouc_wen;
+pub mod duhem_nn;
 pub mod facts;
 pub mod generalized_prandtl_ishlinskii;
 pub mod interval;
@@ -89,6 +91,11 @@ pub trait Law: Sized {
 
     /// True if the output depends on the rate of the input.
     fn sees_rate(&self) -> bool {
+        false
+    }
+
+    /// True if the output depends on the time between samples, other than through the rate.
+    fn needs_steps(&self) -> bool {
         false
     }
 
@@ -290,6 +297,13 @@ macro_rules! any_of {
                 }
             }
 
+            /// As [`Law::needs_steps`].
+            pub fn needs_steps(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.needs_steps(),)*
+                }
+            }
+
             /// As [`Law::is_step_free`].
             pub fn is_step_free(&self) -> bool {
                 match self {
@@ -353,6 +367,7 @@ macro_rules! for_each_law {
             bouc_wen::BoucWen,
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
+            duhem_nn::DuhemNn,
         }
     };
 }

@@ -94,7 +94,7 @@ impl Predictor {
     fn needs_steps(&self) -> bool {
         match self {
             Self::Network { network, .. } => network.architecture().relaxation > 0,
-            Self::Law(_) => false,
+            Self::Law(law) => law.needs_steps(),
             Self::Ensemble(ensemble) => ensemble.members().iter().any(|member| member.needs_time()),
         }
     }

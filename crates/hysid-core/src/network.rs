@@ -53,7 +53,7 @@ mod parameters;
 mod readout;
 pub mod scaling;
 mod sweep;
-mod tanh;
+pub(crate) mod tanh;
 mod transpose;
 
 pub use architecture::{Architecture, Family, Sizes};

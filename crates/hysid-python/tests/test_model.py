@@ -187,7 +187,7 @@ def test_members_share_out_the_whole(quick_ensemble):
     assert len(members) == len(quick_ensemble.description["ensemble"]["members"])
     for shares in ([one.share for one in members], [one.share_outside for one in members]):
         assert sum(shares) == pytest.approx(1) and min(shares) >= 0
-    assert {one.kind for one in members} <= {"classical", "networks", "random stops"}
+    assert {one.kind for one in members} <= {"classical", "networks", "random stops", "recurrent"}
     assert {one.model for one in members} <= set(hysid.models)
     # What was chosen of all candidates is told with the same shares; its names are those of the members.
     candidates = quick_ensemble.description["training"]["selection"]["candidates"]

@@ -49,7 +49,7 @@ fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
         }
         "bouc-wen" | "lugre" => (&[OddSymmetry], &[Deterioration]),
         "neuro-madelung" => (&[WipingOut], &[]),
-        "xpnn" | "xpnn+" | "random-stops" => (&[], &[]),
+        "xpnn" | "xpnn+" | "duhem-nn" | "random-stops" => (&[], &[]),
         other => panic!("what theory says of {other} is missing here"),
     }
 }

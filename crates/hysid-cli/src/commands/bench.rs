@@ -1,5 +1,7 @@
 //! `hysid bench`: speed on this machine.
 
+mod duhem_nn;
+
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -10,6 +12,7 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::network::objective::Objective;
 use hysid::fit::network::{Fitted, fit};
+use hysid::model::Model;
 use hysid::network::scaling::Scaling;
 use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
@@ -37,6 +40,10 @@ struct Speed {
     value: f64,
     unit: &'static str,
     setting: String,
+}
+
+fn speed(value: f64, unit: &'static str, setting: String) -> Speed {
+    Speed { value, unit, setting }
 }
 
 /// Runs the command.
@@ -74,8 +81,10 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
         rayon::ThreadPoolBuilder::new().num_threads(1).build().context("cannot start a thread")?;
     let (fitted, iteration_ms) = one_thread.install(|| one_start(&data, &options))?;
     let paper = paper_trainer(&data, &options, &fitted)?;
+    let recurrent = one_thread.install(|| duhem_nn::Network::fitted(&data))?;
+    let parts = format!("{}, {instructions}, 1 thread", recurrent.parts()?);
+    let (derivatives, gram) = recurrent.jacobian_ns(&data)?;
 
-    let speed = |value, unit, setting| Speed { value, unit, setting };
     let threads = rayon::current_num_threads();
     let (starts, epochs) = (options.starts, options.epochs);
     Ok(BTreeMap::from([
@@ -90,7 +99,7 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
         (
             "simulate_record_ns_per_sample",
             speed(
-                record_ns(&fitted)?,
+                record_ns(&fitted.model)?,
                 "ns",
                 format!("{network}, {SAMPLES} samples, 1 thread, with rates and units"),
             ),
@@ -145,6 +154,26 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
                     "{network}, {TRAINING_SAMPLES} samples, 1000 generations of 50 and 1000 outer iterations, {threads} threads"
                 ),
             ),
+        ),
+        (
+            "duhem_nn_fit_s",
+            speed(recurrent.fit_s, "s", format!("{parts}, {TRAINING_SAMPLES} samples, 1 start")),
+        ),
+        (
+            "duhem_nn_simulate_ns_per_sample",
+            speed(
+                record_ns(recurrent.model())?,
+                "ns",
+                format!("{parts}, {SAMPLES} samples, with rates and units"),
+            ),
+        ),
+        (
+            "duhem_nn_derivatives_ns_per_sample",
+            speed(derivatives, "ns", format!("{parts}, derivatives of the states by all parameters")),
+        ),
+        (
+            "duhem_nn_gram_ns_per_sample",
+            speed(gram, "ns", format!("{parts}, derivatives of the output and their Gram matrix, besides")),
         ),
         (
             "fit_s",
@@ -252,10 +281,10 @@ fn network_ns(fitted: &Fitted) -> Result<f64> {
 }
 
 /// All that a record takes: rates by central differences, units, a new output.
-fn record_ns(fitted: &Fitted) -> Result<f64> {
+fn record_ns(model: &Model) -> Result<f64> {
     let record = record(SAMPLES)?;
     median(|| {
-        black_box(fitted.model.simulate(black_box(&record))?);
+        black_box(model.simulate(black_box(&record))?);
         Ok(SAMPLES)
     })
 }

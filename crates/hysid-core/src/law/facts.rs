@@ -13,8 +13,8 @@ pub struct Facts {
     pub identification: Identification,
     /// Options of a fit that it uses, in addition to those of every model.
     pub options: &'static [&'static str],
-    /// Largest values of such options, where they are smaller than in the table of options.
-    pub limits: &'static [(&'static str, usize)],
+    /// Smallest and largest values of such options, where they are not those of the table of options.
+    pub limits: &'static [(&'static str, usize, usize)],
     /// The option that selects a variant of the law: a further term, or another form.
     pub variant: Option<&'static str>,
     /// Natural logarithm of a ratio of errors, for data of one loop: the error inside the loop divided by the

@@ -135,7 +135,7 @@ impl Law for NeuroMadelung {
 
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
-        limits: &[("hidden", MOST_HIDDEN)],
+        limits: &[("hidden", 1, MOST_HIDDEN)],
         ..Facts::searched("neuro-madelung", &["hidden", "starts", "epochs", "rate_companding"], 1.25)
     };
 

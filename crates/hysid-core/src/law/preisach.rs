@@ -146,7 +146,7 @@ impl Law for Preisach {
     type State = TurningPointStack<f64>;
 
     const FACTS: Facts = Facts {
-        limits: &[("operators", MOST_INTERVALS)],
+        limits: &[("operators", 1, MOST_INTERVALS)],
         ..Facts::linear("preisach", &["operators", "sign"], 0.85)
     };
 

@@ -120,9 +120,14 @@ fn common_rate(data: &Dataset, method: RateMethod) -> Result<f64> {
     for record in data.records() {
         rates.extend(method.rate(record)?.into_iter().map(f64::abs));
     }
-    let place = ((rates.len() - 1) as f64 * ROWS_BELOW) as usize;
-    let (_, rate, _) = rates.select_nth_unstable_by(place, f64::total_cmp);
-    Ok(if *rate > 0.0 { *rate } else { 1.0 })
+    Ok(common_magnitude(rates))
+}
+
+/// The value that 99.5 % of these magnitudes, of which there is at least one, stay below; 1 if it is 0.
+pub fn common_magnitude(mut magnitudes: Vec<f64>) -> f64 {
+    let place = ((magnitudes.len() - 1) as f64 * ROWS_BELOW) as usize;
+    let (_, &mut magnitude, _) = magnitudes.select_nth_unstable_by(place, f64::total_cmp);
+    if magnitude > 0.0 { magnitude } else { 1.0 }
 }
 
 /// Transformed data, and the method of their rate.

@@ -95,6 +95,7 @@ fn counted(count: usize, kind: &str) -> String {
         "networks" => "network",
         "classical" => "classical model",
         "random stops" => "random-stops network",
+        "recurrent" => "recurrent network",
         other => other,
     };
     format!("{count} {one}{}", if count == 1 { "" } else { "s" })

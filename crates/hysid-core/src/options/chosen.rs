@@ -43,6 +43,7 @@ pub struct NamedOptions {
     pub ridge: Option<f64>,
     pub decay: Option<f64>,
     pub operators: Option<usize>,
+    pub states: Option<usize>,
     pub thresholds: Option<Vec<f64>>,
     pub sign: Option<Sign>,
     pub dead_zones: Option<usize>,
@@ -68,17 +69,26 @@ impl NamedOptions {
 
     /// Rejects values beyond the limits of the named model.
     fn check(&self) -> Result<()> {
-        let ModelName::Classical(rival) = self.model() else { return Ok(()) };
-        for &(option, most) in rival.facts().limits {
+        let model = self.model();
+        let limits = match model {
+            ModelName::Classical(rival) => rival.facts().limits,
+            ModelName::Network(_) | ModelName::Auto(_) => &[],
+        };
+        let most_models = ("operators", 1, usize::MAX);
+        let is_named = limits.iter().any(|limit| limit.0 == most_models.0);
+        for (option, least, most) in limits.iter().copied().chain((!is_named).then_some(most_models)) {
             let asked = match option {
                 "hidden" => self.hidden,
                 "operators" => self.operators,
                 _ => unreachable!("a law limits the number of its neurons or operators"),
             };
-            if let Some(asked) = asked.filter(|asked| *asked > most) {
-                let needed = format!("{} has at most {most}", rival.name());
-                return Err(OptionError::value(option, asked, needed).into());
-            }
+            let Some(asked) = asked else { continue };
+            let needed = match asked {
+                _ if asked < least => format!("{} has at least {least}", model.name()),
+                _ if asked > most => format!("{} has at most {most}", model.name()),
+                _ => continue,
+            };
+            return Err(OptionError::value(option, asked, needed).into());
         }
         Ok(())
     }
@@ -100,8 +110,12 @@ impl NamedOptions {
         match (self.members, alone) {
             (None | Some(0 | 1), alone) => alone,
             (Some(_), mut alone) => {
-                if let FitSpec::Network(options) = &mut alone {
-                    options.starts = 1;
+                match &mut alone {
+                    FitSpec::Network(options) => options.starts = 1,
+                    FitSpec::Classical(options) if options.model == ClassicalModel::DuhemNn => {
+                        options.starts = Some(1);
+                    }
+                    FitSpec::Classical(_) | FitSpec::Auto(_) => {}
                 }
                 FitSpec::Auto(used.of_auto(rate, always_rate, Some(Box::new(alone))))
             }
@@ -187,6 +201,7 @@ impl NamedOptions {
             degradation: self.degradation.unwrap_or(defaults.degradation),
             differential_form: self.differential_form.unwrap_or(defaults.differential_form),
             hidden: self.hidden,
+            states: self.states,
             deterioration: self.no_deterioration.map(|none| !none),
             rate,
             shaping: self.shaping(),
@@ -372,6 +387,13 @@ mod tests {
                 "hidden 500: neuro-madelung has at most 100",
             ),
             (json!({ "model": "preisach", "operators": 201 }), "operators 201: preisach has at most 200"),
+            (json!({ "model": "preisach", "operators": 0 }), "operators 0: preisach has at least 1"),
+            (json!({ "model": "masing", "operators": 0 }), "operators 0: masing has at least 1"),
+            (json!({ "operators": 0 }), "operators 0: auto has at least 1"),
+            (json!({ "model": "duhem-nn", "operators": 101 }), "operators 101: duhem-nn has at most 100"),
+            (json!({ "model": "duhem-nn", "states": 0 }), "states 0: choose a whole number from 1 to 20"),
+            (json!({ "model": "duhem-nn", "states": 21 }), "states 21: choose a whole number from 1 to 20"),
+            (json!({ "model": "duhem-nn", "hidden": 0 }), "hidden 0: choose a whole number from 1 to 1000"),
             (json!({ "model": "xpn" }), "model \"xpn\": choose one of auto, pnn, gpnn"),
             (json!({ "training": "lm" }), "training \"lm\": choose one of levenberg-marquardt,"),
             (json!({ "validation": 1.0 }), "validation 1.0: a number between 0 and 1 is needed"),

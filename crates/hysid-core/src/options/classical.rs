@@ -68,6 +68,11 @@ impl ClassicalModel {
         self == Self::RandomStops
     }
 
+    /// True if another seed gives another model of much the same error: medians of several are then better.
+    pub fn is_random(self) -> bool {
+        matches!(self, Self::RandomStops | Self::DuhemNn)
+    }
+
     /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
     pub fn is_searched(self) -> bool {
         self.facts().identification == Identification::Search
@@ -81,8 +86,8 @@ impl ClassicalModel {
 pub struct ClassicalOptions {
     /// The model.
     pub model: ClassicalModel,
-    /// Plays, breakpoints, intervals of each axis of a Preisach plane, or random stops; the model's own
-    /// default if `None`.
+    /// Plays, breakpoints, intervals of each axis of a Preisach plane, random stops, or stops of a Duhem
+    /// neural network; the model's own default if `None`.
     pub operators: Option<usize>,
     /// Thresholds of the plays of a Masing, Prandtl-Ishlinskii or modified Prandtl-Ishlinskii model, in the
     /// unit of the input.
@@ -100,8 +105,11 @@ pub struct ClassicalOptions {
     pub degradation: bool,
     /// True for a Jiles-Atherton law in the form of 1992, false for that of 1986.
     pub differential_form: bool,
-    /// Tanh neurons of a neuro-Madelung model or beside random stops.
+    /// Tanh neurons of a neuro-Madelung model, of a Duhem neural network or beside random stops.
     pub hidden: Option<usize>,
+    /// States of a Duhem neural network; its own default if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub states: Option<usize>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
@@ -146,6 +154,7 @@ impl ClassicalOptions {
             degradation: false,
             differential_form: false,
             hidden: None,
+            states: None,
             deterioration: None,
             rate: None,
             shaping: InputOptions::default(),

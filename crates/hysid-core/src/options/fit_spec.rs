@@ -75,6 +75,7 @@ impl FitSpec {
                         ("logarithmic thresholds", options.logarithmic_thresholds),
                         ("rate", options.rate.is_some() && !options.model.needs_rate()),
                         ("tanh layer", has_tanh_layer),
+                        ("no stops", options.operators == Some(0)),
                     ]),
                 )
             }

@@ -4,6 +4,7 @@
 use serde_json::Value;
 
 use crate::error::{OptionError, Result};
+use crate::law::duhem_nn::MOST_STATES;
 use crate::network::Family;
 use crate::options::ModelName;
 use crate::options::auto::MOST_MEMBERS;
@@ -88,7 +89,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 27] = [
+pub const OPTIONS: [FitOption; 28] = [
     FitOption {
         name: "model",
         group: Model,
@@ -117,9 +118,9 @@ pub const OPTIONS: [FitOption; 27] = [
     FitOption {
         name: "hidden",
         group: Model,
-        meaning: "Tanh neurons of a network, of neuro-madelung (at most 100) or of random-stops",
+        meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100) or of random-stops",
         values: NEURONS,
-        default: "10; neuro-madelung 8, random-stops none",
+        default: "10; neuro-madelung and duhem-nn 8, random-stops none",
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
     },
     FitOption {
@@ -187,8 +188,9 @@ pub const OPTIONS: [FitOption; 27] = [
         group: Training,
         meaning: "Random networks, populations or parameters to start from",
         values: Values::Count(1, MOST_STARTS),
-        default: "8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and \
-                  neuro-madelung, 32 for generalized-prandtl-ishlinskii",
+        default: "8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for \
+                  rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
+                  generalized-prandtl-ishlinskii",
         used_by: |_, _| true,
     },
     FitOption {
@@ -198,7 +200,7 @@ pub const OPTIONS: [FitOption; 27] = [
                   iterations of the sub-gradient method; a hybrid shares them out in halves",
         values: Values::Count(0, MOST_EPOCHS),
         default: "40; 2000 for trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and \
-                  neuro-madelung",
+                  neuro-madelung, 45 for duhem-nn",
         used_by: |_, _| true,
     },
     FitOption {
@@ -255,11 +257,20 @@ pub const OPTIONS: [FitOption; 27] = [
     FitOption {
         name: "operators",
         group: Classical,
-        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops",
-        values: NEURONS,
+        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, or stops \
+                  of duhem-nn (at most 100, 0 for none)",
+        values: Values::Count(0, 1000),
         default: "10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for \
-                  random-stops, otherwise 30",
+                  random-stops, 6 for duhem-nn, otherwise 30",
         used_by: of_auto,
+    },
+    FitOption {
+        name: "states",
+        group: Classical,
+        meaning: "States of duhem-nn, which move with the input and with time",
+        values: Values::Count(1, MOST_STATES),
+        default: "3",
+        used_by: of_none,
     },
     FitOption {
         name: "thresholds",

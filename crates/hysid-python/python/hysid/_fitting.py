@@ -80,6 +80,7 @@ def fit(
     ridge: float | None = None,
     decay: float | None = None,
     operators: int | None = None,
+    states: int | None = None,
     thresholds: ArrayLike | None = None,
     sign: str | None = None,
     dead_zones: int | None = None,
@@ -122,8 +123,8 @@ def fit(
     stops : int, optional
         Stop neurons of a network. Default: 10.
     hidden : int, optional
-        Tanh neurons of a network, of neuro-madelung (at most 100) or of random-stops. Default: 10;
-        neuro-madelung 8, random-stops none.
+        Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100) or of random-stops. Default: 10;
+        neuro-madelung and duhem-nn 8, random-stops none.
     relaxation : int, optional
         Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4.
     no_deterioration : bool, optional
@@ -146,12 +147,13 @@ def fit(
         sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.
     starts : int, optional
         Random networks, populations or parameters to start from. Default: 8; 1 for trainers other than
-        levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and neuro-madelung, 32 for
+        levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for
         generalized-prandtl-ishlinskii.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; a hybrid shares them out in halves. Default: 40; 2000 for
-        trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and neuro-madelung.
+        trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and neuro-madelung, 45
+        for duhem-nn.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional
@@ -169,9 +171,11 @@ def fit(
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
     operators : int, optional
-        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), or random stops. Default:
-        10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for
-        random-stops, otherwise 30.
+        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, or stops of
+        duhem-nn (at most 100, 0 for none). Default: 10 for generalized- and rate-dependent-prandtl-ishlinskii,
+        20 for modified-prandtl-ishlinskii, 300 for random-stops, 6 for duhem-nn, otherwise 30.
+    states : int, optional
+        States of duhem-nn, which move with the input and with time. Default: 3.
     thresholds : array of numbers, optional
         Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
         input. Default: chosen by cross-validation.

@@ -41,7 +41,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
     warm_up, training, starts, epochs, population, stall, validation, ridge, decay : optional
-    operators, thresholds, sign, dead_zones, free_weights : optional
+    operators, states, thresholds, sign, dead_zones, free_weights : optional
     logarithmic_thresholds, degradation, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -94,6 +94,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         ridge: float | None = None,
         decay: float | None = None,
         operators: int | None = None,
+        states: int | None = None,
         thresholds: Any = None,
         sign: str | None = None,
         dead_zones: int | None = None,
@@ -127,6 +128,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.ridge = ridge
         self.decay = decay
         self.operators = operators
+        self.states = states
         self.thresholds = thresholds
         self.sign = sign
         self.dead_zones = dead_zones

@@ -1,8 +1,8 @@
 //! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`].
-//! 2. *Candidates*: networks, random stops and all classical laws, with and without rate, deterioration,
-//!    relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
+//! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate,
+//!    deterioration, relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
 //!    those with a weight once more from another start; the prediction of a candidate is the median of its
 //!    starts. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far
 //!    above the best.

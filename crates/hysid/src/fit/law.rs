@@ -1,6 +1,7 @@
 //! Identification of the classical models.
 
 pub mod bouc_wen;
+pub mod duhem_nn;
 pub mod generalized_prandtl_ishlinskii;
 mod grids;
 pub mod jiles_atherton;

@@ -8,11 +8,12 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::auto;
 use crate::fit::law::{
-    generalized_prandtl_ishlinskii, masing, modified_prandtl_ishlinskii, neuro_madelung, prandtl_ishlinskii,
-    preisach,
+    duhem_nn, generalized_prandtl_ishlinskii, masing, modified_prandtl_ishlinskii, neuro_madelung,
+    prandtl_ishlinskii, preisach,
 };
 use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
+use crate::law::duhem_nn::Layout;
 use crate::network::Architecture;
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -196,6 +197,24 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             let mut need = linear(features, stops);
             need.bytes += NUMBER * (600.0 * (features + weights / 10.0) + rows * (inputs + 4) as f64);
             need
+        }
+        ClassicalModel::DuhemNn => {
+            let starts = options.starts.unwrap_or(duhem_nn::STARTS) as f64;
+            let layout = Layout::new(duhem_nn::shape_of(options, data.has_time()));
+            let (p, m) = (layout.count() as f64, layout.shape.terms() as f64);
+            let busy = threads.min(starts);
+            // Gram matrix, curvature and its damped copy, two at a time, each of which is written below its
+            // diagonal only.
+            let derivatives = 1.5 * (m + p) * (m + p) + p * m + 270.0 * (m + p);
+            let all = busy * derivatives + starts * 6.0 * (p + m * m) + 2.0 * copies;
+            let taken_by = format!("derivatives by {p} searched parameters");
+            largest_of(
+                all,
+                [
+                    (busy * derivatives, taken_by, "choose fewer hidden, states or operators"),
+                    (copies, format!("{rows} rows"), FEWER_ROWS),
+                ],
+            )
         }
         _ => {
             let starts = options.starts.unwrap_or(generalized_prandtl_ishlinskii::STARTS) as f64;

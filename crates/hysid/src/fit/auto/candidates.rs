@@ -1,11 +1,12 @@
-//! The candidates: networks, random stops and classical models, each with the input transforms that may suit
-//! it. The list depends on the columns of the data (time, further inputs) and on the options, never on the
+//! The candidates: networks, recurrent networks, random stops and classical models, each with the input
+//! transforms that may suit it. The list depends on the columns of the data (time, further inputs) and on the options, never on the
 //! values.
 
 use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
+use crate::law::duhem_nn::MOST_NEURONS;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -24,16 +25,32 @@ pub(super) enum Kind {
     RandomStops,
     /// Classical models: relays, plays and the like.
     Classical,
+    /// Recurrent networks.
+    Recurrent,
 }
 
 impl Kind {
-    pub const ALL: [Kind; 3] = [Kind::Classical, Kind::Networks, Kind::RandomStops];
+    pub const ALL: [Kind; 4] = [Kind::Classical, Kind::Networks, Kind::RandomStops, Kind::Recurrent];
+
+    /// That of a specification.
+    fn of(request: &FitSpec) -> Self {
+        match request {
+            FitSpec::Network(_) => Kind::Networks,
+            FitSpec::Classical(options) => match options.model {
+                ClassicalModel::RandomStops => Kind::RandomStops,
+                ClassicalModel::DuhemNn => Kind::Recurrent,
+                _ => Kind::Classical,
+            },
+            FitSpec::Auto(_) => Kind::Classical,
+        }
+    }
 
     pub fn name(self) -> &'static str {
         match self {
             Kind::Networks => "networks",
             Kind::RandomStops => "random stops",
             Kind::Classical => "classical",
+            Kind::Recurrent => "recurrent",
         }
     }
 }
@@ -59,6 +76,9 @@ const OTHER_PENALTIES: [Regularisation; 2] =
 /// Epochs of a network. As above.
 const EPOCHS: usize = 25;
 
+/// Epochs of a recurrent network.
+const EPOCHS_OF_RECURRENT: usize = 40;
+
 /// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
 /// above.
 const LINEAR_RANDOM_STOPS: (usize, usize) = (300, 0);
@@ -83,12 +103,7 @@ const THIN: usize = 1500;
 impl Candidate {
     /// A model that the user has decided for.
     pub fn alone(request: &FitSpec) -> Self {
-        let kind = match request {
-            FitSpec::Network(_) => Kind::Networks,
-            FitSpec::Classical(options) if options.model == ClassicalModel::RandomStops => Kind::RandomStops,
-            FitSpec::Classical(_) | FitSpec::Auto(_) => Kind::Classical,
-        };
-        Self { kind, request: request.clone() }
+        Self { kind: Kind::of(request), request: request.clone() }
     }
 
     /// The same with so many rows of each record that only drive the memory.
@@ -123,7 +138,7 @@ impl Candidate {
     pub fn is_random(&self) -> bool {
         match &self.request {
             FitSpec::Network(_) => true,
-            FitSpec::Classical(options) => options.model == ClassicalModel::RandomStops,
+            FitSpec::Classical(options) => options.model.is_random(),
             FitSpec::Auto(_) => false,
         }
     }
@@ -138,9 +153,10 @@ impl Candidate {
         OTHER_PENALTIES.map(with).into()
     }
 
-    /// True for a law whose parameters are searched.
+    /// True for a law whose parameters are searched from several starts in one fit.
     pub fn is_searched(&self) -> bool {
-        matches!(&self.request, FitSpec::Classical(options) if options.model.is_searched())
+        !self.is_random()
+            && matches!(&self.request, FitSpec::Classical(options) if options.model.is_searched())
     }
 
     /// The same searched from few starts in few epochs.
@@ -188,7 +204,7 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
         seed: options.seed,
         ..ClassicalOptions::of(ClassicalModel::RandomStops)
     });
-    Candidate { kind: Kind::RandomStops, request }
+    Candidate::alone(&request)
 }
 
 /// All candidates for data like these: those that are usually good or quick before the others.
@@ -196,20 +212,18 @@ pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate
     let mut networks = networks(options).into_iter().map(FitSpec::Network);
     let mut random = random_stops(options).into_iter().map(FitSpec::Classical);
     let mut linear = linear_laws(options).into_iter().map(FitSpec::Classical);
-    let of = |kind| move |request| Candidate { kind, request };
-    let mut all = Vec::new();
+    let mut recurrent = recurrent(data, options).into_iter().map(FitSpec::Classical);
+    let mut requests = Vec::new();
     // A network and a quick one at a time.
     loop {
-        let network = networks.next().map(of(Kind::Networks));
-        let law = linear.next().map(of(Kind::Classical));
-        let stops = random.next().map(of(Kind::RandomStops));
-        let next: Vec<Candidate> = network.into_iter().chain(law).chain(stops).collect();
-        if next.is_empty() {
+        let next = [networks.next(), recurrent.next(), linear.next(), random.next()];
+        if next.iter().all(Option::is_none) {
             break;
         }
-        all.extend(next);
+        requests.extend(next.into_iter().flatten());
     }
-    all.extend(searched_laws(options).into_iter().map(FitSpec::Classical).map(of(Kind::Classical)));
+    requests.extend(searched_laws(options).into_iter().map(FitSpec::Classical));
+    let mut all: Vec<Candidate> = requests.iter().map(Candidate::alone).collect();
     all.retain(|candidate| is_allowed(candidate, data, options));
     all
 }
@@ -286,6 +300,29 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
     all.into_iter().map(of).collect()
 }
 
+/// Recurrent networks, for data with time stamps and a rate.
+fn recurrent(data: &Dataset, options: &AutoOptions) -> Vec<ClassicalOptions> {
+    if options.rate.is_none() || !data.has_time() {
+        return Vec::new();
+    }
+    let as_it_is = InputOptions::default();
+    let rate_tenth = InputOptions { rate_companding: Some(RATE_COMPANDING), ..as_it_is };
+    let (with_stops, plain) = ((3, 6, 8), (5, 0, 10));
+    let of = |(shaping, (states, stops, hidden))| ClassicalOptions {
+        rate: options.rate,
+        shaping,
+        states: Some(states),
+        operators: Some(stops),
+        hidden: Some(options.hidden.unwrap_or(hidden).min(MOST_NEURONS)),
+        starts: Some(1),
+        epochs: Some(options.epochs.unwrap_or(EPOCHS_OF_RECURRENT)),
+        seed: options.seed,
+        ..ClassicalOptions::of(ClassicalModel::DuhemNn)
+    };
+    let all = [(as_it_is, with_stops), (as_it_is, plain), (rate_tenth, with_stops), (rate_tenth, plain)];
+    all.map(of).into()
+}
+
 /// A law with what the user has decided of laws.
 fn of_law(options: &AutoOptions, model: ClassicalModel) -> ClassicalOptions {
     ClassicalOptions {
@@ -314,7 +351,8 @@ fn linear_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
 /// The laws that are searched, each in all its variants. Where there is a rate, the variants without it are left
 /// out: the weight of the rate may be 0.
 fn searched_laws(options: &AutoOptions) -> Vec<ClassicalOptions> {
-    let searched = ClassicalModel::ALL.iter().copied().filter(|model| model.is_searched());
+    let is_searched = |model: &ClassicalModel| model.is_searched() && !model.is_random();
+    let searched = ClassicalModel::ALL.iter().copied().filter(is_searched);
     let with_rate = |model: ClassicalModel| ClassicalOptions {
         rate: options.rate.filter(|_| model.uses_rate()),
         starts: Some(STARTS_OF_A_SEARCH),

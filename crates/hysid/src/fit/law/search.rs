@@ -38,7 +38,7 @@ use descent::Descent;
 pub(crate) use projection::Columns;
 use projection::{Projection, UNFINISHED};
 
-pub(crate) use rows::{Memory, spread, thinned};
+pub(crate) use rows::{Memory, spread, thinned, thinned_to};
 
 /// Random points looked at for each start.
 const DRAWS_PER_START: usize = 24;

@@ -21,11 +21,16 @@ pub(crate) enum Memory {
 /// The records with so many outputs blanked, and rows that neither turn nor are compared left out,
 /// that the cost of a search has a bound. Every turning point stays, so that the memory is the same.
 pub(crate) fn thinned(series: Vec<Series>, memory: Memory) -> Vec<Series> {
+    thinned_to(series, memory, MOST_COMPARED)
+}
+
+/// As [`thinned`], with at most `most` rows that are compared.
+pub(crate) fn thinned_to(series: Vec<Series>, memory: Memory, most: usize) -> Vec<Series> {
     let scored = |series: &[Series]| -> usize {
         series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
     };
     let mut series = series;
-    let thinning = Thinning::new(scored(&series), MOST_COMPARED);
+    let thinning = Thinning::new(scored(&series), most);
     thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
     let series: Vec<Series> = match memory {
         Memory::TurningPoints => series.iter().map(condensed).collect(),

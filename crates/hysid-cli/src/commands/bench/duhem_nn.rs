@@ -1,0 +1,89 @@
+//! Speed of the Duhem neural network.
+
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use hysid::data::rate::RateMethod;
+use hysid::data::record::Dataset;
+use hysid::fit::identify;
+use hysid::law::Classical;
+use hysid::law::duhem_nn::{DuhemNn, Layout, Run};
+use hysid::law::series::Series;
+use hysid::model::{Model, Predictor};
+use hysid::options::FitSpec;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::stop_check::StopCheck;
+
+use super::median;
+
+/// A network of the default sizes with rate and time.
+pub(super) struct Network {
+    model: Model,
+    /// Seconds of the fit from one start.
+    pub fit_s: f64,
+}
+
+impl Network {
+    pub fn fitted(data: &Dataset) -> Result<Self> {
+        let options = ClassicalOptions {
+            rate: Some(RateMethod::Central),
+            starts: Some(1),
+            ..ClassicalOptions::of(ClassicalModel::DuhemNn)
+        };
+        let began = Instant::now();
+        let fitted = identify(data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()))?;
+        Ok(Self { model: fitted.model, fit_s: began.elapsed().as_secs_f64() })
+    }
+
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    fn law(&self) -> Result<&DuhemNn> {
+        match self.model.predictor() {
+            Predictor::Law(Classical::DuhemNn(law)) => Some(law),
+            _ => None,
+        }
+        .context("a Duhem neural network was fitted")
+    }
+
+    /// Its parts, in a few words.
+    pub fn parts(&self) -> Result<String> {
+        let shape = self.law()?.cell.shape();
+        let parameters = Layout::new(shape).count();
+        Ok(format!(
+            "duhem-nn, {} states, {} stops, {} hidden, rate and time, {parameters} searched parameters",
+            shape.states, shape.stops, shape.neurons
+        ))
+    }
+
+    /// Nanoseconds a sample of the exact derivatives by all searched parameters, and of their Gram matrix over all
+    /// samples besides.
+    pub fn jacobian_ns(&self, data: &Dataset) -> Result<(f64, f64)> {
+        let law = self.law()?;
+        let series = Series::all(data, Some(RateMethod::Central))?;
+        let drives: Vec<Vec<_>> = series
+            .iter()
+            .map(|series| series.samples.iter().map(|&sample| law.scaled(sample)).collect())
+            .collect();
+        let targets = |y: f64| -> Vec<Vec<f64>> { drives.iter().map(|drive| vec![y; drive.len()]).collect() };
+        let (none, all) = (targets(f64::NAN), targets(0.5));
+        let pass = |targets: &[Vec<f64>]| {
+            let run = Run {
+                cell: &law.cell,
+                drives: &drives,
+                targets,
+                with_jacobian: true,
+                stop: StopCheck::never(),
+            };
+            median(|| {
+                black_box(black_box(run).gram());
+                Ok(data.rows())
+            })
+        };
+        let derivatives = pass(&none)?;
+        Ok((derivatives, pass(&all)? - derivatives))
+    }
+}

@@ -1,0 +1,258 @@
+//! Duhem neural network: a recurrent network whose states move only while the input moves or time passes.
+//!
+//! ```text
+//! a_i = 1 - exp(-(c_i |x_k - x_{k-1}| + (t_k - t_{k-1})/τ_i))               theory.md (8.29)
+//! h_k = tanh(b + A [x_k, v_k, e_k, s_{k-1}])                                theory.md (8.30)
+//! s_i,k = s_i,k-1 + a_i (q_i v_k + Σ_j W_ij h_j,k - s_i,k-1)                theory.md (8.31)
+//! y_k = w · [1, x_k, v_k, e_k, s_k, h_k]                                    theory.md (8.32)
+//! ```
+//!
+//! `x` is the input, `v` its rate and `y` the output, all scaled; `t` is the time. `s` are the states, with the
+//! leak `c_i` along the path of the input and the relaxation times `τ_i`; `h` are tanh neurons and `e` stops of
+//! threshold 1 with trained input weights. Without a rate there is no `v`, and without a rate or time no `τ`.
+//!
+//! Properties: a state is a convex combination of its past and of a bounded target, so that it is bounded for
+//! any parameters, inputs and time steps (theory.md (8.35)). The output depends on the rate, if there is one.
+//! Minor loops do not close exactly: there is no return-point memory.
+//!
+//! With short steps the states follow `ds/dt = f(s, x, v)(c |v| + 1/τ)`. With `τ → ∞` this is a generalized Duhem
+//! model, `ds/dt = f(s, x, v)|v|`, of which Bouc-Wen is a special case; with `c = 0` it is a layer of
+//! relaxation elements. Source: Duhem; Oh and Bernstein, IEEE Transactions on Automatic Control 50 (2005)
+//! 631-645, for the generalized Duhem model; the cell and its training are ours.
+
+mod cell;
+mod parameters;
+mod sensitivities;
+
+use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::facts::{Facts, Rate};
+use crate::law::interval::Interval;
+use crate::law::{Dimension, Law, Parameter, Sample};
+use crate::property::Property;
+use crate::simd;
+
+pub use cell::{Cell, Input, Memory, Shape};
+pub use parameters::Layout;
+pub use sensitivities::Run;
+
+/// Largest number of tanh neurons and of stops: the memory of a fit grows with the square of their product.
+pub const MOST_NEURONS: usize = 100;
+
+/// Largest number of states.
+pub const MOST_STATES: usize = 20;
+
+/// Scaled inputs are limited to this magnitude.
+const LARGEST_INPUT: f64 = 1e6;
+
+/// Largest magnitude of a weight: sums of products with scaled inputs stay finite.
+pub const LARGEST_WEIGHT: f64 = 1e6;
+
+/// A Duhem neural network in the user's units: its [`Cell`] with the scales of input and output.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DuhemNn {
+    /// Centre of the input in training, in its unit.
+    pub input_centre: f64,
+    /// Divisor of the input, in its unit.
+    pub input_scale: f64,
+    /// Divisor of the rate, in its unit; `None` for a model without rate.
+    pub rate_scale: Option<f64>,
+    /// Mean of the output in training, in its unit.
+    pub output_mean: f64,
+    /// Divisor of the output minus its mean, in its unit.
+    pub output_scale: f64,
+    /// The network, in scaled units; its relaxation times are in the unit of time.
+    pub cell: Cell,
+}
+
+impl DuhemNn {
+    /// A sample in scaled units.
+    pub fn scaled(&self, sample: Sample) -> Input {
+        let limited = |value: f64| value.clamp(-LARGEST_INPUT, LARGEST_INPUT);
+        Input {
+            x: limited((sample.x - self.input_centre) / self.input_scale),
+            from_origin: limited(sample.x / self.input_scale),
+            rate: self.rate_scale.map_or(0.0, |scale| limited(sample.rate / scale)),
+            step: sample.step,
+        }
+    }
+
+    /// Bound of the magnitude of each state for rates of a magnitude up to `rate`, scaled:
+    /// `max(|s_i,0|, |q_i| rate + Σ_j |W_ij|)` (theory.md (8.35)).
+    pub fn state_bounds(&self, rate: f64) -> Vec<f64> {
+        let Cell { targets, rate_gains, initial, .. } = &self.cell;
+        let rows = targets.chunks_exact(self.cell.shape().neurons);
+        let bound = |(i, (row, first)): (usize, (&[f64], &f64))| {
+            let of_rate = rate_gains.get(i).map_or(0.0, |q| q.abs() * rate);
+            first.abs().max(of_rate + row.iter().map(|w| w.abs()).sum::<f64>())
+        };
+        rows.zip(initial).enumerate().map(bound).collect()
+    }
+}
+
+/// One sample of a cell.
+struct Step<'a> {
+    cell: &'a Cell,
+    memory: &'a mut Memory,
+    input: Input,
+}
+
+impl WithSimd for Step<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        self.cell.advance::<S>(self.memory, self.input);
+        self.cell.output::<S>(self.memory)
+    }
+}
+
+impl Law for DuhemNn {
+    type State = Memory;
+
+    const FACTS: Facts = Facts {
+        rate: Rate::Optional,
+        limits: &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS)],
+        ..Facts::searched(
+            "duhem-nn",
+            &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
+            1.5,
+        )
+    };
+
+    fn virgin(&self) -> Memory {
+        self.cell.memory()
+    }
+
+    fn step(&self, memory: &mut Memory, sample: Sample) -> f64 {
+        let input = self.scaled(sample);
+        self.output_mean + self.output_scale * simd::run(Step { cell: &self.cell, memory, input })
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let shape = self.cell.shape();
+        let any = (-LARGEST_WEIGHT, LARGEST_WEIGHT);
+        let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
+        let number = |symbol: String, meaning, value: f64| {
+            Parameter::new(symbol, meaning, value, any, Dimension::NONE)
+        };
+        let channels = ["x", "v"];
+        let mut inputs = vec![String::new()];
+        inputs.extend(channels[..shape.channels].iter().map(|channel| (*channel).to_string()));
+        inputs.extend((1..=shape.stops).map(|stop| format!("e{stop}")));
+        inputs.extend((1..=shape.states).map(|state| format!("s{state}")));
+
+        let mut parameters = Vec::new();
+        for (index, &value) in self.cell.stops.iter().enumerate() {
+            let (channel, stop) = (channels[index / shape.stops], index % shape.stops + 1);
+            parameters.push(number(format!("w_{channel},{stop}"), "input weight of a stop", value));
+        }
+        for (input, column) in inputs.iter().zip(self.cell.hidden.chunks_exact(shape.neurons)) {
+            for (neuron, &value) in (1..).zip(column) {
+                parameters.push(match input.is_empty() {
+                    true => number(format!("b_{neuron}"), "bias of a tanh neuron", value),
+                    false => number(format!("A_{neuron},{input}"), "weight of a tanh neuron", value),
+                });
+            }
+        }
+        for (index, &value) in self.cell.targets.iter().enumerate() {
+            let (state, neuron) = (index / shape.neurons + 1, index % shape.neurons + 1);
+            parameters.push(number(format!("W_{state},{neuron}"), "weight of a target", value));
+        }
+        for (state, &value) in (1..).zip(&self.cell.rate_gains) {
+            parameters.push(number(format!("q_{state}"), "rate gain of a target", value));
+        }
+        for (state, &value) in (1..).zip(&self.cell.initial) {
+            parameters.push(number(format!("s_{state}"), "initial value of a state", value));
+        }
+        for (state, &value) in (1..).zip(&self.cell.path_leaks) {
+            let symbol = format!("c_{state}");
+            parameters.push(Parameter::new(symbol, "leak along the path", value, positive, Dimension::NONE));
+        }
+        let time = Dimension { input: 0, output: 0, time: 1 };
+        for (state, &value) in (1..).zip(&self.cell.relaxation_times) {
+            let symbol = format!("τ_{state}");
+            parameters.push(Parameter::new(symbol, "relaxation time", value, positive, time));
+        }
+        inputs[0] = "0".into();
+        inputs.extend((1..=shape.neurons).map(|neuron| format!("h{neuron}")));
+        for (term, &value) in inputs.iter().zip(&self.cell.output) {
+            parameters.push(number(format!("w_{term}"), "weight of the output", value));
+        }
+        parameters
+    }
+
+    fn validated(self) -> Result<Self> {
+        let refuse = |what: &str| Err(Error::Parts(format!("Duhem neural network: {what}")));
+        let positive = |scale: f64| scale > 0.0 && scale <= LARGEST_VALUE;
+        if !(positive(self.input_scale)
+            && positive(self.output_scale)
+            && self.rate_scale.is_none_or(positive))
+        {
+            return refuse("a scale is not positive");
+        }
+        let is_value = |value: f64| value.abs() <= LARGEST_VALUE;
+        if !(is_value(self.input_centre) && is_value(self.output_mean)) {
+            return refuse("the centre of the input or the mean of the output is too large");
+        }
+        let shape = self.cell.shape();
+        let has_rate = shape.channels == 2;
+        if !self.cell.is_consistent() || has_rate != self.rate_scale.is_some() || shape.has_time && !has_rate
+        {
+            return refuse("the parts of its network have lengths that do not go together");
+        }
+        for parameter in self.parameters() {
+            parameter.check("Duhem neural network")?;
+        }
+        Ok(self)
+    }
+
+    fn sees_rate(&self) -> bool {
+        self.rate_scale.is_some()
+    }
+
+    fn needs_steps(&self) -> bool {
+        self.cell.shape().has_time
+    }
+
+    fn is_step_free(&self) -> bool {
+        false
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        Vec::new()
+    }
+
+    fn output_bound(&self, x: Interval, rate: Interval) -> Interval {
+        let scaled = |interval: Interval, scale: f64| {
+            interval.rising(|value| (value / scale).clamp(-LARGEST_INPUT, LARGEST_INPUT))
+        };
+        let Cell { stops, hidden, output, .. } = &self.cell;
+        let shape = self.cell.shape();
+        let rate = self.rate_scale.map(|scale| scaled(rate, scale));
+        let fastest = rate.map_or(0.0, |rate| rate.0.abs().max(rate.1.abs()));
+        let from_origin = scaled(x, self.input_scale);
+
+        let mut terms = vec![Interval::point(1.0)];
+        terms.push(scaled(x.plus(Interval::point(-self.input_centre)), self.input_scale));
+        terms.extend(rate);
+        for stop in 0..shape.stops {
+            let of_rate = rate.map(|rate| rate.times(stops[shape.stops + stop]));
+            let drive = from_origin.times(stops[stop]).plus(of_rate.unwrap_or(Interval::point(0.0)));
+            terms.push(drive.stop(1.0).common(Interval::about(0.0, 1.0)));
+        }
+        terms.extend(self.state_bounds(fastest).into_iter().map(|bound| Interval::about(0.0, bound)));
+        let neurons = (0..shape.neurons).map(|neuron| {
+            let weights = hidden.iter().skip(neuron).step_by(shape.neurons);
+            let sum = Interval::sum(terms.iter().zip(weights).map(|(term, &weight)| term.times(weight)));
+            sum.rising(f64::tanh)
+        });
+        let neurons: Vec<Interval> = neurons.collect();
+        terms.extend(neurons);
+        let sum = Interval::sum(terms.iter().zip(output).map(|(term, &weight)| term.times(weight)));
+        sum.times(self.output_scale).plus(Interval::point(self.output_mean))
+    }
+}

@@ -1,0 +1,359 @@
+//! Exact derivatives of states and output by every parameter found by search, carried forward along a record,
+//! and their Gram matrix for least squares.
+//!
+//! ```text
+//! ∂s_i,k = (1 - a_i) ∂s_i,k-1 + a_i Σ_j W_ij g_j Σ_l A_jl ∂s_l,k-1 + direct       theory.md (8.33)
+//! ∂y_k   = Σ_i w_i ∂s_i,k + Σ_j w_j g_j Σ_l A_jl ∂s_l,k-1 + direct,   g_j = 1 - h_j²   theory.md (8.34)
+//! ```
+//!
+//! `∂` is the derivative by all parameters `θ`, and *direct* are the terms in which a parameter occurs itself.
+//! One pass costs `S² P` multiplications a sample, for `S` states and `P` parameters.
+
+use pulp::{Simd, WithSimd};
+
+use super::cell::{Cell, Input, LANES, Memory, product};
+use super::parameters::Layout;
+use crate::linear_algebra::{Batch, Gram};
+use crate::simd::{self, multiply_add};
+use crate::stop_check::{Pace, StopCheck};
+
+/// Rows that are gathered before they are added to a batch.
+const ROWS: usize = 8;
+
+/// A cell and the records that it is run over.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The cell; its output weights count only for the Jacobian.
+    pub cell: &'a Cell,
+    /// The samples of each record.
+    pub drives: &'a [Vec<Input>],
+    /// Scaled output of each sample; NaN where it is not compared.
+    pub targets: &'a [Vec<f64>],
+    /// True if the Jacobian is wanted.
+    pub with_jacobian: bool,
+    /// Stops the computation early.
+    pub stop: StopCheck<'a>,
+}
+
+impl Run<'_> {
+    /// The Gram matrix of these columns, over all samples with a target: terms of the output, target and, if
+    /// wanted, the Jacobian. `None` once stopped.
+    pub fn gram(self) -> Option<Gram> {
+        let count = self.columns();
+        let rows = GramOfRows {
+            gram: Gram::new(count),
+            batch: Batch::new(count),
+            waiting: vec![[0.0; ROWS]; count],
+            count: 0,
+            pace: Pace::new(self.stop),
+        };
+        simd::run(Sweep { run: self, rows }).map(|rows| rows.gram)
+    }
+
+    /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
+    pub fn rows(self) -> Option<Vec<Vec<f64>>> {
+        simd::run(Sweep { run: self, rows: Vec::new() })
+    }
+
+    fn columns(&self) -> usize {
+        let shape = self.cell.shape();
+        let jacobian = if self.with_jacobian { Layout::new(shape).count() } else { 0 };
+        shape.terms() + 1 + jacobian
+    }
+}
+
+/// Takes the columns of one row after the other.
+trait TakeRows {
+    fn take<S: Simd>(&mut self, simd: S, row: &[f64]);
+
+    /// After the last row.
+    fn end<S: Simd>(&mut self, simd: S);
+}
+
+impl TakeRows for Vec<Vec<f64>> {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, _: S, row: &[f64]) {
+        self.push(row.to_vec());
+    }
+
+    #[inline(always)]
+    fn end<S: Simd>(&mut self, _: S) {}
+}
+
+/// Sums rows in a Gram matrix.
+struct GramOfRows<'a> {
+    gram: Gram,
+    batch: Batch,
+    /// Some rows, by columns: a batch is filled in whole cache lines.
+    waiting: Vec<[f64; ROWS]>,
+    count: usize,
+    pace: Pace<'a>,
+}
+
+impl TakeRows for GramOfRows<'_> {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, simd: S, row: &[f64]) {
+        for (column, &value) in self.waiting.iter_mut().zip(row) {
+            column[self.count] = value;
+        }
+        self.count += 1;
+        if self.count == ROWS {
+            self.flush(simd);
+        }
+    }
+
+    #[inline(always)]
+    fn end<S: Simd>(&mut self, simd: S) {
+        self.flush(simd);
+        self.gram.add(simd, &mut self.batch, &mut self.pace);
+    }
+}
+
+impl GramOfRows<'_> {
+    #[inline(always)]
+    fn flush<S: Simd>(&mut self, simd: S) {
+        if self.batch.free() < self.count {
+            self.gram.add(simd, &mut self.batch, &mut self.pace);
+        }
+        self.batch.append(&self.waiting, self.count);
+        self.count = 0;
+    }
+}
+
+/// A run whose rows are taken.
+struct Sweep<'a, T> {
+    run: Run<'a>,
+    rows: T,
+}
+
+impl<T: TakeRows> WithSimd for Sweep<'_, T> {
+    type Output = Option<T>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Option<T> {
+        let Run { cell, drives, targets, with_jacobian, stop } = self.run;
+        let shape = cell.shape();
+        let mut pace = Pace::new(stop);
+        let mut sensitivities = with_jacobian.then(|| Sensitivities::new(cell));
+        let per_sample = shape.inputs() * shape.neurons;
+        let per_sample = per_sample
+            + sensitivities.as_ref().map_or(0, |all| all.width * shape.states * (shape.states + 1));
+        let mut row = vec![0.0; self.run.columns()];
+        let target = shape.terms();
+        for (drive, targets) in drives.iter().zip(targets) {
+            let mut memory = cell.memory();
+            sensitivities.iter_mut().for_each(Sensitivities::begin);
+            for (&input, &y) in drive.iter().zip(targets) {
+                if pace.is_over(per_sample) {
+                    return None;
+                }
+                cell.advance::<S>(&mut memory, input);
+                if let Some(sensitivities) = &mut sensitivities {
+                    sensitivities.advance::<S>(cell, &memory, input);
+                }
+                if !y.is_nan() {
+                    row[..target].copy_from_slice(&memory.terms);
+                    row[target] = y;
+                    if let Some(sensitivities) = &mut sensitivities {
+                        sensitivities.of_output::<S>(cell, &mut row[target + 1..]);
+                    }
+                    self.rows.take(simd, &row);
+                }
+            }
+        }
+        self.rows.end(simd);
+        (!stop.is_asked()).then_some(self.rows)
+    }
+}
+
+/// `∂s/∂θ` on its way along a record, and what it follows from at the present sample.
+struct Sensitivities {
+    layout: Layout,
+    /// Parameters, rounded up to whole groups.
+    width: usize,
+    /// `∂s_i` of each state, `width` numbers each, and the same before the present sample.
+    states: Vec<f64>,
+    before: Vec<f64>,
+    /// The direct terms of each state, and `∂y`.
+    direct: Vec<f64>,
+    of_output: Vec<f64>,
+    /// `∂p` and `∂e` of each stop by its own weights, in their order.
+    plays: Vec<f64>,
+    elongations: Vec<f64>,
+    /// Inputs of the tanh layer.
+    inputs: Vec<f64>,
+    /// `g_j`, and `a_i W_ij g_j` or `w_j g_j`.
+    slopes: Vec<f64>,
+    back: Vec<f64>,
+    /// Factors of `∂s_l,k-1`.
+    carried: Vec<f64>,
+}
+
+impl Sensitivities {
+    fn new(cell: &Cell) -> Self {
+        let layout = Layout::new(cell.shape());
+        let shape = layout.shape;
+        let width = layout.count().next_multiple_of(LANES);
+        let of_stops = vec![0.0; shape.channels * shape.stops];
+        Self {
+            width,
+            states: vec![0.0; shape.states * width],
+            before: vec![0.0; shape.states * width],
+            direct: vec![0.0; shape.states * width],
+            of_output: vec![0.0; width],
+            plays: of_stops.clone(),
+            elongations: of_stops,
+            inputs: vec![0.0; shape.inputs()],
+            slopes: vec![0.0; shape.neurons],
+            back: vec![0.0; shape.neurons],
+            carried: vec![0.0; shape.states],
+            layout,
+        }
+    }
+
+    /// Before the first sample of a record the states are parameters themselves.
+    fn begin(&mut self) {
+        self.states.fill(0.0);
+        self.plays.fill(0.0);
+        for (i, place) in self.layout.initial.clone().enumerate() {
+            self.states[i * self.width + place] = 1.0;
+        }
+    }
+
+    /// To the sample to which the cell has just advanced (theory.md (8.33)).
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, cell: &Cell, memory: &Memory, input: Input) {
+        let Self { layout, width, states, before, direct, inputs, slopes, back, carried, .. } = self;
+        let (shape, width) = (layout.shape, *width);
+        of_plays(memory, input, &mut self.plays, &mut self.elongations);
+        let (first, neurons) = (shape.first_state(), &memory.terms[shape.inputs()..]);
+        inputs[..first].copy_from_slice(&memory.terms[..first]);
+        inputs[first..].copy_from_slice(&memory.states_before);
+        for (slope, h) in slopes.iter_mut().zip(neurons) {
+            *slope = 1.0 - h * h;
+        }
+        std::mem::swap(states, before);
+        for i in 0..shape.states {
+            let (leak, pull) = (memory.leaks[i], memory.pulls[i]);
+            let weights = &cell.targets[i * shape.neurons..][..shape.neurons];
+            for ((back, weight), slope) in back.iter_mut().zip(weights).zip(&*slopes) {
+                *back = leak * weight * slope;
+            }
+            let direct = &mut direct[i * width..][..width];
+            of_layer(inputs, back, direct);
+            of_stops::<S>(cell, layout, back, &self.elongations, direct);
+            let own = layout.targets.start + i * shape.neurons;
+            for (direct, h) in direct[own..own + shape.neurons].iter_mut().zip(neurons) {
+                *direct = leak * h;
+            }
+            if shape.channels == 2 {
+                direct[layout.rate_gains.start + i] = leak * input.rate;
+            }
+            let kept = (1.0 - leak) * pull;
+            direct[layout.ln_path_leaks.start + i] = kept * cell.path_leaks[i] * memory.moved;
+            if shape.has_time {
+                let steps = memory.elapsed / cell.relaxation_times[i];
+                direct[layout.ln_relaxation_times.start + i] = -kept * steps;
+            }
+            carry::<S>(cell, back, carried);
+            carried[i] += 1.0 - leak;
+            let state = &mut states[i * width..][..width];
+            state.copy_from_slice(direct);
+            add_multiples::<S>(state, carried, before);
+        }
+    }
+
+    /// The derivative of the output at the present sample (theory.md (8.34)).
+    #[inline(always)]
+    fn of_output<S: Simd>(&mut self, cell: &Cell, jacobian: &mut [f64]) {
+        let Self { layout, states, before, inputs, slopes, back, carried, of_output, .. } = self;
+        let shape = layout.shape;
+        let (of_inputs, of_neurons) = cell.output.split_at(shape.inputs());
+        for ((back, weight), slope) in back.iter_mut().zip(of_neurons).zip(slopes) {
+            *back = weight * *slope;
+        }
+        of_output.fill(0.0);
+        of_layer(inputs, back, of_output);
+        of_stops::<S>(cell, layout, back, &self.elongations, of_output);
+        let own = of_inputs[1 + shape.channels..].iter().take(shape.stops);
+        let (stops, elongations) = (layout.stops.start, &self.elongations);
+        for (stop, weight) in own.enumerate() {
+            for channel in 0..shape.channels {
+                let place = channel * shape.stops + stop;
+                of_output[stops + place] += weight * elongations[place];
+            }
+        }
+        carry::<S>(cell, back, carried);
+        add_multiples::<S>(of_output, carried, before);
+        add_multiples::<S>(of_output, &of_inputs[shape.first_state()..], states);
+        jacobian.copy_from_slice(&of_output[..jacobian.len()]);
+    }
+}
+
+/// `∂p` and `∂e` of each stop by its own weights: a play follows its input where it has just moved.
+#[inline(always)]
+fn of_plays(memory: &Memory, input: Input, plays: &mut [f64], elongations: &mut [f64]) {
+    let stops = memory.plays.len();
+    if stops == 0 {
+        return;
+    }
+    let channels = plays.chunks_exact_mut(stops).zip(elongations.chunks_exact_mut(stops));
+    for ((plays, elongations), value) in channels.zip([input.from_origin, input.rate]) {
+        for (stop, (play, elongation)) in plays.iter_mut().zip(elongations).enumerate() {
+            if memory.plays[stop] != memory.plays_before[stop] {
+                *play = value;
+            }
+            *elongation = value - *play;
+        }
+    }
+}
+
+/// The direct terms of `b` and `A`: `back_j` times each input of the layer.
+#[inline(always)]
+fn of_layer(inputs: &[f64], back: &[f64], direct: &mut [f64]) {
+    for (direct, input) in direct.chunks_exact_mut(back.len()).zip(inputs) {
+        for (direct, back) in direct.iter_mut().zip(back) {
+            *direct = input * back;
+        }
+    }
+}
+
+/// The direct terms of the weights of the stops through the layer.
+#[inline(always)]
+fn of_stops<S: Simd>(cell: &Cell, layout: &Layout, back: &[f64], elongations: &[f64], direct: &mut [f64]) {
+    let shape = layout.shape;
+    let direct = &mut direct[layout.stops.clone()];
+    for stop in 0..shape.stops {
+        let weights = &cell.hidden[(1 + shape.channels + stop) * back.len()..][..back.len()];
+        let through = product::<S>(back, weights);
+        for channel in 0..shape.channels {
+            let place = channel * shape.stops + stop;
+            direct[place] = through * elongations[place];
+        }
+    }
+}
+
+/// `Σ_j back_j A_jl` of each state `l`.
+#[inline(always)]
+fn carry<S: Simd>(cell: &Cell, back: &[f64], carried: &mut [f64]) {
+    let weights = &cell.hidden[cell.shape().first_state() * back.len()..];
+    for (carried, column) in carried.iter_mut().zip(weights.chunks_exact(back.len())) {
+        *carried = product::<S>(back, column);
+    }
+}
+
+/// Adds `Σ_l factor_l row_l`, with rows as long as `to`.
+#[inline(always)]
+fn add_multiples<S: Simd>(to: &mut [f64], factors: &[f64], rows: &[f64]) {
+    let width = to.len();
+    for (group, to) in to.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+        let mut sums = *to;
+        for (l, &factor) in factors.iter().enumerate() {
+            let row = &rows[l * width + LANES * group..][..LANES];
+            for k in 0..LANES {
+                sums[k] = multiply_add::<S>(factor, row[k], sums[k]);
+            }
+        }
+        *to = sums;
+    }
+}

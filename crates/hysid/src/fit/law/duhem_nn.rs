@@ -1,0 +1,482 @@
+//! Identification of a Duhem neural network from random starts: output weights by ridge least squares, all other
+//! parameters by Levenberg-Marquardt with exact derivatives of the free run (theory.md (8.33), (8.34)).
+//!
+//! ```text
+//! F(θ) = min_w [ ½ Σ_k (y_k - ŷ_k)²/N + ½ λ |w|² ] + ½ κ |θ|²               theory.md (8.36)
+//! ```
+//!
+//! `ŷ` is the measured output, scaled, at the `N` rows that are compared; the memory runs through all rows. The
+//! constant, the weights of the stops and the logarithms of leaks and relaxation times bear no penalty.
+//!
+//! Of several starts the error on held-out data selects the best, and the epoch in which it was; it is then
+//! trained on all data for a few further epochs. A single start is trained on all data from the beginning.
+
+use std::cmp::Ordering;
+use std::ops::ControlFlow;
+
+use rand::RngExt;
+use rayon::prelude::*;
+use serde_json::json;
+
+use crate::data::FEWEST_ROWS;
+use crate::data::record::Dataset;
+use crate::error::{Error, OptionError, Result};
+use crate::fit::law::Identify;
+use crate::fit::law::search::{
+    Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned_to,
+};
+use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
+use crate::law::Law;
+use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, MOST_NEURONS, Run, Shape};
+use crate::law::series::Series;
+use crate::linear_algebra::{Gram, Symmetric};
+use crate::model::input_transform::common_magnitude;
+use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, step_within};
+use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::random::{generator, normal};
+use crate::options::classical::ClassicalOptions;
+use crate::options::table::check;
+use crate::stop_check::StopCheck;
+use crate::termination::Termination;
+
+/// Default number of stops.
+const STOPS: usize = 6;
+
+/// Default number of tanh neurons.
+const HIDDEN: usize = 8;
+
+/// Default number of states.
+const STATES: usize = 3;
+
+/// Default number of starts of the search.
+pub(crate) const STARTS: usize = 6;
+
+/// Default number of iterations of each start.
+const EPOCHS: usize = 45;
+
+/// Share of the data that judges the starts.
+const HELD_OUT: f64 = 0.25;
+
+/// λ: penalty on the squared output weights.
+const RIDGE: f64 = 1e-6;
+
+/// κ: penalty on the other squared parameters that have one.
+const DECAY: f64 = 1e-5;
+
+/// Rows compared with the measured output at most.
+const MOST_COMPARED: usize = 2000;
+
+/// After so many epochs half of the starts are given up, and again after as many more.
+const EPOCHS_TO_PROVE_ITSELF: usize = 12;
+
+/// Bounds of `c`.
+const PATH_LEAKS: (f64, f64) = (1e-3, 1e3);
+
+/// First path constants `1/c`, as shares of half the range of the input.
+const FIRST_PATHS: (f64, f64) = (0.03, 1.0);
+
+/// First thresholds of the stops, as shares of half the range of the input.
+const FIRST_THRESHOLDS: (f64, f64) = (0.02, 1.0);
+
+impl Identify for DuhemNn {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
+        let frame = Frame::new(data, options)?;
+        let whole = Task::new(&frame, data, options, stop)?;
+        // Nothing is to be chosen from a single start, so that it is trained on all data.
+        let split = if effort.starts > 1 { data.split_for_validation(HELD_OUT) } else { None };
+        let Some((kept, held)) = split else {
+            return Training::new(&whole, None, effort)?.run(&whole, observer);
+        };
+        let (kept, held) =
+            (Task::new(&frame, &kept, options, stop)?, Task::new(&frame, &held, options, stop)?);
+        Training::new(&kept, Some(&held), effort)?.run(&whole, observer)
+    }
+}
+
+/// All starts on their way.
+struct Training<'a> {
+    /// What they are trained on, and what judges them.
+    kept: &'a Task<'a>,
+    held: Option<&'a Task<'a>>,
+    walks: MultiStart<Walk>,
+    epochs: usize,
+}
+
+impl<'a> Training<'a> {
+    fn new(kept: &'a Task<'a>, held: Option<&'a Task<'a>>, effort: Effort) -> Result<Self> {
+        let begin = |start| Walk::new(kept, kept.random(effort.seed, start));
+        let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
+        walks.sort();
+        if walks.best().value().objective == f64::INFINITY {
+            return Err(Error::Stopped);
+        }
+        Ok(Self { kept, held, walks, epochs: effort.epochs })
+    }
+
+    fn run(mut self, whole: &Task<'_>, observer: &mut SearchObserver<'_>) -> Result<Identified<DuhemNn>> {
+        let last = if self.held.is_some() { (self.epochs / 6).max(1) } else { 0 };
+        let rounds = self.epochs + last;
+        let mut tell = |round, evaluations, nrmse_percent| {
+            let told =
+                observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent: nrmse_percent });
+            if whole.stop.is_asked() { ControlFlow::Break(()) } else { told }
+        };
+        let Self { kept, held, ref mut walks, epochs } = self;
+        let plan = Plan { rounds: epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+        let advance = |walk: &mut Walk, _| {
+            if walk.ended.is_none() {
+                walk.advance(kept);
+                held.iter().for_each(|held| walk.judge(held));
+            }
+        };
+        let mut termination = walks.run(plan, advance, |walks, round| {
+            tell(round, walks.evaluations(), walks.best().value().nrmse_percent())
+        });
+        let evaluations = walks.evaluations();
+        let best = walks.best();
+        let (parameters, value) = best.least_on_held_out.as_ref().map_or_else(
+            || (best.search.parameters(), best.value()),
+            |(_, parameters, value)| (parameters.as_slice(), value),
+        );
+        if held.is_none() || termination == Termination::Stopped {
+            return whole.identified(parameters, value, evaluations, termination);
+        }
+        // What was held out is learnt from where it was judged best, in few epochs.
+        let mut walk = Walk::new(whole, parameters.to_vec());
+        if walk.value().objective == f64::INFINITY {
+            return whole.identified(parameters, value, evaluations, Termination::Stopped);
+        }
+        for epoch in 1..=last {
+            walk.advance(whole);
+            let flow = tell(epochs + epoch, evaluations + walk.evaluations(), walk.value().nrmse_percent());
+            if flow.is_break() {
+                termination = Termination::Stopped;
+                break;
+            }
+            if let Some(ended) = walk.ended {
+                termination = ended;
+                break;
+            }
+        }
+        let evaluations = evaluations + walk.evaluations();
+        whole.identified(walk.search.parameters(), walk.value(), evaluations, termination)
+    }
+}
+
+/// The numbers of parts that are asked for, for data with or without time stamps.
+pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
+    let has_rate = options.rate.is_some();
+    Shape {
+        channels: if has_rate { 2 } else { 1 },
+        stops: options.operators.unwrap_or(STOPS),
+        states: options.states.unwrap_or(STATES),
+        neurons: options.hidden.unwrap_or(HIDDEN),
+        has_time: has_time && has_rate,
+    }
+}
+
+/// Rejects numbers that no network can have.
+fn check_shape(shape: Shape) -> Result<()> {
+    check([("states", json!(shape.states))])?;
+    let counts = [("hidden", shape.neurons, 1), ("operators", shape.stops, 0)];
+    match counts.into_iter().find(|(_, count, least)| !(*least..=MOST_NEURONS).contains(count)) {
+        Some((option, count, least)) => {
+            Err(OptionError::value(option, count, format!("choose {least} to {MOST_NEURONS}")).into())
+        }
+        None => Ok(()),
+    }
+}
+
+/// The scales of the data, and what the network consists of.
+struct Frame {
+    /// Without a network.
+    law: DuhemNn,
+    layout: Layout,
+    /// Bounds of each parameter.
+    bounds: Vec<(f64, f64)>,
+    /// Mean time step and duration of the longest record.
+    times: (f64, f64),
+}
+
+impl Frame {
+    fn new(data: &Dataset, options: &ClassicalOptions) -> Result<Self> {
+        let series = Series::all(data, options.rate)?;
+        let times = time_scales(&series);
+        let shape = shape_of(options, times.1 > 0.0);
+        check_shape(shape)?;
+        let layout = Layout::new(shape);
+        let (low, high) = data.input_range(0);
+        let measured = series.iter().flat_map(|series| series.output.iter().copied());
+        let (output_mean, output_scale) = spread(&measured.filter(|y| !y.is_nan()).collect::<Vec<f64>>());
+        let rates = series.iter().flat_map(|series| &series.samples).map(|sample| sample.rate.abs());
+        let law = DuhemNn {
+            input_centre: 0.5 * low + 0.5 * high,
+            input_scale: 0.5 * high - 0.5 * low,
+            rate_scale: options.rate.map(|_| common_magnitude(rates.collect())),
+            output_mean,
+            output_scale,
+            cell: layout.cell(&vec![0.0; layout.count()], vec![0.0; layout.shape.terms()]),
+        };
+        let bounds = (0..layout.count()).map(|index| bounds(&layout, index, times)).collect();
+        Ok(Self { law, layout, bounds, times })
+    }
+}
+
+/// What a start is trained on or judged by: scaled records.
+struct Task<'a> {
+    frame: &'a Frame,
+    drives: Vec<Vec<Input>>,
+    targets: Vec<Vec<f64>>,
+    /// Rows with a target.
+    rows: usize,
+    /// Breaks evaluations off.
+    stop: StopCheck<'a>,
+}
+
+impl<'a> Task<'a> {
+    fn new(
+        frame: &'a Frame,
+        data: &Dataset,
+        options: &ClassicalOptions,
+        stop: StopCheck<'a>,
+    ) -> Result<Self> {
+        let law = &frame.law;
+        let series = thinned_to(Series::all(data, options.rate)?, Memory::EveryRow, MOST_COMPARED);
+        let scaled = |series: &Series| series.samples.iter().map(|&sample| law.scaled(sample)).collect();
+        let target = |series: &Series| {
+            series.output.iter().map(|y| (y - law.output_mean) / law.output_scale).collect()
+        };
+        let targets: Vec<Vec<f64>> = series.iter().map(target).collect();
+        let rows = targets.iter().flatten().filter(|y| !y.is_nan()).count();
+        Ok(Self { frame, drives: series.iter().map(scaled).collect(), targets, rows, stop })
+    }
+
+    fn random(&self, seed: u64, start: usize) -> Vec<f64> {
+        let mut generator = generator(seed, start);
+        let Frame { layout, times: (step, duration), .. } = self.frame;
+        let shape = layout.shape;
+        let mut parameters = vec![0.0; layout.count()];
+        let spread = 1.2 / (shape.inputs() as f64).sqrt();
+        for place in layout.hidden.clone() {
+            parameters[place] = spread * normal(&mut generator);
+        }
+        for place in layout.targets.clone() {
+            parameters[place] = 0.1 * normal(&mut generator);
+        }
+        parameters[layout.rate_gains.clone()].fill(1.0);
+        for (i, place) in layout.ln_path_leaks.clone().enumerate() {
+            parameters[place] = -spaced(FIRST_PATHS, i, shape.states).ln();
+        }
+        let (shortest, longest) = ((2.0 * step).ln(), (0.25 * duration).max(4.0 * step).ln());
+        for place in layout.ln_relaxation_times.clone() {
+            parameters[place] = shortest + (longest - shortest) * generator.random::<f64>();
+        }
+        for (i, place) in layout.stops.clone().enumerate() {
+            parameters[place] = match i < shape.stops {
+                true => 1.0 / spaced(FIRST_THRESHOLDS, i, shape.stops),
+                false => 0.5 * normal(&mut generator),
+            };
+        }
+        parameters
+    }
+
+    /// The network with these parameters and the output weights there.
+    fn identified(
+        &self,
+        parameters: &[f64],
+        value: &Value,
+        evaluations: usize,
+        termination: Termination,
+    ) -> Result<Identified<DuhemNn>> {
+        let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
+        let law = DuhemNn { cell, ..self.frame.law.clone() }.validated()?;
+        Ok(Identified { law, train_nrmse_percent: value.nrmse_percent(), evaluations, termination })
+    }
+
+    /// The Gram matrix of the terms of the output and the target, and of the Jacobian for given output weights.
+    fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> Option<Gram> {
+        let weights = output.map_or_else(|| vec![0.0; self.frame.layout.shape.terms()], <[f64]>::to_vec);
+        let run = Run {
+            cell: &self.frame.layout.cell(parameters, weights),
+            drives: &self.drives,
+            targets: &self.targets,
+            with_jacobian: output.is_some(),
+            stop: self.stop,
+        };
+        run.gram()
+    }
+
+    /// Mean square error of the network with these output weights; `None` once stopped.
+    fn mean_square(&self, parameters: &[f64], value: &Value) -> Option<f64> {
+        let weights = &value.solution.weights;
+        let gram = self.gram(parameters, None)?;
+        let target = weights.len();
+        let with_target = |i: usize| if i == target { -1.0 } else { weights[i] };
+        let row = |i: usize| -> f64 { (0..=target).map(|j| gram.at(i, j) * with_target(j)).sum() };
+        let square: f64 = (0..=target).map(|i| with_target(i) * row(i)).sum();
+        Some(square.max(0.0) / self.rows as f64)
+    }
+
+    fn output_problem<'g>(&'g self, gram: &'g Gram) -> OutputProblem<'g> {
+        OutputProblem {
+            gram,
+            features: self.frame.layout.shape.terms(),
+            rows: self.rows as f64,
+            ridge: RIDGE,
+            constant: true,
+            stop: self.stop,
+        }
+    }
+
+    /// The parameters with a penalty.
+    fn weights<'p>(&'p self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
+        parameters.iter().enumerate().filter(|(index, _)| self.frame.layout.has_decay(*index))
+    }
+}
+
+/// Mean time step and duration of the longest record; 0 without time stamps.
+fn time_scales(series: &[Series]) -> (f64, f64) {
+    let durations = series.iter().map(|series| series.samples.iter().map(|sample| sample.step).sum::<f64>());
+    let steps: usize = series.iter().map(|series| series.samples.len() - 1).sum();
+    (durations.clone().sum::<f64>() / steps.max(1) as f64, durations.fold(0.0, f64::max))
+}
+
+/// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
+fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
+    let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
+    low * (high / low).powf(share)
+}
+
+fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, f64) {
+    if layout.ln_path_leaks.contains(&index) {
+        (PATH_LEAKS.0.ln(), PATH_LEAKS.1.ln())
+    } else if layout.ln_relaxation_times.contains(&index) {
+        ((0.1 * step).ln(), (100.0 * duration).ln())
+    } else {
+        (-LARGEST_WEIGHT, LARGEST_WEIGHT)
+    }
+}
+
+/// The objective at a point, with the output weights there; infinite if it was broken off.
+#[derive(Debug, Clone)]
+struct Value {
+    objective: f64,
+    mean_square: f64,
+    solution: OutputSolution,
+}
+
+impl Value {
+    fn nrmse_percent(&self) -> f64 {
+        100.0 * self.mean_square.sqrt()
+    }
+}
+
+impl Problem for Task<'_> {
+    type Value = Value;
+    type Curvature = Symmetric;
+    const RULES: Rules = Rules::SMOOTH;
+
+    fn value(&self, parameters: &[f64]) -> Value {
+        let solution = match self.gram(parameters, None) {
+            Some(gram) => self.output_problem(&gram).solve(),
+            None => OutputSolution::broken_off(self.frame.layout.shape.terms()),
+        };
+        let decay: f64 = self.weights(parameters).map(|(_, w)| w * w).sum();
+        let objective = solution.objective + 0.5 * DECAY * decay;
+        Value { objective, mean_square: solution.mean_square, solution }
+    }
+
+    fn objective(value: &Value) -> f64 {
+        value.objective
+    }
+
+    fn slope(&self, parameters: &[f64], value: &Value) -> Option<Slope<Symmetric>> {
+        let gram = self.gram(parameters, Some(&value.solution.weights))?;
+        let (mut gradient, mut curvature) =
+            self.output_problem(&gram).linearise(&value.solution, parameters.len());
+        for (index, weight) in self.weights(parameters) {
+            gradient[index] += DECAY * weight;
+            curvature.add_to_diagonal(index, DECAY);
+        }
+        let diagonal = (0..gradient.len()).map(|index| curvature.diagonal(index)).collect();
+        (!self.stop.is_asked()).then_some(Slope { gradient, diagonal, curvature, evaluations: 1 })
+    }
+
+    fn step(&self, slope: &Slope<Symmetric>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
+        let leaves = |i: usize, by: f64| {
+            let (low, high) = self.frame.bounds[i];
+            parameters[i] <= low && by < 0.0 || parameters[i] >= high && by > 0.0
+        };
+        step_within(&slope.curvature, &slope.gradient, damping, leaves, self.stop)
+    }
+
+    fn limit(&self, parameters: &mut [f64]) {
+        for (parameter, &(low, high)) in parameters.iter_mut().zip(&self.frame.bounds) {
+            *parameter = parameter.clamp(low, high);
+        }
+    }
+
+    fn stop(&self) -> StopCheck<'_> {
+        self.stop
+    }
+}
+
+/// A start on its way.
+struct Walk {
+    search: LevenbergMarquardt<Value>,
+    ended: Option<Termination>,
+    /// Evaluations of what was held out.
+    judged: usize,
+    /// Smallest error on what was held out, and where it was.
+    least_on_held_out: Option<(f64, Vec<f64>, Value)>,
+}
+
+impl Walk {
+    fn new(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+        let search = LevenbergMarquardt::new(task, parameters);
+        Self { search, ended: None, judged: 0, least_on_held_out: None }
+    }
+
+    fn advance(&mut self, task: &Task<'_>) {
+        self.ended = self.search.advance(task);
+    }
+
+    /// Remembers the parameters if they do better than any before on what was held out.
+    fn judge(&mut self, held: &Task<'_>) {
+        let Some(error) = held.mean_square(self.search.parameters(), self.value()) else { return };
+        self.judged += 1;
+        if self.least_on_held_out.as_ref().is_none_or(|(least, ..)| error < *least) {
+            self.least_on_held_out = Some((error, self.search.parameters().to_vec(), self.value().clone()));
+        }
+    }
+
+    fn value(&self) -> &Value {
+        self.search.known_value().expect("a walk begins at a known value")
+    }
+}
+
+impl Start for Walk {
+    /// By what was held out, if that has been judged.
+    fn order(&self, other: &Self) -> Ordering {
+        let rank = |walk: &Walk| walk.least_on_held_out.as_ref().map(|(error, ..)| *error);
+        match (rank(self), rank(other)) {
+            (None, None) => self.value().objective.total_cmp(&other.value().objective),
+            (a, b) => a.unwrap_or(f64::INFINITY).total_cmp(&b.unwrap_or(f64::INFINITY)),
+        }
+    }
+
+    fn evaluations(&self) -> usize {
+        self.search.evaluations() + self.judged
+    }
+
+    fn ended(&self) -> Option<Termination> {
+        self.ended
+    }
+}

@@ -1,0 +1,485 @@
+//! The Duhem neural network: its cell against closed forms, its bounds, its derivatives against difference
+//! quotients, and its identification.
+
+use std::ops::ControlFlow;
+
+use hysid::data::metrics::ErrorSums;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::error::Error;
+use hysid::fit::identify;
+use hysid::fit::law::Identify;
+use hysid::law::duhem_nn::{Cell, DuhemNn, Input, Layout, Run, Shape};
+use hysid::law::interval::Interval;
+use hysid::law::series::{Series, run};
+use hysid::law::{Law, Sample};
+use hysid::model::Model;
+use hysid::options::FitSpec;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::specimens::cases;
+use hysid::stop_check::StopCheck;
+use hysid::termination::Termination;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+fn between(generator: &mut Generator, low: f64, high: f64) -> f64 {
+    low + (high - low) * generator.random::<f64>()
+}
+
+/// A law without offset and scales, of one state that starts at `s_0` and is the output.
+fn relaxation(c: f64, tau: f64, q: f64, s_0: f64) -> DuhemNn {
+    let cell = Cell {
+        stops: Vec::new(),
+        hidden: vec![0.3, 0.5, -0.2, 0.7],
+        targets: vec![0.0],
+        rate_gains: vec![q],
+        initial: vec![s_0],
+        path_leaks: vec![c],
+        relaxation_times: vec![tau],
+        output: vec![0.0, 0.0, 0.0, 1.0, 0.0],
+    };
+    DuhemNn {
+        input_centre: 0.0,
+        input_scale: 1.0,
+        rate_scale: Some(1.0),
+        output_mean: 0.0,
+        output_scale: 1.0,
+        cell,
+    }
+    .validated()
+    .unwrap()
+}
+
+/// Random parameters of the magnitudes that a fit starts from, times `size`.
+fn random_cell(shape: Shape, size: f64, generator: &mut Generator) -> Cell {
+    let layout = Layout::new(shape);
+    let parameters: Vec<f64> = (0..layout.count())
+        .map(|place| match layout.has_decay(place) {
+            true => size * between(generator, -0.8, 0.8),
+            false if layout.stops.contains(&place) => size * between(generator, -6.0, 6.0),
+            false => between(generator, -2.0, 2.0),
+        })
+        .collect();
+    let output = (0..shape.terms()).map(|_| size * between(generator, -1.0, 1.0)).collect();
+    layout.cell(&parameters, output)
+}
+
+fn law_of(cell: Cell) -> DuhemNn {
+    let rate_scale = (cell.shape().channels == 2).then_some(2.0);
+    let law = DuhemNn {
+        input_centre: 0.2,
+        input_scale: 1.5,
+        rate_scale,
+        output_mean: -1.0,
+        output_scale: 4.0,
+        cell,
+    };
+    law.validated().unwrap()
+}
+
+fn shapes() -> Vec<Shape> {
+    let full = Shape { channels: 2, stops: 3, states: 3, neurons: 9, has_time: true };
+    vec![
+        full,
+        Shape { stops: 0, states: 1, neurons: 1, ..full },
+        Shape { stops: 0, ..full },
+        Shape { has_time: false, ..full },
+        Shape { channels: 1, has_time: false, neurons: 8, ..full },
+        Shape { channels: 1, has_time: false, stops: 0, states: 5, neurons: 3 },
+    ]
+}
+
+// -------------------------------------------------------------------------------------- the cell
+
+/// With `W = 0` a state follows `ds/dt = (c |v| + 1/τ)(q v - s)`, which a constant rate solves in closed form
+/// for any steps.
+#[test]
+fn a_state_without_neurons_relaxes_as_its_differential_equation() {
+    let (c, tau, q, s_0) = (1.7, 0.6, 2.5, -3.0);
+    let law = relaxation(c, tau, q, s_0);
+    for rate in [0.0, 0.4, -1.3] {
+        let mut state = law.virgin();
+        let mut time = 0.0;
+        for k in 0..40 {
+            let step = if k == 0 { 0.0 } else { 0.01 * f64::from(k * k % 17 + 1) };
+            time += step;
+            let y = law.step(&mut state, Sample { x: 0.5 + rate * time, rate, step });
+            let leak = c * f64::abs(rate) + 1.0 / tau;
+            let exact = q * rate + (s_0 - q * rate) * (-leak * time).exp();
+            assert!((y - exact).abs() < 1e-12, "rate {rate}, row {k}: {y}, not {exact}");
+        }
+    }
+}
+
+/// Nothing moves a state while the input rests and no time passes, whatever the network.
+#[test]
+fn a_state_rests_with_its_input() {
+    let mut generator = Generator::seed_from_u64(3);
+    for shape in shapes() {
+        let law = law_of(random_cell(shape, 1.0, &mut generator));
+        let mut state = law.virgin();
+        let resting = Sample { x: 0.7, rate: 0.0, step: 0.0 };
+        law.step(&mut state, Sample { x: -0.4, rate: 1.0, step: 0.0 });
+        let first = law.step(&mut state, Sample { step: 0.3, ..resting });
+        // The neurons take the new states once more.
+        let second = law.step(&mut state, resting);
+        assert_eq!(second, law.step(&mut state, resting), "{shape:?}: {first}");
+    }
+}
+
+#[test]
+fn states_and_output_stay_within_their_bounds_for_any_parameters() {
+    let mut generator = Generator::seed_from_u64(5);
+    for trial in 0..60 {
+        let shape = shapes()[trial % 6];
+        let size = [1.0, 1e2, 1e5][trial % 3];
+        let law = law_of(random_cell(shape, size, &mut generator));
+        let largest = [1.0, 1e3, 1e90][trial / 3 % 3];
+        let samples: Vec<Sample> = (0..300)
+            .map(|_| Sample {
+                x: largest * between(&mut generator, -1.0, 1.0),
+                rate: largest * between(&mut generator, -1.0, 1.0),
+                step: 10f64.powf(between(&mut generator, -8.0, 8.0)),
+            })
+            .collect();
+        let range = Interval::about(0.0, largest);
+        let bound = law.output_bound(range, range);
+        assert!(bound.0.is_finite() && bound.1.is_finite());
+        let slack = 1e-12 * (bound.1 - bound.0);
+        for y in run(&law, &samples) {
+            assert!(y >= bound.0 - slack && y <= bound.1 + slack, "{shape:?}: {y} beyond {bound:?}");
+        }
+        let fastest = samples.iter().map(|&sample| law.scaled(sample).rate.abs()).fold(0.0, f64::max);
+        for (i, bound) in law.state_bounds(fastest).into_iter().enumerate() {
+            let mut only_state = DuhemNn { output_mean: 0.0, output_scale: 1.0, ..law.clone() };
+            only_state.cell.output.fill(0.0);
+            only_state.cell.output[1 + shape.channels + shape.stops + i] = 1.0;
+            let outputs = run(&only_state, &samples);
+            let reached = outputs.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
+            assert!(reached > 0.0 && reached <= bound * (1.0 + 1e-12), "{shape:?}: {reached} beyond {bound}");
+        }
+    }
+}
+
+#[test]
+fn a_run_that_is_divided_is_the_same_to_the_last_bit() {
+    let mut generator = Generator::seed_from_u64(7);
+    for shape in shapes() {
+        let law = law_of(random_cell(shape, 1.0, &mut generator));
+        let samples: Vec<Sample> = (0..200)
+            .map(|k| Sample { x: (0.3 * f64::from(k)).sin(), rate: (0.3 * f64::from(k)).cos(), step: 0.1 })
+            .collect();
+        let whole = run(&law, &samples);
+        let mut state = law.virgin();
+        for (row, (&sample, y)) in samples.iter().zip(&whole).enumerate() {
+            let stepped = law.step(&mut state, sample);
+            assert_eq!(stepped.to_bits(), y.to_bits(), "{shape:?}, row {row}");
+            state = state.clone();
+        }
+    }
+}
+
+#[test]
+fn parts_that_do_not_go_together_are_refused() {
+    let mut generator = Generator::seed_from_u64(9);
+    let law = law_of(random_cell(shapes()[0], 1.0, &mut generator));
+    let text = serde_json::to_string(&law).unwrap();
+    assert_eq!(serde_json::from_str::<DuhemNn>(&text).unwrap(), law);
+    assert!(serde_json::from_str::<DuhemNn>(&text.replacen('{', "{\"colour\":1,", 1)).is_err());
+    let refused = |change: &dyn Fn(&mut DuhemNn)| {
+        let mut wrong = law.clone();
+        change(&mut wrong);
+        wrong.validated().unwrap_err().to_string()
+    };
+    for change in [
+        &(|law: &mut DuhemNn| law.cell.hidden.truncate(4)) as &dyn Fn(&mut DuhemNn),
+        &|law| law.cell.output.clear(),
+        &|law| law.cell.stops.push(1.0),
+        &|law| law.cell.initial.clear(),
+        &|law| law.cell.rate_gains.clear(),
+        &|law| law.cell.relaxation_times.truncate(1),
+        &|law| law.rate_scale = None,
+    ] {
+        assert!(refused(change).contains("do not go together"));
+    }
+    assert!(refused(&|law| law.cell.path_leaks[1] = 0.0).contains("c_2"));
+    assert!(refused(&|law| law.cell.relaxation_times[0] = -1.0).contains("τ_1"));
+    assert!(refused(&|law| law.cell.output[0] = f64::NAN).contains("w_0"));
+    assert!(refused(&|law| law.input_scale = 0.0).contains("not positive"));
+    assert!(refused(&|law| law.output_mean = f64::INFINITY).contains("too large"));
+}
+
+// ------------------------------------------------------------------------------------ derivatives
+
+fn drive(shape: Shape, rows: usize, generator: &mut Generator) -> Vec<Input> {
+    let mut x = 0.1;
+    (0..rows)
+        .map(|_| {
+            x = (x + between(generator, -0.4, 0.4_f64)).clamp(-1.0, 1.0);
+            let rate = if shape.channels == 2 { between(generator, -1.0, 1.0) } else { 0.0 };
+            Input { x, from_origin: x + 0.3, rate, step: between(generator, 0.01, 0.5) }
+        })
+        .collect()
+}
+
+/// The outputs, and the columns of the Jacobian if asked for, of two records.
+fn rows_of(cell: &Cell, drives: &[Vec<Input>], with_jacobian: bool) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let targets: Vec<Vec<f64>> = drives.iter().map(|drive| vec![0.0; drive.len()]).collect();
+    let run = Run { cell, drives, targets: &targets, with_jacobian, stop: StopCheck::never() };
+    let terms = cell.output.len();
+    let rows = run.rows().unwrap();
+    let output = |row: &Vec<f64>| row[..terms].iter().zip(&cell.output).map(|(term, w)| term * w).sum();
+    (rows.iter().map(output).collect(), rows.iter().map(|row| row[terms + 1..].to_vec()).collect())
+}
+
+#[test]
+fn derivatives_are_those_of_the_free_run() {
+    let mut generator = Generator::seed_from_u64(11);
+    for shape in shapes() {
+        let layout = Layout::new(shape);
+        let parameters: Vec<f64> = (0..layout.count())
+            .map(|place| {
+                let size = if layout.stops.contains(&place) { 4.0 } else { 0.8 };
+                size * between(&mut generator, -1.0, 1.0)
+            })
+            .collect();
+        let output: Vec<f64> = (0..shape.terms()).map(|_| between(&mut generator, -1.0, 1.0)).collect();
+        let drives = [drive(shape, 60, &mut generator), drive(shape, 25, &mut generator)];
+        let (_, jacobian) = rows_of(&layout.cell(&parameters, output.clone()), &drives, true);
+        assert_eq!((jacobian.len(), jacobian[0].len()), (85, layout.count()));
+        for place in 0..layout.count() {
+            let by = 1e-6;
+            let changed = |change: f64| {
+                let mut parameters = parameters.clone();
+                parameters[place] += change;
+                rows_of(&layout.cell(&parameters, output.clone()), &drives, false).0
+            };
+            let (up, down) = (changed(by), changed(-by));
+            for (row, (up, down)) in up.iter().zip(&down).enumerate() {
+                let (quotient, exact) = ((up - down) / (2.0 * by), jacobian[row][place]);
+                let tolerance = 1e-7 * (1.0 + exact.abs());
+                assert!(
+                    (quotient - exact).abs() < tolerance,
+                    "{shape:?}, parameter {place}, row {row}: {exact}, not {quotient}"
+                );
+            }
+        }
+    }
+}
+
+/// The Gram matrix is that of the rows, in whatever groups they were gathered.
+#[test]
+fn the_gram_matrix_is_that_of_the_rows() {
+    let mut generator = Generator::seed_from_u64(13);
+    let shape = shapes()[0];
+    let cell = random_cell(shape, 1.0, &mut generator);
+    let drives = [drive(shape, 301, &mut generator), drive(shape, 30, &mut generator)];
+    let blank = |k: usize| if k % 5 == 2 { f64::NAN } else { (k as f64).sin() };
+    let targets: Vec<Vec<f64>> = drives.iter().map(|drive| (0..drive.len()).map(blank).collect()).collect();
+    for with_jacobian in [false, true] {
+        let run =
+            Run { cell: &cell, drives: &drives, targets: &targets, with_jacobian, stop: StopCheck::never() };
+        let (gram, rows) = (run.gram().unwrap(), run.rows().unwrap());
+        assert_eq!(rows.len(), targets.iter().flatten().filter(|y| !y.is_nan()).count());
+        for i in 0..rows[0].len() {
+            for j in 0..=i {
+                let exact: f64 = rows.iter().map(|row| row[i] * row[j]).sum();
+                let size: f64 = rows.iter().map(|row| (row[i] * row[j]).abs()).sum();
+                assert!((gram.at(i, j) - exact).abs() <= 1e-12 * size, "{i}, {j}");
+            }
+        }
+        let stopped = Run { stop: StopCheck::new(&|| true), ..run };
+        assert!(stopped.gram().is_none());
+    }
+}
+
+// --------------------------------------------------------------------------------- identification
+
+fn timed(name: &str, rows: usize, pace: f64) -> Record {
+    let time: Vec<f64> = (0..rows).map(|k| 0.02 * k as f64).collect();
+    let tone = |t: f64, pace: f64, phase: f64| (pace * t + phase).sin();
+    let x = |&t: &f64| tone(t, pace, 0.0) + 0.5 * tone(t, 2.7 * pace, 1.0) + 0.7 * tone(t, 0.31 * pace, 2.0);
+    let x = time.iter().map(x).collect();
+    Record::new(name, vec![x], vec![0.0; rows]).unwrap().with_time(time).unwrap()
+}
+
+fn data(law: &DuhemNn, rate: Option<RateMethod>, records: Vec<Record>) -> Dataset {
+    let answered = records.into_iter().map(|record| {
+        let output = run(law, &Series::of(&record, rate).unwrap().samples);
+        record.with_output(output).unwrap()
+    });
+    let names = ColumnNames { time: Some("t_s".into()), ..ColumnNames::plain(1) };
+    Dataset::new(names, answered.collect()).unwrap()
+}
+
+fn options(rate: Option<RateMethod>) -> ClassicalOptions {
+    ClassicalOptions { rate, ..ClassicalOptions::of(ClassicalModel::DuhemNn) }
+}
+
+/// Error in percent of the standard deviation.
+fn error(law: &DuhemNn, data: &Dataset, rate: Option<RateMethod>) -> f64 {
+    let mut sums = ErrorSums::default();
+    for series in Series::all(data, rate).unwrap() {
+        sums.add(&series.output, &run(law, &series.samples));
+    }
+    sums.errors("y").unwrap().nrmse_std_percent.unwrap()
+}
+
+fn go_on(_: hysid::fit::law::search::SearchProgress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+#[test]
+fn it_learns_its_own_kind() {
+    let rate = Some(RateMethod::Central);
+    let mut generator = Generator::seed_from_u64(17);
+    let shape = Shape { channels: 2, stops: 2, states: 2, neurons: 4, has_time: true };
+    let mut cell = random_cell(shape, 1.0, &mut generator);
+    cell.stops = vec![1.5, 4.0, 0.2, -0.3];
+    let law = law_of(cell);
+    let seen =
+        data(&law, rate, vec![timed("slow", 600, 1.0), timed("fast", 600, 2.2), timed("medium", 600, 1.5)]);
+    let unseen = data(&law, rate, vec![timed("between", 600, 1.8)]);
+    let options = ClassicalOptions { starts: Some(4), ..options(rate) };
+    let found = DuhemNn::fit(&seen, &options, &mut go_on).unwrap();
+    assert!(found.train_nrmse_percent < 1.0, "{}", found.train_nrmse_percent);
+    let unseen = error(&found.law, &unseen, rate);
+    assert!(unseen < 1.0, "{unseen}");
+    assert!((error(&found.law, &seen, rate) - found.train_nrmse_percent).abs() < 1e-6);
+}
+
+/// Least squares of the output on input and rate in `train`, and the error in percent on `test`.
+fn linear_error(train: &Dataset, test: &Dataset, rate: RateMethod) -> f64 {
+    let rows = |data: &Dataset| -> Vec<[f64; 3]> {
+        let all = Series::all(data, Some(rate)).unwrap();
+        let rows = all.into_iter().flat_map(|series| series.samples.into_iter().zip(series.output));
+        rows.filter(|(_, y)| !y.is_nan()).map(|(sample, y)| [sample.x, sample.rate, y]).collect()
+    };
+    let mean = |rows: &[[f64; 3]], of: &dyn Fn(&[f64; 3]) -> f64| {
+        rows.iter().map(of).sum::<f64>() / rows.len() as f64
+    };
+    let seen = rows(train);
+    let [x, v, y] = [0, 1, 2].map(|column| mean(&seen, &|row| row[column]));
+    let product = |a: usize, b: usize| mean(&seen, &|row| (row[a] - [x, v, y][a]) * (row[b] - [x, v, y][b]));
+    let determinant = product(0, 0) * product(1, 1) - product(0, 1).powi(2);
+    let of_x = (product(0, 2) * product(1, 1) - product(1, 2) * product(0, 1)) / determinant;
+    let of_rate = (product(1, 2) * product(0, 0) - product(0, 2) * product(0, 1)) / determinant;
+    let unseen = rows(test);
+    let middle = mean(&unseen, &|row| row[2]);
+    let residual = |row: &[f64; 3]| row[2] - y - of_x * (row[0] - x) - of_rate * (row[1] - v);
+    100.0
+        * (mean(&unseen, &|row| residual(row).powi(2)) / mean(&unseen, &|row| (row[2] - middle).powi(2)))
+            .sqrt()
+}
+
+#[test]
+fn it_predicts_a_damper_better_than_a_spring_with_a_dashpot() {
+    let case = cases::generated(5, 5).unwrap().remove(4);
+    assert!(case.name.contains("damper-random"), "{}", case.name);
+    let rate = RateMethod::Central;
+    let options = ClassicalOptions { starts: Some(2), epochs: Some(25), ..options(Some(rate)) };
+    let fitted = identify(&case.train, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
+    let network = fitted.unwrap().model.evaluate(&case.test).unwrap().nrmse_std_percent.unwrap();
+    let linear = linear_error(&case.train, &case.test, rate);
+    assert!(network < 4.0 && network < 0.2 * linear, "{network} and {linear}");
+}
+
+#[test]
+fn a_model_without_rate_or_time_has_only_what_its_data_have() {
+    let rows = 300;
+    let x: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64).sin() * (0.3 + 0.002 * k as f64)).collect();
+    let y: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64 - 0.4).sin() * (0.3 + 0.002 * k as f64)).collect();
+    let given: Vec<f64> = (0..rows).map(|k| (0.1 * k as f64).cos()).collect();
+    let plain = Record::new("r", vec![x], y).unwrap();
+    let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+    let timed = plain.clone().with_time(time).unwrap();
+    let rated = plain.clone().with_given_rate(given).unwrap();
+    for (record, rate, has_rate, has_time) in [
+        (plain, None, false, false),
+        (timed.clone(), None, false, false),
+        (timed, Some(RateMethod::Central), true, true),
+        (rated, Some(RateMethod::Given), true, false),
+    ] {
+        let names = ColumnNames {
+            time: record.time().map(|_| "t".into()),
+            rate: record.given_rate().map(|_| "v".into()),
+            ..ColumnNames::plain(1)
+        };
+        let data = Dataset::new(names, vec![record]).unwrap();
+        let options = ClassicalOptions { starts: Some(2), epochs: Some(15), ..options(rate) };
+        let fitted = identify(&data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()));
+        let model = fitted.unwrap().model;
+        assert_eq!(model.needs_time(), has_time, "{rate:?}");
+        let text = model.to_json();
+        let again = Model::from_json(&text).unwrap();
+        assert_eq!((&again, again.to_json()), (&model, text));
+        let hysid::model::Predictor::Law(hysid::law::Classical::DuhemNn(law)) = again.predictor() else {
+            panic!("{:?}", again.predictor())
+        };
+        let Shape { channels, has_time: relaxes, .. } = law.cell.shape();
+        assert_eq!((channels == 2, relaxes), (has_rate, has_time), "{rate:?}");
+        let error = again.evaluate(&data).unwrap().nrmse_std_percent.unwrap();
+        assert!(error < 10.0, "{rate:?}: {error} %");
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    let law = relaxation(1.0, 0.5, 0.8, 0.0);
+    let rate = Some(RateMethod::Central);
+    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
+    let options = ClassicalOptions { starts: Some(5), epochs: Some(14), ..options(rate) };
+    let found = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let found = pool.install(|| DuhemNn::fit(&data, &options, &mut go_on)).unwrap();
+        (found.law, found.evaluations)
+    };
+    assert_eq!(found(1), found(3));
+}
+
+#[test]
+fn a_fit_can_be_broken_off_and_gives_the_best_so_far() {
+    let law = relaxation(1.0, 0.5, 0.8, 0.0);
+    let rate = Some(RateMethod::Central);
+    let data = data(&law, rate, vec![timed("a", 300, 1.0), timed("b", 300, 1.7)]);
+    for starts in [1, 4] {
+        let options = ClassicalOptions { starts: Some(starts), epochs: Some(12), ..options(rate) };
+        // In the search, and in the epochs on all data that follow if there was a choice.
+        for last in [3, 13] {
+            let mut told = Vec::new();
+            let mut observer = |progress: hysid::fit::law::search::SearchProgress| {
+                told.push(progress.round);
+                if progress.round == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let found = DuhemNn::fit(&data, &options, &mut observer).unwrap();
+            let is_stopped = told.last() == Some(&last);
+            assert!(is_stopped || starts == 1 && last == 13, "{told:?}");
+            assert_eq!(found.termination == Termination::Stopped, is_stopped);
+            assert!(error(&found.law, &data, rate) < 100.0);
+        }
+        let stopped = DuhemNn::identify(&data, &options, &mut go_on, StopCheck::new(&|| true));
+        assert!(matches!(stopped, Err(Error::Stopped)));
+    }
+}
+
+#[test]
+fn numbers_that_no_network_can_have_are_refused() {
+    let law = relaxation(1.0, 0.5, 0.8, 0.0);
+    let rate = Some(RateMethod::Central);
+    let data = data(&law, rate, vec![timed("a", 100, 1.0)]);
+    let none = options(rate);
+    for (options, words) in [
+        (
+            ClassicalOptions { states: Some(0), ..none.clone() },
+            "states 0: choose a whole number from 1 to 20",
+        ),
+        (ClassicalOptions { states: Some(21), ..none.clone() }, "states 21"),
+        (ClassicalOptions { hidden: Some(0), ..none.clone() }, "hidden 0: choose 1 to 100"),
+        (ClassicalOptions { hidden: Some(101), ..none.clone() }, "hidden 101"),
+        (ClassicalOptions { operators: Some(101), ..none.clone() }, "operators 101: choose 0 to 100"),
+        (ClassicalOptions { starts: Some(0), ..none.clone() }, "starts 0"),
+    ] {
+        let error = DuhemNn::fit(&data, &options, &mut go_on).unwrap_err();
+        assert!(matches!(error, Error::Option(_)) && error.to_string().contains(words), "{error}");
+    }
+}
