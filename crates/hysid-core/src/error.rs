@@ -203,6 +203,9 @@ pub enum DataProblem {
     /// The given rate is missing.
     #[error("the measured rate is missing (the model was trained with one)")]
     NoGivenRate,
+    /// A turning point before the first row that is not a usable number.
+    #[error("the lead-in has the value {0}: finite numbers of at most {LARGEST_VALUE:e} are needed")]
+    LeadIn(f64),
     /// The number of inputs is not what it must be.
     #[error("has {found} inputs where {expected} are expected")]
     Inputs {

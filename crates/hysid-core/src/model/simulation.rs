@@ -27,6 +27,8 @@ struct Window {
     time: Option<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
+    /// Lead-in of the record, if it has one of its own.
+    lead_in: Option<Vec<f64>>,
     /// Rows of the record before the window.
     before: usize,
     /// Rows of the window that are simulated.
@@ -39,7 +41,8 @@ impl<'m> Simulation<'m> {
         Self { model, runner, band, record: String::new(), window: Window::default() }
     }
 
-    /// Begins a record of this name, from the virgin state. Pending rows of an earlier record are dropped.
+    /// Begins a record of this name, from the initial state of the model, or after the lead-in of the first
+    /// rows that it takes. Pending rows of an earlier record are dropped.
     pub fn begin(&mut self, record: impl Into<String>) {
         self.runner.reset();
         self.record = record.into();
@@ -127,6 +130,7 @@ impl Window {
             self.inputs = vec![Vec::new(); rows.inputs().len()];
             self.time = rows.time().map(|_| Vec::new());
             self.rate = rows.given_rate().map(|_| Vec::new());
+            self.lead_in = rows.lead_in().map(<[f64]>::to_vec);
         }
         let (expected, found) = (self.inputs.len(), rows.inputs().len());
         if expected != found {
@@ -156,7 +160,8 @@ impl Window {
 
     fn excitation<'a>(&'a self, name: &'a str) -> Excitation<'a> {
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
-        Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref())
+        let excitation = Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref());
+        excitation.after(self.lead_in.as_deref())
     }
 
     /// Drops all rows that are simulated but so many, the last ones.

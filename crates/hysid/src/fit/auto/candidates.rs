@@ -6,6 +6,7 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
+use crate::fit::initial_state;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -71,9 +72,6 @@ const ROWS_OF_A_SEARCH: usize = 1500;
 /// Starts and epochs of a search that only tells whether a law is worth more.
 const STARTS_IN_HASTE: usize = 2;
 const EPOCHS_IN_HASTE: usize = 12;
-
-/// Stops of a candidate that is quickly fitted.
-const QUICK_STOPS: usize = 60;
 
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 3000;
@@ -166,15 +164,8 @@ impl Candidate {
 
 /// A candidate that takes a moment to fit: few random stops.
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
-    let request = FitSpec::Classical(ClassicalOptions {
-        rate: options.rate,
-        deterioration: Some(options.deterioration.unwrap_or(true)),
-        operators: Some(QUICK_STOPS),
-        hidden: Some(0),
-        seed: options.seed,
-        ..ClassicalOptions::of(ClassicalModel::RandomStops)
-    });
-    Candidate { kind: Kind::RandomStops, request }
+    let options = initial_state::quick(options.rate, options.deterioration.unwrap_or(true), options.seed);
+    Candidate { kind: Kind::RandomStops, request: FitSpec::Classical(options) }
 }
 
 /// All candidates for data like these: those that are usually good or quick before the others.

@@ -44,6 +44,7 @@ pub(super) fn selection(
         candidates,
         single: None,
         warm_up: None,
+        found_states: None,
         one_loop: false,
         dropped: Vec::new(),
     }

@@ -158,6 +158,9 @@ fn scaled(record: &Record, share: f64, origin: f64) -> Result<Record> {
     if let Some(time) = record.time() {
         scaled = scaled.with_time(time.to_vec())?;
     }
+    if let Some(lead_in) = record.lead_in() {
+        scaled = scaled.with_lead_in(lead_in.iter().map(|x| origin + share * (*x - origin)).collect())?;
+    }
     if let Some(rate) = record.given_rate() {
         scaled = scaled.with_given_rate(rate.iter().map(|rate| rate * share).collect())?;
     }

@@ -134,7 +134,7 @@ fn fit_readout(
     let used = || data.records().iter().filter(|record| record.scored() > 0);
     let drives: Vec<Drive> =
         used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
-    let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+    let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
     let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
     let sums = fold_sums(
         &Columns { architecture: &architecture, parameters: &parameters, output: None },

@@ -1,0 +1,141 @@
+//! How the records begin: in the virgin state, after a warm-up, or in states that are found for them.
+//!
+//! Each way is judged by the validation error of a candidate that takes a moment to fit. The virgin state is
+//! kept unless another way is better by 10 %.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use crate::data::initial_state::InitialState;
+use crate::data::record::{Dataset, Record};
+use crate::error::Result;
+use crate::fit::auto::candidates::Candidate;
+use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::HeldOut;
+use crate::fit::auto::warm_up::{WORTH, better};
+use crate::fit::auto::work::Work;
+use crate::fit::initial_state::{Alternation, known, on_fold};
+use crate::law::facts::Origin;
+use crate::model::selection::{FoundStates, WarmUp};
+use crate::options::auto::AutoOptions;
+use crate::validation::Fold;
+
+/// Data whose records begin as it was chosen, and their folds.
+pub(super) struct Beginning {
+    pub data: Dataset,
+    pub folds: Vec<Fold>,
+    pub warm_up: WarmUp,
+    /// The records have other lead-ins than before.
+    pub is_changed: bool,
+    /// Why states were found, if cross-validation decided it.
+    pub found: Option<FoundStates>,
+}
+
+/// The data in the initial state that the user chose, if it is a known one.
+///
+/// # Errors
+/// None for data with an input.
+pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<Cow<'d, Dataset>> {
+    match options.initial_state {
+        None | Some(InitialState::Unknown) => Ok(Cow::Borrowed(data)),
+        Some(state) => known(data, state, Origin::OfData).map(Cow::Owned),
+    }
+}
+
+impl Beginning {
+    /// How the records of these data begin.
+    pub fn of(
+        quick: &Candidate,
+        data: &Dataset,
+        folds: Vec<Fold>,
+        options: &AutoOptions,
+        work: &Work,
+    ) -> Self {
+        let has_lead_in = |record: &Record| record.lead_in().is_some();
+        let is_open = options.initial_state.is_none() && !data.records().iter().any(has_lead_in);
+        let warm_up = match options.warm_up {
+            Some(rows) => WarmUp::decided(rows),
+            None => better(quick.clone(), data, &folds, work),
+        };
+        let unknown = match (options.initial_state, options.warm_up) {
+            (Some(InitialState::Unknown), _) => found(quick, data, &folds, work),
+            (None, None) if is_open => {
+                found(quick, data, &folds, work).filter(|found| found.is_worth(warm_up))
+            }
+            _ => None,
+        };
+        let Some(unknown) = unknown else {
+            return Self { data: data.clone(), folds, warm_up, is_changed: false, found: None };
+        };
+        Self {
+            data: unknown.data,
+            folds: unknown.folds,
+            warm_up: if is_open { WarmUp::decided(0) } else { warm_up },
+            is_changed: true,
+            found: unknown.errors.filter(|_| is_open),
+        }
+    }
+
+    /// The data with the lead-ins of these records, which are some of their rows.
+    ///
+    /// # Errors
+    /// None for lead-ins that records have.
+    pub fn of_all<'d>(&self, all: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        if !self.is_changed {
+            return Ok(Cow::Borrowed(all));
+        }
+        let records = self.data.records();
+        let of_record = |index: usize, _: &Record| records[index].lead_in().unwrap_or_default().to_vec();
+        all.clone().with_lead_ins(of_record).map(Cow::Owned)
+    }
+}
+
+/// Data and folds with the lead-ins that were found.
+struct Unknown {
+    data: Dataset,
+    folds: Vec<Fold>,
+    /// Errors on the folds; `None` without folds.
+    errors: Option<FoundStates>,
+}
+
+impl Unknown {
+    /// True if it is better than the virgin state by 10 %, and no worse than a warm-up that is.
+    fn is_worth(&self, warm_up: WarmUp) -> bool {
+        let Some(FoundStates { found_percent, virgin_percent }) = self.errors else { return false };
+        let ratio = found_percent / virgin_percent;
+        let of_warm_up = warm_up.without_percent.zip(warm_up.with_percent);
+        ratio < WORTH && of_warm_up.is_none_or(|(without, with)| ratio <= without / with)
+    }
+}
+
+/// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
+/// or the quick candidate cannot be fitted.
+fn found(quick: &Candidate, data: &Dataset, folds: &[Fold], work: &Work) -> Option<Unknown> {
+    let fit = |data: &Dataset| work.fit(quick, data, 0);
+    let of_fold = |fold: &Fold| -> Option<(Fold, Vec<f64>, Vec<f64>)> {
+        let found = Alternation::of(&fold.train, &fit).ok()?;
+        let (virgin, fitted) = found.models?;
+        let begun = on_fold(fold, found.data).ok()?;
+        let (before, after) = (fold.predicted_by(&virgin).ok()?, begun.predicted_by(&fitted).ok()?);
+        Some((begun, before, after))
+    };
+    let of_folds: Vec<(Fold, Vec<f64>, Vec<f64>)> =
+        folds.par_iter().map(of_fold).collect::<Option<Vec<_>>>()?;
+    let all = Alternation::of(data, &fit).ok()?;
+    all.models?;
+    let (mut begun, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
+    for (fold, virgin, fitted) in of_folds {
+        begun.push(fold);
+        before.push(virgin);
+        after.push(fitted);
+    }
+    let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
+    let percent = |predicted: &[Vec<f64>]| {
+        let score = Score::of(predicted, &held_out, |_| true);
+        100.0 * (0.5 * score.sum()).exp()
+    };
+    let errors = (!held_out.is_empty())
+        .then(|| FoundStates { found_percent: percent(&after), virgin_percent: percent(&before) });
+    Some(Unknown { data: all.data, folds: begun, errors })
+}
