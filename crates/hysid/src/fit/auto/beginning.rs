@@ -12,13 +12,14 @@ use crate::data::record::{Dataset, Record};
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::score::Score;
-use crate::fit::auto::trial::HeldOut;
+use crate::fit::auto::trial::{Bench, HeldOut, Trial};
 use crate::fit::auto::warm_up::{WORTH, better};
 use crate::fit::auto::work::Work;
-use crate::fit::initial_state::{Alternation, known, on_fold};
+use crate::fit::initial_state::{self, found_on, known};
 use crate::law::facts::Origin;
 use crate::model::selection::{FoundStates, WarmUp};
 use crate::options::auto::AutoOptions;
+use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 
 /// Data whose records begin as it was chosen, and their folds.
@@ -59,9 +60,9 @@ impl Beginning {
             None => better(quick.clone(), data, &folds, work),
         };
         let unknown = match (options.initial_state, options.warm_up) {
-            (Some(InitialState::Unknown), _) => found(quick, data, &folds, work),
+            (Some(InitialState::Unknown), _) => found(quick, data, &folds, options, work),
             (None, None) if is_open => {
-                found(quick, data, &folds, work).filter(|found| found.is_worth(warm_up))
+                found(quick, data, &folds, options, work).filter(|found| found.is_worth(warm_up))
             }
             _ => None,
         };
@@ -95,7 +96,7 @@ impl Beginning {
 struct Unknown {
     data: Dataset,
     folds: Vec<Fold>,
-    /// Errors on the folds; `None` without folds.
+    /// Errors on the folds; `None` where they are those of the virgin state, and without folds.
     errors: Option<FoundStates>,
 }
 
@@ -111,31 +112,34 @@ impl Unknown {
 
 /// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
 /// or the quick candidate cannot be fitted.
-fn found(quick: &Candidate, data: &Dataset, folds: &[Fold], work: &Work) -> Option<Unknown> {
-    let fit = |data: &Dataset| work.fit(quick, data, 0);
-    let of_fold = |fold: &Fold| -> Option<(Fold, Vec<f64>, Vec<f64>)> {
-        let found = Alternation::of(&fold.train, &fit).ok()?;
-        let (virgin, fitted) = found.models?;
-        let begun = on_fold(fold, found.data).ok()?;
-        let (before, after) = (fold.predicted_by(&virgin).ok()?, begun.predicted_by(&fitted).ok()?);
-        Some((begun, before, after))
+fn found(
+    quick: &Candidate,
+    data: &Dataset,
+    folds: &[Fold],
+    options: &AutoOptions,
+    work: &Work,
+) -> Option<Unknown> {
+    let is_to_stop = || work.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let (rate, seed) = (options.rate, options.seed);
+    let begun: Vec<Fold> =
+        folds.par_iter().map(|fold| found_on(fold, rate, seed, stop).ok()?).collect::<Option<_>>()?;
+    let data = initial_state::found(data, rate, seed, stop).ok()??;
+    let percent = |folds: &[Fold]| -> Option<f64> {
+        let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
+        let mut trials = [Trial::of(quick.clone())];
+        Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &[0], 0);
+        let [trial] = &trials;
+        let score = (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &held_out, |_| true))?;
+        Some(100.0 * (0.5 * score.sum()).exp())
     };
-    let of_folds: Vec<(Fold, Vec<f64>, Vec<f64>)> =
-        folds.par_iter().map(of_fold).collect::<Option<Vec<_>>>()?;
-    let all = Alternation::of(data, &fit).ok()?;
-    all.models?;
-    let (mut begun, mut before, mut after) = (Vec::new(), Vec::new(), Vec::new());
-    for (fold, virgin, fitted) in of_folds {
-        begun.push(fold);
-        before.push(virgin);
-        after.push(fitted);
-    }
-    let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
-    let percent = |predicted: &[Vec<f64>]| {
-        let score = Score::of(predicted, &held_out, |_| true);
-        100.0 * (0.5 * score.sum()).exp()
+    let has_past = |record: &Record| !record.lead_in_rows().is_empty();
+    let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));
+    let errors = || {
+        let (found_percent, virgin_percent) = (percent(&begun)?, percent(folds)?);
+        Some(FoundStates { found_percent, virgin_percent })
     };
-    let errors = (!held_out.is_empty())
-        .then(|| FoundStates { found_percent: percent(&after), virgin_percent: percent(&before) });
-    Some(Unknown { data: all.data, folds: begun, errors })
+    // Folds with the same lead-ins as before have the same errors.
+    let errors = is_changed.then(errors).flatten();
+    Some(Unknown { data, folds: begun, errors })
 }

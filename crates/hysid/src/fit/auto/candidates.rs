@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::fit::initial_state;
+use crate::fit::initial_state::QUICK;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -164,8 +164,15 @@ impl Candidate {
 
 /// A candidate that takes a moment to fit: few random stops.
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
-    let options = initial_state::quick(options.rate, options.deterioration.unwrap_or(true), options.seed);
-    Candidate { kind: Kind::RandomStops, request: FitSpec::Classical(options) }
+    let request = FitSpec::Classical(ClassicalOptions {
+        rate: options.rate,
+        deterioration: options.deterioration.or(QUICK.deterioration),
+        operators: Some(QUICK.stops),
+        hidden: QUICK.hidden,
+        seed: options.seed,
+        ..ClassicalOptions::of(ClassicalModel::RandomStops)
+    });
+    Candidate { kind: Kind::RandomStops, request }
 }
 
 /// All candidates for data like these: those that are usually good or quick before the others.

@@ -248,7 +248,7 @@ impl<'a> Fitting<'a> {
         }
         let is_to_stop = || observer.is_to_stop();
         let stop = StopCheck::new(&is_to_stop);
-        let folds = wanted_of(&self.asked).on_folds(self.folds(), observer)?;
+        let folds = wanted_of(&self.asked).on_folds(self.folds(), stop)?;
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
         let seen: Vec<Transformed> = folds
             .iter()

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
@@ -98,18 +98,7 @@ pub(crate) fn fit_random_stops_until(
         if best.is_some() && stop.is_asked() {
             break;
         }
-        let architecture = Architecture {
-            inputs: data.names().inputs.len(),
-            rate: options.rate.is_some(),
-            stops: options.stops,
-            deterioration,
-            linear: true,
-            relaxation: 0,
-            hidden,
-            direct: true,
-            constant: true,
-        };
-        architecture.check()?;
+        let architecture = architecture(data, options, deterioration, hidden)?;
         let candidate = match fit_readout(data, options, &scaling, architecture, stop) {
             Err(Error::Stopped) if best.is_some() => break,
             candidate => candidate?,
@@ -121,6 +110,74 @@ pub(crate) fn fit_random_stops_until(
         }
     }
     Ok(best.expect("at least one candidate"))
+}
+
+/// Random stops whose output weights are not known yet.
+pub(crate) struct Drawn {
+    architecture: Architecture,
+    parameters: Vec<f64>,
+}
+
+impl Drawn {
+    /// The stops for these data, with the first of the architectures that the options leave open.
+    ///
+    /// # Errors
+    /// Numbers of neurons that no network has.
+    pub fn of(data: &Dataset, options: &RandomStopsOptions) -> Result<Self> {
+        let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
+        let architecture = architecture(data, options, deterioration, hidden)?;
+        let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
+        Ok(Self { architecture, parameters })
+    }
+
+    /// Number of output weights.
+    pub fn features(&self) -> usize {
+        self.architecture.output_weights()
+    }
+
+    /// The sums of the output layer's features over the rows of a record.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed, or a stop.
+    pub fn sums(
+        &self,
+        record: &Record,
+        scaling: &Scaling,
+        rate: Option<RateMethod>,
+        stop: StopCheck<'_>,
+    ) -> Result<Sums> {
+        let Self { architecture, parameters } = self;
+        let drives = [scaling.drive(record, architecture, rate)?];
+        let targets = [scaling.target(record)];
+        let columns = Columns { architecture, parameters, output: None };
+        let gram = GramOverRecords { columns, drives: &drives, targets: &targets, stop }.gram();
+        if stop.is_asked() {
+            return Err(Error::Stopped);
+        }
+        Ok(Sums::new(gram, columns.count() - 1, record.scored()))
+    }
+}
+
+/// The architecture of random stops.
+fn architecture(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    deterioration: bool,
+    hidden: usize,
+) -> Result<Architecture> {
+    let architecture = Architecture {
+        inputs: data.names().inputs.len(),
+        rate: options.rate.is_some(),
+        stops: options.stops,
+        deterioration,
+        linear: true,
+        relaxation: 0,
+        hidden,
+        direct: true,
+        constant: true,
+    };
+    architecture.check()?;
+    Ok(architecture)
 }
 
 /// Draws the stops, and finds the output weights.
