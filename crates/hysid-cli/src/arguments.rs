@@ -8,6 +8,8 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use hysid::Model;
+use hysid::data::initial_state::InitialState;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::BAND_PROBABILITIES;
 use hysid::options::ModelName;
@@ -122,6 +124,40 @@ pub struct ColumnOptions {
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
     #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
+}
+
+/// In which state the memory of a model is at the beginning of each record.
+#[derive(Debug, Clone, Args)]
+pub struct BeginningOptions {
+    /// State of the memory at the beginning of each record [default: as trained]
+    ///
+    /// One of virgin, saturated-up (after a visit of the upper end of the trained input range), saturated-down and
+    /// demagnetised. The default is the state of most training records.
+    #[arg(long, value_name = "NAME", value_parser = known_state)]
+    pub initial_state: Option<InitialState>,
+}
+
+impl BeginningOptions {
+    /// The model with this initial state.
+    ///
+    /// # Errors
+    /// None for a state that the command line takes.
+    pub fn of(&self, model: Model) -> hysid::Result<Model> {
+        match self.initial_state {
+            Some(state) => model.with_initial_state(state),
+            None => Ok(model),
+        }
+    }
+}
+
+fn known_state(name: &str) -> Result<InitialState, String> {
+    let state: Result<InitialState, hysid::Error> = name.parse();
+    let advice = || format!("choose one of {}", InitialState::known().join(", "));
+    match state {
+        Ok(InitialState::Unknown) => Err(format!("{}: only a fit finds an unknown state", advice())),
+        Ok(state) => Ok(state),
+        Err(_) => Err(advice()),
+    }
 }
 
 /// How the units of a table and of a model are taken.
@@ -351,6 +387,9 @@ pub struct Simulate {
     /// probability if the data resemble those of the training.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
+    /// Where the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -372,6 +411,9 @@ pub struct Evaluate {
     /// Print the share of measured outputs within the prediction band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
+    /// Where the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,

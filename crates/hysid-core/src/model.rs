@@ -474,17 +474,20 @@ impl Model {
         Ok(self)
     }
 
-    /// The training data with the lead-ins that their records had in training.
+    /// The training data with the lead-ins that their records had in training, where these differ.
     ///
     /// # Errors
     /// None for a model that was fitted or read from a file.
-    pub fn as_trained(&self, data: &Dataset) -> Result<Dataset> {
+    pub fn as_trained<'d>(&self, data: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        if self.provenance.lead_ins.is_empty() {
+            return Ok(Cow::Borrowed(data));
+        }
         let of_record = |_: usize, record: &Record| {
             let mut known = self.provenance.lead_ins.iter();
             let known = known.find(|known| known.record == record.name());
             known.map_or(&self.lead_in, |known| &known.lead_in).clone()
         };
-        data.clone().with_lead_ins(of_record)
+        data.clone().with_lead_ins(of_record).map(Cow::Owned)
     }
 
     /// Simulates from the initial state of the model: the output at each sample of the input `x`, both in the units of the

@@ -215,7 +215,10 @@ fn whole_blocks_and_steps_begin_alike_and_a_record_can_begin_otherwise() {
         assert_eq!(bits(&again.simulate(&unseen).unwrap()), bits(&whole), "{what}");
         assert!(model.to_json().contains("\"version\": 6,"), "{what}");
         let text = virgin.to_json();
-        assert!(text.contains("\"version\": 5,") && !text.contains("lead_in") && !text.contains("initial_state"), "{what}");
+        assert!(
+            text.contains("\"version\": 5,") && !text.contains("lead_in") && !text.contains("initial_state"),
+            "{what}"
+        );
     }
 }
 
@@ -248,7 +251,8 @@ fn gradients_are_right_behind_a_lead_in() {
     let (scaling, architecture) = (Scaling::of(&data, rate).unwrap(), options.architecture(&data).unwrap());
     let objective = Objective::new(&data, &scaling, architecture, &options).unwrap();
     let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(7);
-    let mut point: Vec<f64> = (0..objective.layout().len()).map(|_| generator.random::<f64>() - 0.5).collect();
+    let mut point: Vec<f64> =
+        (0..objective.layout().len()).map(|_| generator.random::<f64>() - 0.5).collect();
     objective.layout().ln_beta.clone().for_each(|index| point[index] += 6.0);
     objective.layout().stop_weights.clone().for_each(|index| point[index] *= 8.0);
     let value = objective.value(&point);
@@ -307,7 +311,7 @@ fn a_validation_does_not_look_at_what_is_held_out() {
     let validation = cross_validate(&data, &request, 3, &mut |_| ControlFlow::Continue(())).unwrap();
     let (kept, held) = data.partition(|record| record < 2);
     let model = fitted(&kept, &request);
-    assert_eq!(model.lead_in(), up);
+    assert_eq!(model.lead_in(), [kept.input_range(0).1]);
     let wrong = model.evaluate(&held).unwrap();
     assert_eq!(validation.folds[2].unseen, wrong);
     let begun = model.with_initial_state(InitialState::SaturatedDown).unwrap();
@@ -324,11 +328,12 @@ fn a_forecast_begins_with_the_state_of_its_record() {
     let error = |state: &str| {
         let request = request(serde_json::json!({ "model": "preisach", "initial_state": state }));
         let validation = cross_validate(&data, &request, 5, &mut |_| ControlFlow::Continue(())).unwrap();
-        validation.unseen_nrmse_std_percent.unwrap()
+        let forecasts =
+            validation.folds.iter().filter(|fold| fold.held_out.ends_with("from what came before"));
+        forecasts.map(|fold| fold.unseen.nrmse_std_percent.unwrap().ln()).sum::<f64>()
     };
     let (found, told, virgin) = (error("unknown"), error("saturated-up"), error("virgin"));
-    assert!(found < 0.7 * virgin, "{found} % found, {virgin} % from the virgin state");
-    assert!(found < 1.2 * told, "{found} % found, {told} % told");
+    assert!(found < told + 0.1 && found < virgin - 0.5, "{found} found, {told} told, {virgin} virgin");
 }
 
 #[test]

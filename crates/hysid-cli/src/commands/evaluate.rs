@@ -20,7 +20,7 @@ use crate::units::Factors;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
-    let model = read_model(&arguments.model)?;
+    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data)?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
     let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;

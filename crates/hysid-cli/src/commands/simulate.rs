@@ -25,7 +25,7 @@ const BUFFERED: usize = 1 << 20;
 
 /// Runs the command.
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
-    let model = read_model(&arguments.model)?;
+    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data)?;
     let mut names = vec![format!("{}_model", model.names().output)];
     if arguments.band.is_some() {

@@ -155,7 +155,10 @@ mod tests {
         let tried = lead_ins_tried((0.0, 9.0));
         assert_eq!(tried.len(), 11);
         assert_eq!(tried[..3], [vec![], vec![9.0], vec![0.0]]);
-        assert_eq!((&tried[3][..], &tried[6][..], &tried[7][..]), (&[9.0, 1.0][..], &[9.0, 4.0][..], &[0.0, 5.0][..]));
+        assert_eq!(
+            (&tried[3][..], &tried[6][..], &tried[7][..]),
+            (&[9.0, 1.0][..], &[9.0, 4.0][..], &[0.0, 5.0][..])
+        );
         assert_eq!(in_words(&tried[1], (0.0, 9.0)), "saturated-up");
         assert_eq!(in_words(&tried[2], (0.0, 9.0)), "saturated-down");
         assert_eq!(in_words(&tried[3], (0.0, 9.0)), "after 9, then 1");

@@ -360,8 +360,12 @@ mod tests {
     #[test]
     fn every_row_follows_the_formulas() {
         let data = data();
-        let shaping =
-            InputOptions { companding: Some(0.1), rate_companding: Some(0.5), history: true, ..InputOptions::default() };
+        let shaping = InputOptions {
+            companding: Some(0.1),
+            rate_companding: Some(0.5),
+            history: true,
+            ..InputOptions::default()
+        };
         let rate = Some(RateMethod::Backward);
         let preprocessing = shaping.of(&data, rate, Origin::OfData).unwrap();
         let (seen, method) = preprocessing.data(&data, rate).unwrap();

@@ -166,8 +166,8 @@ impl WarmUp {
     }
 }
 
-/// Effect of initial states that were found for the records: cross-validated errors of a quick model, in
-/// percent of the standard deviation.
+/// Effect of initial states that were found for the records: cross-validated errors of the better of two quick
+/// models, in percent of the standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FoundStates {

@@ -100,6 +100,15 @@ impl FitSpec {
         }
     }
 
+    /// Initial state of every record; `None` if it is not decided.
+    pub fn initial_state(&self) -> Option<InitialState> {
+        match self {
+            Self::Network(options) => options.shaping.initial_state,
+            Self::Classical(options) => options.shaping.initial_state,
+            Self::Auto(options) => options.initial_state,
+        }
+    }
+
     /// The same with another initial state of every record.
     pub fn with_initial_state(&self, state: Option<InitialState>) -> Self {
         let mut spec = self.clone();

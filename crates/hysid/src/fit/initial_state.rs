@@ -1,7 +1,7 @@
 //! The initial state of the records that a model is fitted to: known, or found for each record.
 //!
-//! An unknown state is found with a model that takes a moment to fit, a network of few random stops: each record
-//! gets the lead-in with which the model has the lowest error on all records together.
+//! An unknown state is found with a model that takes a moment to fit: each record gets the lead-in with which the
+//! model has the lowest error on all records together.
 
 mod search;
 
@@ -19,12 +19,15 @@ use crate::options::classical::ClassicalModel;
 use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 
-/// Rows with an output that the quick model is fitted to, at most.
+/// Rows with an output that states are found from, at most.
 const MOST_ROWS: usize = 6000;
 
-/// The quick model.
+/// A network that takes a moment to fit.
 pub(crate) const QUICK: RandomStopsOptions =
     RandomStopsOptions { stops: 60, hidden: Some(0), rate: None, deterioration: Some(true), seed: 1 };
+
+/// Intervals of each axis of a Preisach plane that takes a moment to fit.
+pub(crate) const QUICK_INTERVALS: usize = search::INTERVALS;
 
 /// The initial state that is asked for, and what is needed to find it.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +35,7 @@ pub(crate) struct Wanted {
     pub state: Option<InitialState>,
     /// Where the model measures its input from.
     pub origin: Origin,
-    /// Rate and seed of the quick model.
+    /// Rate and seed of the model that an unknown state is found with.
     pub rate: Option<RateMethod>,
     pub seed: u64,
 }
@@ -42,7 +45,7 @@ impl Wanted {
     /// stop; an unknown state is then that which was found so far.
     ///
     /// # Errors
-    /// Data to which the quick model cannot be fitted.
+    /// Data from which no model can be identified, a rate that cannot be computed.
     pub fn of<'d>(&self, data: &'d Dataset, observer: &mut Observer<'_>) -> Result<Cow<'d, Dataset>> {
         match self.state {
             None => Ok(Cow::Borrowed(data)),
@@ -61,7 +64,7 @@ impl Wanted {
     /// stop, there are none.
     ///
     /// # Errors
-    /// Data to which the quick model cannot be fitted.
+    /// Data from which no model can be identified, a rate that cannot be computed.
     pub fn on_folds(&self, folds: Vec<Fold>, stop: StopCheck<'_>) -> Result<Vec<Fold>> {
         if self.state != Some(InitialState::Unknown) {
             return Ok(folds);
@@ -87,7 +90,7 @@ pub(crate) fn known(data: &Dataset, state: InitialState, measured_from: Origin) 
 /// The data with the lead-ins that are found for the records; `None` once stopped.
 ///
 /// # Errors
-/// Data to which the quick model cannot be fitted.
+/// Data from which no model can be identified, a rate that cannot be computed.
 pub(crate) fn found(
     data: &Dataset,
     rate: Option<RateMethod>,

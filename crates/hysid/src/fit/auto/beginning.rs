@@ -1,7 +1,7 @@
 //! How the records begin: in the virgin state, after a warm-up, or in states that are found for them.
 //!
-//! Each way is judged by the validation error of a candidate that takes a moment to fit. The virgin state is
-//! kept unless another way is better by 10 %.
+//! Each way is judged by the validation error of candidates that take a moment to fit. The virgin state is kept
+//! unless another way is better by 10 %.
 
 use std::borrow::Cow;
 
@@ -15,10 +15,12 @@ use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, HeldOut, Trial};
 use crate::fit::auto::warm_up::{WORTH, better};
 use crate::fit::auto::work::Work;
-use crate::fit::initial_state::{self, found_on, known};
+use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
 use crate::law::facts::Origin;
 use crate::model::selection::{FoundStates, WarmUp};
+use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::stop_check::StopCheck;
 use crate::validation::Fold;
 
@@ -110,6 +112,16 @@ impl Unknown {
     }
 }
 
+/// A Preisach plane that takes a moment to fit, for data of one input.
+fn relays(data: &Dataset, options: &AutoOptions) -> Option<Candidate> {
+    let preisach = ClassicalOptions {
+        operators: Some(QUICK_INTERVALS),
+        seed: options.seed,
+        ..ClassicalOptions::of(ClassicalModel::Preisach)
+    };
+    (data.names().inputs.len() == 1).then(|| Candidate::alone(&FitSpec::Classical(preisach)))
+}
+
 /// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
 /// or the quick candidate cannot be fitted.
 fn found(
@@ -127,11 +139,14 @@ fn found(
     let data = initial_state::found(data, rate, seed, stop).ok()??;
     let percent = |folds: &[Fold]| -> Option<f64> {
         let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
-        let mut trials = [Trial::of(quick.clone())];
-        Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &[0], 0);
-        let [trial] = &trials;
-        let score = (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &held_out, |_| true))?;
-        Some(100.0 * (0.5 * score.sum()).exp())
+        // A magnet is not seen by stops alone, nor deterioration by relays.
+        let judges = std::iter::once(quick.clone()).chain(relays(&data, options));
+        let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
+        let places: Vec<usize> = (0..trials.len()).collect();
+        Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
+        let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
+        let scores = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).sum());
+        scores.min_by(f64::total_cmp).map(|score| 100.0 * (0.5 * score).exp())
     };
     let has_past = |record: &Record| !record.lead_in_rows().is_empty();
     let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));

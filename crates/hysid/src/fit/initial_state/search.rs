@@ -1,30 +1,35 @@
-//! Search for the lead-in of each record: that with which a network of random stops has the lowest error on all
-//! records together.
+//! Search for the lead-in of each record: that with which a model that is linear in its weights has the lowest
+//! error on all records together.
 //!
 //! ```text
 //! J(l_1 .. l_R) = min_w [ ‖Φ(l) w - y‖²/N + λ ‖w‖² ]                       theory.md (11.11)
 //! ```
 //!
-//! `l_r` is the lead-in of record `r`, one of those tried, and `Φ` the terms of the output of the network, a
-//! row for each of the `N` rows with an output. The stops are drawn once, and the sums of each record with each
-//! lead-in are computed once; then `J` costs the solution of one small system. `J` is lowered record by record,
-//! until no record changes or after four rounds, from several beginnings: all records virgin, all after the
-//! upper end of the range, all after the lower end.
+//! `l_r` is the lead-in of record `r`, one of those tried, and `Φ` has a row of features for each of the `N` rows
+//! with an output, in scaled units: the relays of a Preisach plane of few cells, which represent the memory of
+//! magnets and of friction alike, and a network of few random stops, which take rate, further inputs and
+//! deterioration. The sums of each record with each lead-in are computed once; then `J` costs the solution of one
+//! small system. `J` is lowered record by record, until no record changes or after four rounds, from several
+//! beginnings: all records virgin, all after the upper end of the range, all after the lower end.
 
 use rayon::prelude::*;
 
 use crate::data::initial_state::lead_ins_tried;
 use crate::data::rate::RateMethod;
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
-use crate::fit::law::linear::Sums;
+use crate::fit::initial_state::QUICK;
+use crate::fit::law::linear::{Gatherer, Sums};
+use crate::fit::law::preisach::Problem;
 use crate::fit::network::random_stops::{Drawn, RandomStopsOptions};
 use crate::law::facts::Origin;
+use crate::law::series::Series;
 use crate::model::input_transform::Transformed;
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::Penalty;
 use crate::options::input_options::InputOptions;
 use crate::stop_check::StopCheck;
+use crate::validation::RowFolds;
 
 /// Rounds over all records, at most.
 const ROUNDS: usize = 4;
@@ -32,8 +37,12 @@ const ROUNDS: usize = 4;
 /// Of the lead-ins tried, those from which the search begins with all records: virgin, and either end.
 const BEGINNINGS: std::ops::Range<usize> = 0..3;
 
+/// Random stops, and intervals of each axis of the Preisach plane.
+const STOPS: usize = 30;
+pub(super) const INTERVALS: usize = 12;
+
 /// Penalty `λ`, in scaled units. Designed.
-const RIDGE: f64 = 1e-6;
+const RIDGE: f64 = 1e-5;
 
 /// Share of its mean error by which a record must lower `J` for a lead-in in place of one tried before it.
 /// Designed.
@@ -81,21 +90,24 @@ struct Before {
     most_frequent: usize,
 }
 
-/// What the output of the network is made of.
+/// What the output is made of.
 struct Features {
     rate: Option<RateMethod>,
     scaling: Scaling,
     drawn: Drawn,
+    relays: Problem,
     penalty: Penalty,
 }
 
 impl Features {
     fn of(data: &Dataset, rate: Option<RateMethod>, seed: u64) -> Result<Self> {
         let seen = Transformed::of(data, &InputOptions::default(), rate, Origin::OfData)?;
-        let options = RandomStopsOptions { rate: seen.rate, seed, ..super::QUICK };
+        let options = RandomStopsOptions { rate: seen.rate, seed, stops: STOPS, ..QUICK };
         let drawn = Drawn::of(&seen.data, &options)?;
-        let penalty = Penalty::ridge((0..drawn.features()).map(|i| f64::from(u8::from(i > 0))));
-        Ok(Self { rate, scaling: Scaling::of(&seen.data, seen.rate)?, drawn, penalty })
+        let relays = Problem::of(&Series::all(&seen.data, None)?, seen.data.input_range(0), INTERVALS);
+        let features = drawn.features() + relays.features() - 1;
+        let penalty = Penalty::ridge((0..features).map(|i| f64::from(u8::from(i > 0))));
+        Ok(Self { rate, scaling: Scaling::of(&seen.data, seen.rate)?, drawn, relays, penalty })
     }
 
     /// The sums of each record with each of the lead-ins.
@@ -103,8 +115,7 @@ impl Features {
         let with = |lead_in: &Vec<f64>| -> Result<Vec<Sums>> {
             let begun = data.clone().with_lead_ins(|_, _| lead_in.clone())?;
             let seen = Transformed::of(&begun, &InputOptions::default(), self.rate, Origin::OfData)?;
-            let sums = |record| self.drawn.sums(record, &self.scaling, seen.rate, stop);
-            seen.data.records().iter().map(sums).collect()
+            seen.data.records().iter().map(|record| self.sums_of(record, seen.rate, stop)).collect()
         };
         let by_lead_in: Vec<Vec<Sums>> = tried.par_iter().map(with).collect::<Result<_>>()?;
         let mut columns: Vec<_> = by_lead_in.into_iter().map(Vec::into_iter).collect();
@@ -112,13 +123,28 @@ impl Features {
         Ok(records.map(|_| columns.iter_mut().filter_map(Iterator::next).collect()).collect())
     }
 
+    fn sums_of(&self, record: &Record, rate: Option<RateMethod>, stop: StopCheck<'_>) -> Result<Sums> {
+        let stops = self.drawn.rows(record, &self.scaling, rate, stop)?;
+        let relays = self.relays.rows(&Series::of(record, None)?, &self.scaling, stop)?;
+        let features = self.drawn.features();
+        let mut gatherer = Gatherer::new(features + self.relays.features() - 1, &RowFolds::one(), stop);
+        let mut both = vec![0.0; features + self.relays.features() - 1];
+        for (row, of_relays) in relays.iter().enumerate() {
+            both.iter_mut().zip(&stops[..features]).for_each(|(value, column)| *value = column[row]);
+            // The first feature of the relays is the constant too.
+            both[features..].copy_from_slice(&of_relays[1..]);
+            gatherer.add(0, &both, stops[features][row]);
+        }
+        Ok(gatherer.finish()?.into_total())
+    }
+
     /// `J`; `None` once stopped.
     fn objective(&self, total: &Sums, stop: StopCheck<'_>) -> Option<f64> {
         let mut penalised = total.quadratic();
         penalised.penalise(&self.penalty, RIDGE);
         let weights = penalised.minimum(stop)?;
-        let ridge: f64 = weights[1..].iter().map(|weight| weight * weight).sum();
-        Some(total.mean_square_error(&weights) + RIDGE * ridge)
+        let squares: f64 = weights[1..].iter().map(|weight| weight * weight).sum();
+        Some(total.mean_square_error(&weights) + RIDGE * squares)
     }
 }
 
@@ -138,7 +164,8 @@ impl Search<'_> {
             Some(before) => vec![before.most_frequent],
             None => BEGINNINGS.collect(),
         };
-        let ends = beginnings.into_par_iter().map(|beginning| self.descended(vec![beginning; self.sums.len()]));
+        let ends =
+            beginnings.into_par_iter().map(|beginning| self.descended(vec![beginning; self.sums.len()]));
         let ends: Vec<(f64, Vec<usize>)> = ends.collect::<Option<_>>()?;
         ends.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, chosen)| chosen)
     }

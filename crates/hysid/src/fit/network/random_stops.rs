@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
-use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network, RowsOverRecords};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
@@ -135,26 +135,24 @@ impl Drawn {
         self.architecture.output_weights()
     }
 
-    /// The sums of the output layer's features over the rows of a record.
+    /// The features of the output layer and then the target, column by column, of the rows of a record that
+    /// have an output.
     ///
     /// # Errors
     /// A rate that cannot be computed, or a stop.
-    pub fn sums(
+    pub fn rows(
         &self,
         record: &Record,
         scaling: &Scaling,
         rate: Option<RateMethod>,
         stop: StopCheck<'_>,
-    ) -> Result<Sums> {
+    ) -> Result<Vec<Vec<f64>>> {
         let Self { architecture, parameters } = self;
         let drives = [scaling.drive(record, architecture, rate)?];
         let targets = [scaling.target(record)];
         let columns = Columns { architecture, parameters, output: None };
-        let gram = GramOverRecords { columns, drives: &drives, targets: &targets, stop }.gram();
-        if stop.is_asked() {
-            return Err(Error::Stopped);
-        }
-        Ok(Sums::new(gram, columns.count() - 1, record.scored()))
+        let rows = RowsOverRecords { columns, first: 0, drives: &drives, targets: &targets, stop }.columns();
+        if stop.is_asked() { Err(Error::Stopped) } else { Ok(rows) }
     }
 }
 
