@@ -89,6 +89,9 @@ pub enum Error {
         /// The largest.
         most: f64,
     },
+    /// A number of data sets of ten that no band is made for.
+    #[error("a band for {0} of ten data sets: choose 5 to 9 of ten")]
+    DataSetsOfTen(usize),
     /// A model file that cannot be used.
     #[error("{}", one_line(.0))]
     ModelFile(String),

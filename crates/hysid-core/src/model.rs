@@ -43,7 +43,7 @@ use crate::options::network::Regularisation;
 use crate::options::{FitSpec, ModelName};
 use crate::termination::Termination;
 
-pub use band::{BAND_PROBABILITIES, Band, Prediction};
+pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
@@ -524,30 +524,34 @@ impl Model {
         Simulation::new(self, None)
     }
 
-    /// The same with a prediction band of this probability.
+    /// The same with a prediction band, as of [`Model::predict`].
     ///
     /// # Errors
-    /// As [`Model::predict`]: a probability outside its bounds, and a model without a band.
-    pub fn simulation_with_band(&self, probability: f64) -> Result<Simulation<'_>> {
-        Ok(Simulation::new(self, Some((self.checked_band(probability)?, probability))))
+    /// A level outside its bounds, and a model without a band.
+    pub fn simulation_with_band(&self, level: impl Into<BandLevel>) -> Result<Simulation<'_>> {
+        let level = level.into();
+        Ok(Simulation::new(self, Some((self.checked_band(level)?, level))))
     }
 
-    /// Simulates a record as [`Model::simulate`], with a band that contains the measured output with this
-    /// probability, 0.5 to 0.99, if new data resemble those held out in training.
+    /// Simulates a record as [`Model::simulate`], with a band that contains the measured output in this share of
+    /// the rows, 0.5 to 0.99, if new data resemble those held out in training. That holds on average over data
+    /// sets: in one it may be more or less. With a [`BandLevel`] the band is one that contains at least this share
+    /// in so many of ten data sets.
     ///
     /// # Errors
-    /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
-    pub fn predict(&self, excitation: &Excitation<'_>, probability: f64) -> Result<Prediction> {
-        let band = self.checked_band(probability)?;
+    /// As [`Model::simulate`], a level outside these bounds, and a model without a band.
+    pub fn predict(&self, excitation: &Excitation<'_>, level: impl Into<BandLevel>) -> Result<Prediction> {
+        let level = level.into();
+        let band = self.checked_band(level)?;
         self.check_time(excitation)?;
         let mut output = vec![0.0; excitation.len()];
         let mut spreads = vec![Spread::default(); excitation.len()];
         Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
-        Ok(Prediction::of(Some((band, probability)), output, &spreads))
+        Ok(Prediction::of(Some((band, level)), output, &spreads))
     }
 
-    fn checked_band(&self, probability: f64) -> Result<&Band> {
-        Band::check(probability)?;
+    fn checked_band(&self, level: BandLevel) -> Result<&Band> {
+        level.check()?;
         self.band.as_ref().ok_or_else(|| Error::NoBand(self.name().name()))
     }
 

@@ -7,7 +7,7 @@ use hysid::data::initial_state::InitialState;
 use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::selection::Selection;
-use hysid::model::{self, Prediction};
+use hysid::model::{self, BandLevel, Prediction};
 use hysid_files::{Destination, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -78,7 +78,7 @@ impl Model {
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 
-    /// As `simulate`, with a band of this probability: output, lower and upper edge.
+    /// As `simulate`, with a band of this probability in so many of ten data sets: output, lower and upper edge.
     #[allow(clippy::too_many_arguments)]
     fn predict<'py>(
         &self,
@@ -88,11 +88,12 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
         probability: f64,
+        of_ten: usize,
         initial_state: Option<&str>,
     ) -> PyResult<[NewColumn<'py>; 3]> {
         let lead_in = self.lead_in(initial_state)?;
-        let run =
-            |excitation: &Excitation<'_>| self.model.predict(&after(excitation, &lead_in)?, probability);
+        let level = BandLevel { probability, of_ten };
+        let run = |excitation: &Excitation<'_>| self.model.predict(&after(excitation, &lead_in)?, level);
         let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }

@@ -6,7 +6,7 @@ use crate::data::record::Excitation;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::model::runner::{Runner, Spread};
-use crate::model::{Band, Model, Prediction};
+use crate::model::{Band, BandLevel, Model, Prediction};
 
 /// A simulation that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
 /// [`Model::predict`] to the last bit, for any division into blocks.
@@ -16,7 +16,7 @@ use crate::model::{Band, Model, Prediction};
 pub struct Simulation<'m> {
     model: &'m Model,
     runner: Runner<'m>,
-    band: Option<(&'m Band, f64)>,
+    band: Option<(&'m Band, BandLevel)>,
     record: String,
     window: Window,
 }
@@ -36,7 +36,7 @@ struct Window {
 }
 
 impl<'m> Simulation<'m> {
-    pub(super) fn new(model: &'m Model, band: Option<(&'m Band, f64)>) -> Self {
+    pub(super) fn new(model: &'m Model, band: Option<(&'m Band, BandLevel)>) -> Self {
         let runner = Runner::of_model(model).watching(model);
         Self { model, runner, band, record: String::new(), window: Window::default() }
     }
@@ -94,9 +94,9 @@ impl<'m> Simulation<'m> {
 
 impl Prediction {
     /// Outputs with their band, if there is one.
-    pub(super) fn of(band: Option<(&Band, f64)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
+    pub(super) fn of(band: Option<(&Band, BandLevel)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
         let half = |spread: &Spread| {
-            band.map(|(band, probability)| band.half_width(probability, spread.disagreement, spread.outside))
+            band.map(|(band, level)| band.half_width(level, spread.disagreement, spread.outside))
         };
         let halves: Vec<f64> = spreads.iter().filter_map(half).collect();
         Self {

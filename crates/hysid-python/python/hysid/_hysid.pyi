@@ -74,6 +74,7 @@ class Model:
         inputs: list[_Column],
         rate: _Column | None,
         probability: float,
+        of_ten: int,
         initial_state: str | None,
     ) -> list[_Column]: ...
     def selection(self) -> list[str] | None: ...

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
-from hysid._arguments import name_of, real, truth
+from hysid._arguments import name_of, real, truth, whole
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
@@ -367,12 +367,14 @@ class Model:
         records: ArrayLike | None = None,
         *,
         probability: float = 0.9,
+        of_ten: int = 5,
         initial_state: str | None = None,
         same_units: bool = False,
     ) -> Prediction:
-        """Simulate with a prediction band that contains the measured output with a given probability.
+        """Simulate with a prediction band that contains the measured output in a given share of the rows.
 
-        The band was calibrated on held-out training data and assumes that new data resemble them.
+        The band was calibrated on held-out training data and assumes that new data resemble them. The share is right
+        on average over data sets; in one of them it may be more or less.
 
         Parameters
         ----------
@@ -381,7 +383,10 @@ class Model:
         time, rate, records : array of shape (n,), optional
             As of `simulate`.
         probability : float
-            Probability of the band, from 0.5 to 0.99.
+            Probability of the band, from 0.5 to 0.99: the share of the rows that it contains.
+        of_ten : int
+            Data sets of ten in which the band contains at least that share, from 5, on average, to 9; 9 makes the band
+            about twice as wide.
         initial_state : str, optional
             As of `simulate`.
         same_units : bool
@@ -408,10 +413,11 @@ class Model:
         True
         """
         probability = real("probability", probability)
+        of_ten = whole("of_ten", of_ten, 5, 9)
         state = name_of("initial_state", initial_state)
         arranged = self._converted(columns(x, None, time, rate, records), same_units)
         runs = [
-            self._native.predict(name, *driving, probability, state) for name, driving in _of_records(arranged)
+            self._native.predict(name, *driving, probability, of_ten, state) for name, driving in _of_records(arranged)
         ]
         self._warn_of_range(arranged)
         name = f"{self.output}_model"

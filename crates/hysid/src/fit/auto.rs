@@ -206,18 +206,18 @@ impl Chosen<'_, '_, '_> {
         selection
     }
 
-    /// The band that these rows ask for, wider where the data cannot tell candidates apart.
-    fn band(&self, rows: &[HeldOutRow]) -> Option<Band> {
-        let band = Band::calibrate(rows)?;
+    /// The band that the rows held out ask for, wider where the data cannot tell candidates apart.
+    fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
+        let band = Band::calibrate(folds)?;
         Some(match self.evidence {
             Evidence::SeveralLoops => band,
             Evidence::OneLoop => band.wider(prior::WIDER_BAND),
         })
     }
 
-    /// Every row held out, predicted with weights that were found on the other folds: rows that chose the
+    /// The rows held out of each fold, predicted with weights that were found on the other folds: rows that chose the
     /// weights would look better than new ones.
-    fn rows_held_out(&self, combination: &Combination) -> Vec<HeldOutRow> {
+    fn rows_held_out(&self, combination: &Combination) -> Vec<Vec<HeldOutRow>> {
         let folds = self.bench.folds;
         let of_fold = |fold: usize| {
             let of_others = (folds.len() > 1)
@@ -225,7 +225,7 @@ impl Chosen<'_, '_, '_> {
                 .flatten();
             of_others.as_ref().unwrap_or(combination).rows(&self.trials, folds, fold)
         };
-        (0..folds.len()).flat_map(of_fold).collect()
+        (0..folds.len()).map(of_fold).collect()
     }
 
     /// One small model, with what is known of it.

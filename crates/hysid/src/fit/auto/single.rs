@@ -198,8 +198,8 @@ fn distilled(
     Ok(nearest.map(|(_, model)| model))
 }
 
-/// Rows held out with the errors of a single model.
-pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<HeldOutRow> {
+/// The rows held out of each fold with the errors of a single model.
+pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<Vec<HeldOutRow>> {
     let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
         let rows = predicted.iter().zip(&fold.measured).zip(&fold.outside);
         rows.map(|((predicted, measured), outside)| HeldOutRow {
@@ -210,5 +210,5 @@ pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<He
         })
         .collect()
     };
-    predicted.iter().zip(folds).flat_map(of_fold).collect()
+    predicted.iter().zip(folds).map(of_fold).collect()
 }
