@@ -47,7 +47,7 @@ pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
-pub use file::FORMAT_VERSION;
+pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
 use ranges::Ranges;
 use runner::{Runner, Spread};
 pub use simulation::Simulation;

@@ -363,9 +363,10 @@ fn data_that_begin_virgin_keep_their_model() {
     assert_eq!(model.provenance().selection.as_ref().unwrap().found_states, None);
     // With the state decided, the same but for the option itself.
     let decided = fitted(&data, &auto.with_initial_state(Some(InitialState::Virgin)));
+    let (plain, decided) = (model.to_json(), decided.to_json().replace("\"version\": 6", "\"version\": 5"));
     let option = "      \"initial_state\": \"virgin\",\n";
     let content = |text: &str| text[..text.rfind("\"checksum\"").unwrap()].to_string();
-    let (plain, decided) = (content(&model.to_json()), content(&decided.to_json()));
+    let (plain, decided) = (content(&plain), content(&decided));
     assert!(decided.contains(option) && decided.replace(option, "") == plain, "two models");
 }
 

@@ -20,8 +20,8 @@ use crate::options::ModelName;
 /// Latest version of the layout. A model is written in the earliest that has all that it needs.
 pub const FORMAT_VERSION: u64 = 6;
 
-/// Version of the layout of a model that begins in the virgin state: the same without the lead-in.
-const VIRGIN_VERSION: u64 = 5;
+/// Version of the layout of a model that begins in the virgin state: the same without initial states.
+pub const VIRGIN_FORMAT_VERSION: u64 = 5;
 
 /// Up to this version the checksum passed over all white space, in texts too.
 const LOOSE_CHECKSUM: u64 = 4;
@@ -241,10 +241,18 @@ impl MemberParts {
     }
 }
 
+/// True if the file says anything of an initial state.
+fn has_initial_state(model: &Model) -> bool {
+    let Provenance { options, selection, lead_ins, .. } = &model.provenance;
+    !model.lead_in.is_empty()
+        || !lead_ins.is_empty()
+        || options.initial_state().is_some()
+        || selection.as_ref().is_some_and(|selection| selection.found_states.is_some())
+}
+
 pub(super) fn write(model: &Model) -> String {
     let (network, law, ensemble) = parts(&model.body);
-    let has_lead_in = !model.lead_in.is_empty() || !model.provenance.lead_ins.is_empty();
-    let version = if has_lead_in { FORMAT_VERSION } else { VIRGIN_VERSION };
+    let version = if has_initial_state(model) { FORMAT_VERSION } else { VIRGIN_FORMAT_VERSION };
     let file = File {
         format: FORMAT.into(),
         version,
@@ -312,7 +320,7 @@ pub(super) fn read(text: &str) -> Result<Model> {
     }
     let file = match version {
         // The text itself tells the place of an error.
-        VIRGIN_VERSION | FORMAT_VERSION => serde_json::from_str(text),
+        VIRGIN_FORMAT_VERSION | FORMAT_VERSION => serde_json::from_str(text),
         _ => serde_json::from_value(upgraded(value)),
     };
     let file: File = file.map_err(|error| {
