@@ -8,8 +8,10 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgAction, Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+use hysid::Model;
+use hysid::data::initial_state::InitialState;
 use hysid::diagnosis::DiagnosisOptions;
-use hysid::model::BAND_PROBABILITIES;
+use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
 use hysid::options::chosen::RateChoice;
 use hysid::options::network::SEED;
@@ -122,6 +124,65 @@ pub struct ColumnOptions {
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
     #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
+}
+
+/// In how many data sets a band is to contain its share of the rows.
+#[derive(Debug, Clone, Args)]
+pub struct DataSetsOptions {
+    /// With --band: widen it to contain that share in K of ten data sets
+    ///
+    /// From 5-of-10, where the share is contained in every other data set, to 9-of-10, where the band is about twice as
+    /// wide.
+    #[arg(long = "in", id = "of_ten", value_name = "K-of-10", default_value = "5-of-10", value_parser = of_ten, requires = "band")]
+    pub of_ten: usize,
+}
+
+impl DataSetsOptions {
+    /// The band of a probability, if one is wanted.
+    pub fn level(&self, probability: Option<f64>) -> Option<BandLevel> {
+        probability.map(|probability| BandLevel { probability, of_ten: self.of_ten })
+    }
+}
+
+fn of_ten(text: &str) -> Result<usize, String> {
+    let count = text.strip_suffix("-of-10").and_then(|count| count.parse().ok());
+    let (least, most) = (BAND_OF_TEN.start(), BAND_OF_TEN.end());
+    let advice = || format!("choose {least}-of-10 to {most}-of-10");
+    count.filter(|count| BAND_OF_TEN.contains(count)).ok_or_else(advice)
+}
+
+/// In which state the memory of a model is at the beginning of each record.
+#[derive(Debug, Clone, Args)]
+pub struct BeginningOptions {
+    /// State of the memory at the beginning of each record [default: as trained]
+    ///
+    /// One of virgin, saturated-up (after a visit of the upper end of the trained input range), saturated-down and
+    /// demagnetised. The default is the state of most training records.
+    #[arg(long, value_name = "NAME", value_parser = known_state)]
+    pub initial_state: Option<InitialState>,
+}
+
+impl BeginningOptions {
+    /// The model with this initial state.
+    ///
+    /// # Errors
+    /// None for a state that the command line takes.
+    pub fn of(&self, model: Model) -> hysid::Result<Model> {
+        match self.initial_state {
+            Some(state) => model.with_initial_state(state),
+            None => Ok(model),
+        }
+    }
+}
+
+fn known_state(name: &str) -> Result<InitialState, String> {
+    let state: Result<InitialState, hysid::Error> = name.parse();
+    let advice = || format!("choose one of {}", InitialState::known().join(", "));
+    match state {
+        Ok(InitialState::Unknown) => Err(format!("{}: only a fit finds an unknown state", advice())),
+        Ok(state) => Ok(state),
+        Err(_) => Err(advice()),
+    }
 }
 
 /// How the units of a table and of a model are taken.
@@ -347,10 +408,16 @@ pub struct Simulate {
     pub overwriting: Overwriting,
     /// Add a prediction band of this probability, such as 0.9
     ///
-    /// The columns `<output>_low` and `<output>_high` are its edges. The band holds the measured output with this
-    /// probability if the data resemble those of the training.
+    /// The columns `<output>_low` and `<output>_high` are its edges. The band contains this share of the measured
+    /// outputs on average over data sets that resemble those of the training; in one of them it may be less.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
+    /// In how many of ten data sets the band is to contain that share.
+    #[command(flatten)]
+    pub data_sets: DataSetsOptions,
+    /// Where the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
@@ -372,6 +439,12 @@ pub struct Evaluate {
     /// Print the share of measured outputs within the prediction band of this probability, such as 0.9
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
+    /// In how many of ten data sets the band is to contain that share.
+    #[command(flatten)]
+    pub data_sets: DataSetsOptions,
+    /// Where the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,

@@ -1,7 +1,7 @@
 //! How many measured outputs lie within a model's band.
 
 use hysid::data::record::Dataset;
-use hysid::model::Prediction;
+use hysid::model::{BAND_OF_TEN, BandLevel, Prediction};
 use hysid::significant::Significant;
 
 /// Share of the measured outputs that lie within a band.
@@ -9,6 +9,9 @@ use hysid::significant::Significant;
 pub struct BandCoverage {
     /// What was asked for.
     pub probability: f64,
+    /// Data sets of ten in which the band is to contain that share; left out for five, on average.
+    #[serde(skip_serializing_if = "is_average")]
+    pub of_ten: usize,
     /// What was found, in percent of the rows with an output.
     pub coverage_percent: f64,
     /// Rows with an output.
@@ -17,8 +20,14 @@ pub struct BandCoverage {
 
 impl BandCoverage {
     /// Of so many outputs within the band, and so many in all.
-    pub fn of((covered, samples): (usize, usize), probability: f64) -> Self {
-        Self { probability, coverage_percent: 100.0 * covered as f64 / samples.max(1) as f64, samples }
+    pub fn of((covered, samples): (usize, usize), level: impl Into<BandLevel>) -> Self {
+        let BandLevel { probability, of_ten } = level.into();
+        Self {
+            probability,
+            of_ten,
+            coverage_percent: 100.0 * covered as f64 / samples.max(1) as f64,
+            samples,
+        }
     }
 
     /// Of bands that are there already, one for each record.
@@ -31,10 +40,19 @@ impl BandCoverage {
 
     /// In words.
     pub fn words(&self) -> String {
+        let widened = match self.of_ten {
+            of_ten if is_average(&of_ten) => String::new(),
+            of_ten => format!(" in {of_ten} of 10 data sets"),
+        };
         format!(
-            "{:.3} % of the measured outputs lie within the band of {:.3} %",
+            "{:.3} % of the measured outputs lie within the band of {:.3} %{widened}",
             Significant(self.coverage_percent),
             Significant(100.0 * self.probability)
         )
     }
+}
+
+/// True for a band that contains its share on average over data sets.
+fn is_average(of_ten: &usize) -> bool {
+    of_ten == BAND_OF_TEN.start()
 }

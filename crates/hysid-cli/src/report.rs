@@ -10,6 +10,7 @@ mod parameters;
 mod provenance;
 mod usage;
 
+use hysid::data::initial_state::in_words;
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
 use hysid::model::{Model, Prediction};
@@ -67,6 +68,12 @@ pub fn page(report: &Report) -> Page {
     parts.extend([provenance::warnings(report), provenance::section(report)]);
     parts.extend(usage::sections(report));
     Page { title: report.title.clone(), parts }
+}
+
+/// The state in which records begin, in a few words; `None` if it is the virgin one, in training too.
+pub fn initial_state(model: &Model) -> Option<String> {
+    let has_past = !model.lead_in().is_empty() || !model.provenance().lead_ins.is_empty();
+    has_past.then(|| in_words(model.lead_in(), model.trained_ranges().inputs[0]))
 }
 
 /// The label of the axis of time: rows where there is no time.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use anyhow::{Result, anyhow, bail};
 use hysid::data::record::{Fingerprint, Likeness, Record};
 use hysid::data::warning::Warning;
-use hysid::model::{Model, Prediction, Simulation};
+use hysid::model::{BandLevel, Model, Prediction, Simulation};
 
 use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
@@ -27,8 +27,8 @@ pub struct Wanted {
     pub measured: bool,
     /// The cells as they are.
     pub cells: bool,
-    /// A band of this probability.
-    pub band: Option<f64>,
+    /// A band of this level.
+    pub band: Option<BandLevel>,
 }
 
 /// Rows that are simulated, in the order of the table.
@@ -152,7 +152,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         wanted: Wanted,
     ) -> Result<Self> {
         let simulation = match wanted.band {
-            Some(probability) => model.simulation_with_band(probability)?,
+            Some(level) => model.simulation_with_band(level)?,
             None => model.simulation(),
         };
         let place = |name: &String| place_of(head, name);

@@ -83,6 +83,22 @@ fn the_band_stands_in_columns_and_its_coverage_is_counted() {
     assert_eq!(evaluated["band"]["samples"].as_u64(), Some(ROWS as u64));
     let told = bench.run("evaluate e.json good.csv --band 0.6").stdout;
     assert!(told.contains("of the measured outputs lie within the band of 60 %\n"), "{told}");
+    let of_nine = json(&bench.run("evaluate e.json good.csv --band 0.6 --in 9-of-10 --json"));
+    assert_eq!((evaluated["band"].get("of_ten"), &of_nine["band"]["of_ten"]), (None, &9.into()));
+    assert!(of_nine["band"]["coverage_percent"].as_f64() >= Some(percent), "{of_nine}");
+    let told = bench.run("evaluate e.json good.csv --band 0.6 --in 9-of-10").stdout;
+    assert!(told.contains("lie within the band of 60 % in 9 of 10 data sets\n"), "{told}");
+    let wide = bench.run("simulate e.json good.csv --band 0.6 --in 9-of-10");
+    let halves = |ran: &Ran| -> Vec<f64> {
+        let rows = ran.stdout.lines().skip(1).map(|line| line.split(',').map(str::parse));
+        let rows = rows.map(|cells| cells.collect::<Result<Vec<f64>, _>>().unwrap());
+        rows.map(|cells| cells[5] - cells[3]).collect()
+    };
+    let (narrow, wide) = (halves(&simulated), halves(&wide));
+    let factor = wide[0] / narrow[0];
+    assert!(factor > 1.5 && factor < 3.0, "{factor}");
+    assert!(narrow.iter().zip(&wide).all(|(narrow, wide)| (wide / narrow - factor).abs() < 1e-6));
+    assert_eq!(bench.run("simulate e.json good.csv --band 0.6 --in 5-of-10").stdout, simulated.stdout);
     // The model's own column is the same with and without a band.
     let column = |ran: &Ran| -> Vec<String> {
         ran.stdout.lines().map(|line| line.split(',').nth(3).unwrap().to_string()).collect()
@@ -99,6 +115,8 @@ fn a_band_that_is_not_there_is_refused() {
         ("evaluate model.json good.csv --band 0.9", 1, "model.json: this model has no prediction band"),
         ("simulate model.json good.csv --band 0.3", 2, "a probability from 0.5 to 0.99 is needed"),
         ("evaluate model.json good.csv --band much", 2, "a probability from 0.5 to 0.99 is needed"),
+        ("evaluate model.json good.csv --band 0.9 --in 10-of-10", 2, "choose 5-of-10 to 9-of-10"),
+        ("simulate model.json good.csv --band 0.9 --in 9", 2, "choose 5-of-10 to 9-of-10"),
     ] {
         let ran = bench.run(arguments);
         assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);

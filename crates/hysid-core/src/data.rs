@@ -1,6 +1,7 @@
 //! Measured data: records and their columns, units, rates, error metrics, and checks before use.
 
 pub mod column;
+pub mod initial_state;
 pub mod metrics;
 pub mod rate;
 pub mod record;

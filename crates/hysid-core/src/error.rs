@@ -89,6 +89,9 @@ pub enum Error {
         /// The largest.
         most: f64,
     },
+    /// A number of data sets of ten that no band is made for.
+    #[error("a band for {0} of ten data sets: choose 5 to 9 of ten")]
+    DataSetsOfTen(usize),
     /// A model file that cannot be used.
     #[error("{}", one_line(.0))]
     ModelFile(String),
@@ -203,6 +206,9 @@ pub enum DataProblem {
     /// The given rate is missing.
     #[error("the measured rate is missing (the model was trained with one)")]
     NoGivenRate,
+    /// A turning point before the first row that is not a usable number.
+    #[error("the lead-in has the value {0}: finite numbers of at most {LARGEST_VALUE:e} are needed")]
+    LeadIn(f64),
     /// The number of inputs is not what it must be.
     #[error("has {found} inputs where {expected} are expected")]
     Inputs {

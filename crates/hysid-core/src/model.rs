@@ -26,11 +26,12 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::initial_state::InitialState;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
 use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
 use crate::data::warning::Warning;
-use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, Result};
+use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};
 use crate::law::Classical;
 use crate::model::history::Run;
 use crate::model::input_transform::InputTransform;
@@ -42,11 +43,11 @@ use crate::options::network::Regularisation;
 use crate::options::{FitSpec, ModelName};
 use crate::termination::Termination;
 
-pub use band::{BAND_PROBABILITIES, Band, Prediction};
+pub use band::{BAND_OF_TEN, BAND_PROBABILITIES, Band, BandLevel, Prediction};
 pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
-pub use file::FORMAT_VERSION;
+pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
 use ranges::Ranges;
 use runner::{Runner, Spread};
 pub use simulation::Simulation;
@@ -60,6 +61,8 @@ pub struct Model {
     rate: Option<RateMethod>,
     names: ColumnNames,
     trained: TrainedRanges,
+    /// Lead-in of records that have none of their own; empty for the virgin state.
+    lead_in: Vec<f64>,
     band: Option<Band>,
     provenance: Provenance,
 }
@@ -108,6 +111,17 @@ fn errors(mut runner: Runner<'_>, data: &Dataset) -> Result<Errors> {
     }
     sums.errors(&data.names().output)
         .ok_or_else(|| data.records()[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore))
+}
+
+/// The lead-ins of the records, if they differ.
+fn lead_ins(data: &Dataset) -> Vec<RecordLeadIn> {
+    let of = |record: &Record| RecordLeadIn {
+        record: record.name().into(),
+        lead_in: record.lead_in().unwrap_or_default().to_vec(),
+    };
+    let all: Vec<RecordLeadIn> = data.records().iter().map(of).collect();
+    let is_one = all.iter().all(|one| one.lead_in == all[0].lead_in);
+    if is_one || all.len() > MOST_REMEMBERED { Vec::new() } else { all }
 }
 
 /// Fingerprints of the records, unless there are very many.
@@ -198,6 +212,21 @@ pub struct Provenance {
     /// The candidates and their errors, if the model was chosen among several; otherwise `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub selection: Option<Selection>,
+    /// Lead-ins of the training records; empty if all have that of the model, and for more than
+    /// [`MOST_REMEMBERED`] records.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lead_ins: Vec<RecordLeadIn>,
+}
+
+/// The [lead-in](crate::data::initial_state) that a training record has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordLeadIn {
+    /// Name of the record.
+    pub record: String,
+    /// Turning points of the first input before its first row, in the unit of the input; empty for the virgin
+    /// state.
+    pub lead_in: Vec<f64>,
 }
 
 impl Provenance {
@@ -242,6 +271,7 @@ impl Found {
             penalties,
             runs,
             selection,
+            lead_ins: lead_ins(data),
         }
     }
 }
@@ -286,6 +316,7 @@ impl Model {
                 output: data.output_range(),
                 records: remembered(data),
             },
+            lead_in: data.most_frequent_lead_in().to_vec(),
             band: None,
             provenance,
         };
@@ -408,7 +439,58 @@ impl Model {
         self.body.needs_steps() || self.rate.is_some_and(|rate| rate != RateMethod::Given)
     }
 
-    /// Simulates from the virgin state: the output at each sample of the input `x`, both in the units of the
+    /// The initial state of a record that has none of its own: the turning points of the first input before
+    /// the first row, in its unit; empty for the virgin state. It is that of most training records.
+    pub fn lead_in(&self) -> &[f64] {
+        &self.lead_in
+    }
+
+    /// The lead-in of an initial state for this model, with the range of its training data and its origin.
+    ///
+    /// # Errors
+    /// An unknown state, which is found only in a fit.
+    pub fn lead_in_of(&self, state: InitialState) -> Result<Vec<f64>> {
+        let origins = match &self.body {
+            Predictor::Ensemble(ensemble) => ensemble.members(),
+            Predictor::Network { .. } | Predictor::Law(_) => std::slice::from_ref(self),
+        };
+        // Members that measure the input from the data have one origin, the others 0.
+        let origin = origins.iter().map(|model| model.preprocessing.origin(0)).find(|origin| *origin != 0.0);
+        state.lead_in(self.trained.inputs[0], origin.unwrap_or_default()).ok_or_else(|| {
+            let needed = format!(
+                "choose one of {}; without it the initial state is that of the training",
+                InitialState::known().join(", ")
+            );
+            OptionError::value("initial_state", state.name(), needed).into()
+        })
+    }
+
+    /// The same model with another initial state for records that have none of their own.
+    ///
+    /// # Errors
+    /// As [`Model::lead_in_of`].
+    pub fn with_initial_state(mut self, state: InitialState) -> Result<Self> {
+        self.lead_in = self.lead_in_of(state)?;
+        Ok(self)
+    }
+
+    /// The training data with the lead-ins that their records had in training, where these differ.
+    ///
+    /// # Errors
+    /// None for a model that was fitted or read from a file.
+    pub fn as_trained<'d>(&self, data: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        if self.provenance.lead_ins.is_empty() {
+            return Ok(Cow::Borrowed(data));
+        }
+        let of_record = |_: usize, record: &Record| {
+            let mut known = self.provenance.lead_ins.iter();
+            let known = known.find(|known| known.record == record.name());
+            known.map_or(&self.lead_in, |known| &known.lead_in).clone()
+        };
+        data.clone().with_lead_ins(of_record).map(Cow::Owned)
+    }
+
+    /// Simulates from the initial state of the model: the output at each sample of the input `x`, both in the units of the
     /// training data.
     ///
     /// # Errors
@@ -418,8 +500,9 @@ impl Model {
         self.response(&Excitation::new("data", vec![x])?)
     }
 
-    /// Simulates a record from the virgin state: the output of each row, in the user's unit. The measured
-    /// output of the record is not used.
+    /// Simulates a record: the output of each row, in the user's unit. It begins after the lead-in of the
+    /// record, or in the initial state of the model if the record has none. The measured output of the record
+    /// is not used.
     ///
     /// # Errors
     /// A record without what the model needs: its number of inputs, time stamps, a given rate.
@@ -441,30 +524,34 @@ impl Model {
         Simulation::new(self, None)
     }
 
-    /// The same with a prediction band of this probability.
+    /// The same with a prediction band, as of [`Model::predict`].
     ///
     /// # Errors
-    /// As [`Model::predict`]: a probability outside its bounds, and a model without a band.
-    pub fn simulation_with_band(&self, probability: f64) -> Result<Simulation<'_>> {
-        Ok(Simulation::new(self, Some((self.checked_band(probability)?, probability))))
+    /// A level outside its bounds, and a model without a band.
+    pub fn simulation_with_band(&self, level: impl Into<BandLevel>) -> Result<Simulation<'_>> {
+        let level = level.into();
+        Ok(Simulation::new(self, Some((self.checked_band(level)?, level))))
     }
 
-    /// Simulates a record from the virgin state, with a band that contains the measured output with this
-    /// probability, 0.5 to 0.99, if new data resemble those held out in training.
+    /// Simulates a record as [`Model::simulate`], with a band that contains the measured output in this share of
+    /// the rows, 0.5 to 0.99, if new data resemble those held out in training. That holds on average over data
+    /// sets: in one it may be more or less. With a [`BandLevel`] the band is one that contains at least this share
+    /// in so many of ten data sets.
     ///
     /// # Errors
-    /// As [`Model::simulate`], a probability outside these bounds, and a model without a band.
-    pub fn predict(&self, excitation: &Excitation<'_>, probability: f64) -> Result<Prediction> {
-        let band = self.checked_band(probability)?;
+    /// As [`Model::simulate`], a level outside these bounds, and a model without a band.
+    pub fn predict(&self, excitation: &Excitation<'_>, level: impl Into<BandLevel>) -> Result<Prediction> {
+        let level = level.into();
+        let band = self.checked_band(level)?;
         self.check_time(excitation)?;
         let mut output = vec![0.0; excitation.len()];
         let mut spreads = vec![Spread::default(); excitation.len()];
         Runner::of_model(self).rows(excitation, 0, &mut output, Some(&mut spreads))?;
-        Ok(Prediction::of(Some((band, probability)), output, &spreads))
+        Ok(Prediction::of(Some((band, level)), output, &spreads))
     }
 
-    fn checked_band(&self, probability: f64) -> Result<&Band> {
-        Band::check(probability)?;
+    fn checked_band(&self, level: BandLevel) -> Result<&Band> {
+        level.check()?;
         self.band.as_ref().ok_or_else(|| Error::NoBand(self.name().name()))
     }
 
@@ -491,7 +578,7 @@ impl Model {
         self
     }
 
-    /// Errors of simulations of all records, each from the virgin state, against their measured outputs.
+    /// Errors of simulations of all records, as of [`Model::simulate`], against their measured outputs.
     ///
     /// # Errors
     /// As [`Model::simulate`], and data without any output.
@@ -522,7 +609,7 @@ impl Model {
         Ok(())
     }
 
-    /// A sample-by-sample simulation from the virgin state, for control loops and structural analyses.
+    /// A sample-by-sample simulation from the initial state of the model, for control loops and structural analyses.
     pub fn stepper(&self) -> Stepper<'_> {
         Stepper::new(Cow::Borrowed(self))
     }
@@ -532,8 +619,11 @@ impl Model {
         Stepper::new(Cow::Owned(self))
     }
 
+    /// Removes what the members of an ensemble have in common.
     fn forget_records(&mut self) {
         self.trained.records.clear();
+        self.lead_in.clear();
+        self.provenance.lead_ins.clear();
     }
 
     /// True if the model stores this fingerprint among those of its training records.

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use hysid::data::initial_state::InitialState;
 use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::selection::Selection;
-use hysid::model::{self, Prediction};
+use hysid::model::{self, BandLevel, Prediction};
 use hysid_files::{Destination, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -60,7 +61,9 @@ impl Model {
         self.model.needs_time()
     }
 
-    /// Free run over one record, whose columns are read where they lie.
+    /// Free run over one record, whose columns are read where they lie. Without the name of an initial state it
+    /// begins as the training records did.
+    #[allow(clippy::too_many_arguments)]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -68,12 +71,14 @@ impl Model {
         time: Option<Column<'_>>,
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
+        initial_state: Option<&str>,
     ) -> PyResult<NewColumn<'py>> {
-        let run = |excitation: &Excitation<'_>| self.model.response(excitation);
+        let lead_in = self.lead_in(initial_state)?;
+        let run = |excitation: &Excitation<'_>| self.model.response(&after(excitation, &lead_in)?);
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 
-    /// As `simulate`, with a band of this probability: output, lower and upper edge.
+    /// As `simulate`, with a band of this probability in so many of ten data sets: output, lower and upper edge.
     #[allow(clippy::too_many_arguments)]
     fn predict<'py>(
         &self,
@@ -83,8 +88,12 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
         probability: f64,
+        of_ten: usize,
+        initial_state: Option<&str>,
     ) -> PyResult<[NewColumn<'py>; 3]> {
-        let run = |excitation: &Excitation<'_>| self.model.predict(excitation, probability);
+        let lead_in = self.lead_in(initial_state)?;
+        let level = BandLevel { probability, of_ten };
+        let run = |excitation: &Excitation<'_>| self.model.predict(&after(excitation, &lead_in)?, level);
         let Prediction { output, low, high } = driven(py, name, time, inputs, rate, run)?;
         Ok([output, low, high].map(|column| PyArray1::from_vec(py, column)))
     }
@@ -95,11 +104,23 @@ impl Model {
     }
 
     /// Errors of free runs over all records, as JSON; without the rows of a warm-up if that is wanted.
-    fn evaluate(&self, py: Python<'_>, data: &Dataset, after_warm_up: bool) -> PyResult<String> {
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        data: &Dataset,
+        after_warm_up: bool,
+        initial_state: Option<&str>,
+    ) -> PyResult<String> {
         let set = Arc::clone(&data.set);
-        let evaluate = || match after_warm_up && self.model.warm_up() > 0 {
-            true => self.model.evaluate_after_warm_up(&set),
-            false => self.model.evaluate(&set).map(Some),
+        let state = initial_state.map(str::parse::<InitialState>).transpose().map_err(refused)?;
+        let evaluate = || {
+            let begun =
+                state.map(|state| model::Model::clone(&self.model).with_initial_state(state)).transpose()?;
+            let model = begun.as_ref().unwrap_or(&self.model);
+            match after_warm_up && model.warm_up() > 0 {
+                true => model.evaluate_after_warm_up(&set),
+                false => model.evaluate(&set).map(Some),
+            }
         };
         let errors = py.detach(evaluate).map_err(refused)?;
         let errors = errors.ok_or_else(|| refused("no row after the warm-up has a measured output"))?;
@@ -128,9 +149,25 @@ impl Model {
         serde_json::to_string(&diagnosis).map_err(refused)
     }
 
-    /// Runs it sample by sample, from the virgin state.
+    /// Runs it sample by sample, from its initial state.
     fn stepper(&self) -> Stepper {
         Stepper { stepper: model::Model::clone(&self.model).into_stepper() }
+    }
+}
+
+impl Model {
+    /// The lead-in of a named initial state; `None` for that of the model.
+    fn lead_in(&self, state: Option<&str>) -> PyResult<Option<Vec<f64>>> {
+        let of_name = |name: &str| self.model.lead_in_of(name.parse()?);
+        state.map(of_name).transpose().map_err(|error: hysid::Error| refused(error))
+    }
+}
+
+/// The excitation after a lead-in, if there is one.
+fn after<'e>(excitation: &Excitation<'e>, lead_in: &'e Option<Vec<f64>>) -> hysid::Result<Excitation<'e>> {
+    match lead_in {
+        Some(lead_in) => excitation.clone().with_lead_in(lead_in),
+        None => Ok(excitation.clone()),
     }
 }
 
@@ -182,8 +219,18 @@ impl Stepper {
         output.map_err(refused)
     }
 
-    /// Goes back to the virgin state.
-    fn reset(&mut self) {
-        self.stepper.reset();
+    /// Goes back to the initial state of the model, or to another one.
+    #[pyo3(signature = (initial_state=None))]
+    fn reset(&mut self, initial_state: Option<&str>) -> PyResult<()> {
+        match initial_state {
+            Some(name) => {
+                let state = name.parse::<InitialState>().map_err(refused)?;
+                self.stepper.reset_to(state).map_err(refused)
+            }
+            None => {
+                self.stepper.reset();
+                Ok(())
+            }
+        }
     }
 }

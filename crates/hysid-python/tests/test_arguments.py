@@ -115,6 +115,8 @@ def test_a_wrong_argument_is_named_with_what_is_needed(call, kind, text):
         {"companding": "x"},
         {"seed": -1},
         {"degradation": "yes", "model": "bouc-wen"},
+        {"initial_state": "up"},
+        {"initial_state": 1},
     ],
 )
 def test_a_wrong_option_is_named_without_types_of_the_native_module(keywords):

@@ -247,3 +247,71 @@ def test_a_model_is_diagnosed(spring_and_slider):
     assert diagnosis.verdict("masing") == "yes"
     assert diagnosis.content["model"] == "prandtl-ishlinskii"
     assert "<table>" in diagnosis._repr_html_() and "masing" in str(diagnosis)
+
+
+def test_a_record_begins_in_its_initial_state(spring_and_slider, tmp_path):
+    x, y = spring_and_slider
+    model = hysid.fit(x, y, model="prandtl-ishlinskii", initial_state="saturated-down")
+    assert model.description["lead_in"] == [x.min()]
+    own = model.simulate(x)
+    assert np.array_equal(own, model.simulate(x, initial_state="saturated-down"))
+    up = model.simulate(x, initial_state="saturated-up")
+    assert not np.array_equal(own, up)
+    # As rows before the record.
+    led = np.concatenate([[x.max()], x])
+    assert np.array_equal(model.simulate(led, initial_state="virgin")[1:], up)
+    errors = model.evaluate(x, y)
+    assert errors.rmse == model.train.rmse < model.evaluate(x, y, initial_state="saturated-up").rmse
+
+    stepper = model.stepper()
+    assert [stepper.step(one) for one in x] == own.tolist()
+    stepper.reset("saturated-up")
+    assert [stepper.step(one) for one in x] == up.tolist()
+    stepper.reset()
+    assert stepper.step(x[0]) == own[0]
+    assert model.step(x[0]) == own[0]
+    model.reset("saturated-up")
+    assert model.step(x[0]) == up[0]
+    model.reset()
+    assert model.step(x[0]) == own[0]
+
+    model.save(tmp_path / "model.json")
+    assert np.array_equal(hysid.Model.load(tmp_path / "model.json").simulate(x), own)
+    records = np.repeat(["a", "b"], len(x))
+    twice = model.simulate(np.concatenate([x, x]), records=records, initial_state="saturated-up")
+    assert np.array_equal(twice, np.concatenate([up, up]))
+    with pytest.raises(ValueError, match="initial_state unknown: choose one of virgin, saturated-up"):
+        model.simulate(x, initial_state="unknown")
+    with pytest.raises(ValueError, match="initial state `up` is unknown: choose one of virgin"):
+        model.evaluate(x, y, initial_state="up")
+    with pytest.raises(TypeError, match="initial_state 3: a name is needed"):
+        model.reset(3)
+
+
+def test_states_of_records_are_found():
+    def record(past, size):
+        x = size * np.sin(0.11 * np.arange(150))
+        led = np.concatenate([[past], x])
+        return x, 0.3 * x + hysid.operators.play(led, r=0.5)[1:]
+
+    parts = [record(1.0, 0.45), record(-1.0, 0.42), record(1.0, 1.0), record(1.0, 0.4)]
+    x, y = (np.concatenate(columns) for columns in zip(*parts))
+    records = np.repeat(["a", "b", "c", "d"], 150)
+    with pytest.warns(hysid.HysidWarning, match="3 records begin saturated-up, 1 record begins saturated-down"):
+        model = hysid.fit(x, y, records=records, model="prandtl-ishlinskii", initial_state="unknown")
+    found = {one["record"]: one["lead_in"] for one in model.description["training"]["lead_ins"]}
+    assert found == {"a": [x.max()], "b": [x.min()], "c": [x.max()], "d": [x.max()]}
+    new, measured = record(1.0, 0.43)
+    assert model.evaluate(new, measured).nrmse_std_percent < 2
+
+
+def test_a_band_for_nine_of_ten_data_sets_is_wider_by_one_factor(quick_ensemble, spring_and_slider):
+    x, _ = spring_and_slider
+    output, _, high = quick_ensemble.predict(x)
+    assert np.array_equal(quick_ensemble.predict(x, of_ten=5).high, high)
+    wide = quick_ensemble.predict(x, of_ten=9)
+    assert np.array_equal(wide.output, output)
+    factors = (wide.high - output) / (high - output)
+    assert 1.5 < factors[0] < 3 and factors == pytest.approx(factors[0])
+    with pytest.raises(ValueError, match="of_ten 10: choose 5 to 9"):
+        quick_ensemble.predict(x, of_ten=10)

@@ -43,6 +43,7 @@ CASES = {
         "auto",
         None,
     ),
+    "initial states": ("piezo-actuator", {**SMALL, "initial_state": "unknown"}, "auto", None),
     "rate-dependent, records, seed": ("piezo-actuator", {**SMALL, "model": "xpnn", "seed": 7}, "auto", None),
     "other rate": ("piezo-actuator", {**SMALL, "validation": 0.4, "seed": 3}, "backward", None),
     "blanks": ("reinforced-concrete-joint", {**SMALL, "no_deterioration": True}, "none", 3),

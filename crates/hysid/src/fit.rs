@@ -1,13 +1,17 @@
 //! Identification of any model by its name: a network, a classical model, or `auto`.
 
 pub mod auto;
+pub(crate) mod initial_state;
 pub mod law;
 mod memory_need;
 pub mod network;
 mod validate;
 
+use std::borrow::Cow;
+
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
 use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
@@ -49,6 +53,8 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
         deterioration: options.deterioration,
         seed: options.seed,
     };
+    let begun = begun(data, options, Origin::OfData, observer)?;
+    let data = begun.as_ref();
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
@@ -61,7 +67,10 @@ fn random_stops(data: &Dataset, options: &ClassicalOptions, observer: &mut Obser
 
 fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
     let mut history = Vec::new();
-    let seen = Transformed::of(data, &options.shaping, options.rate, options.model.facts().origin)?;
+    let origin = options.model.facts().origin;
+    let begun = begun(data, options, origin, observer)?;
+    let data = begun.as_ref();
+    let seen = Transformed::of(data, &options.shaping, options.rate, origin)?;
     let of_seen = ClassicalOptions { rate: seen.rate, ..options.clone() };
     let observer = SharedObserver::new(observer, Some(Progress::of_least_squares(options.model)));
     let is_to_stop = || observer.is_to_stop();
@@ -91,6 +100,17 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
     let body = Predictor::Law(found.law);
     let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
     Ok(Fitted { searched: found.searched, ..fitted })
+}
+
+/// The data in the initial state that is asked for.
+fn begun<'d>(
+    data: &'d Dataset,
+    options: &ClassicalOptions,
+    origin: Origin,
+    observer: &mut Observer<'_>,
+) -> Result<Cow<'d, Dataset>> {
+    let ClassicalOptions { shaping, rate, seed, .. } = *options;
+    Wanted { state: shaping.initial_state, origin, rate, seed }.of(data, observer)
 }
 
 fn finished(

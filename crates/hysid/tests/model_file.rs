@@ -9,7 +9,7 @@ use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::data::warning::Warning;
 use hysid::error::Error;
 use hysid::fit::network::fit;
-use hysid::model::{FORMAT_VERSION, Model};
+use hysid::model::{FORMAT_VERSION, Model, VIRGIN_FORMAT_VERSION};
 use hysid::network::{Family, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::options::classical::ClassicalModel;
@@ -206,7 +206,7 @@ fn a_file_that_is_cut_off_says_so() {
 #[test]
 fn other_files_and_versions_are_told_apart() {
     let text = FULL.to_json();
-    let version = format!("\"version\": {FORMAT_VERSION}");
+    let version = format!("\"version\": {VIRGIN_FORMAT_VERSION}");
     assert!(text.contains(&version));
     let next = FORMAT_VERSION + 1;
     let newer = with_fitting_checksum(&text.replacen(&version, &format!("\"version\": {next}"), 1));
@@ -231,7 +231,7 @@ fn an_unknown_field_is_another_layout() {
         extended.insert_str(at, "\"novelty\": 1, ");
         let said = refusal(&with_fitting_checksum(&extended));
         assert!(
-            said.contains(&format!("layout of version {FORMAT_VERSION}")) && said.contains("novelty"),
+            said.contains(&format!("layout of version {VIRGIN_FORMAT_VERSION}")) && said.contains("novelty"),
             "{said}"
         );
     }
@@ -393,7 +393,9 @@ fn a_file_of_version_1_is_read() {
         approx::assert_relative_eq!(*found, written, max_relative = 1e-12);
     }
     let again = model.to_json();
-    assert!(again.contains(&format!("\"version\": {FORMAT_VERSION}")) && !again.contains("\"trainer\""));
+    assert!(
+        again.contains(&format!("\"version\": {VIRGIN_FORMAT_VERSION}")) && !again.contains("\"trainer\"")
+    );
     assert_eq!(Model::from_json(&again).unwrap(), model);
 }
 

@@ -49,7 +49,8 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     identified.save(&model)?;
-    identified.write_report(&report, out, &[("training", &data.set), ("unseen", &unseen.set)])?;
+    let trained = identified.model.as_trained(&data.set)?;
+    identified.write_report(&report, out, &[("training", &trained), ("unseen", &unseen.set)])?;
     files::write(&loops, identified.loops("unseen", &unseen.set)?.as_bytes())?;
     let written =
         [("data", train), ("data", test), ("model", out), ("report", report.path()), ("loops", loops.path())];

@@ -20,7 +20,7 @@ use crate::units::Factors;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
-    let model = read_model(&arguments.model)?;
+    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data)?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
     let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
@@ -41,7 +41,7 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         }
         Ok(ControlFlow::Continue(()))
     };
-    let wanted = Wanted { measured: true, cells: false, band: arguments.band };
+    let wanted = Wanted { measured: true, cells: false, band: arguments.data_sets.level(arguments.band) };
     let warnings = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
     // Errors of converted outputs are in the model's unit, which its name tells.
     let output = if factors.output.is_some() { &model.names().output } else { &roles.output };
@@ -51,7 +51,8 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         return Err(explained(&rows.head.file, None, defect.into(), &roles));
     };
     summarised(&warnings.context("the run was ended early")?).iter().for_each(warning);
-    let band = arguments.band.map(|probability| BandCoverage::of(covered, probability));
+    let level = arguments.data_sets.level(arguments.band);
+    let band = level.map(|level| BandCoverage::of(covered, level));
     let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(output)).flatten();
     match arguments.json {
         true => json_results(&Printed { errors: &errors, after_warm_up, band })?,

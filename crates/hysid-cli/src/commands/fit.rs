@@ -6,8 +6,8 @@ use anyhow::{Context, Result, bail};
 use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
 use hysid::fit::network::Checkpoint;
-use hysid::model::Model;
 use hysid::model::selection::Selection;
+use hysid::model::{Model, RecordLeadIn};
 use hysid::network::Architecture;
 use hysid::options::chosen::{Ignored, NamedOptions, RateChoice};
 use hysid::options::network::FitOptions;
@@ -24,6 +24,7 @@ use crate::files::{self, check_outputs};
 use crate::identification::{self, Identified, Work, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, json_results, note, results, warning};
+use crate::report;
 
 /// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {
@@ -61,7 +62,8 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
 
     let out = model.path();
     identified.save(&model)?;
-    let sets = [("training", &data.set)];
+    let trained = identified.model.as_trained(&data.set)?;
+    let sets = [("training", trained.as_ref())];
     let reported = report.as_ref().map_or(Ok(()), |page| identified.write_report(page, out, &sets));
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
@@ -185,6 +187,12 @@ struct Printed<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     train_after_warm_up: Option<&'a Errors>,
     validation: Option<&'a Errors>,
+    /// In which state data to come begin; left out for the virgin state.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial_state: Option<String>,
+    /// Turning points of the first input before each training record; left out where all begin in one state.
+    #[serde(skip_serializing_if = "<[RecordLeadIn]>::is_empty")]
+    lead_ins: &'a [RecordLeadIn],
     /// What to know before relying on the model.
     notes: Vec<String>,
     seconds: f64,
@@ -231,6 +239,8 @@ impl<'a> Printed<'a> {
             selection: provenance.selection.as_ref(),
             train: &provenance.train,
             train_after_warm_up: provenance.train_after_warm_up.as_ref(),
+            initial_state: report::initial_state(model),
+            lead_ins: &provenance.lead_ins,
             notes: model.notes(),
             validation: provenance.validation.as_ref(),
             seconds: identified.seconds,

@@ -25,7 +25,7 @@ const BUFFERED: usize = 1 << 20;
 
 /// Runs the command.
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
-    let model = read_model(&arguments.model)?;
+    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data)?;
     let mut names = vec![format!("{}_model", model.names().output)];
     if arguments.band.is_some() {
@@ -55,7 +55,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, roles: &roles, delimiter: rows.head.delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter: rows.head.delimiter, text: header };
-    let wanted = Wanted { cells: true, measured: false, band: arguments.band };
+    let wanted = Wanted { cells: true, measured: false, band: arguments.data_sets.level(arguments.band) };
     let mut take = |simulated: &Simulated<'_>| {
         output.add(simulated)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })

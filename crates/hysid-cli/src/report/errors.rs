@@ -89,10 +89,14 @@ pub fn section(report: &Report) -> Part {
 }
 
 fn explanation(report: &Report) -> Part {
-    let mut text = String::from(
-        "All errors are those of a free run: the model gets only the input, and starts each record in the \
-         virgin state. RMSE is the root mean square error; NRMSE is the RMSE in percent of the standard \
-         deviation or the range of the measured output; fit is 100 % minus the NRMSE in % of std. ",
+    let begins = match super::initial_state(report.model) {
+        None => "starts each record in the virgin state",
+        Some(_) => "starts each record in its initial state",
+    };
+    let mut text = format!(
+        "All errors are those of a free run: the model gets only the input, and {begins}. RMSE is the root mean \
+         square error; NRMSE is the RMSE in percent of the standard deviation or the range of the measured \
+         output; fit is 100 % minus the NRMSE in % of std. ",
     );
     let provenance = report.model.provenance();
     text += match (&provenance.validation, &provenance.selection) {

@@ -59,6 +59,9 @@ pub fn section(report: &Report) -> Part {
     if preprocessing.history.is_some() {
         say("Further inputs", "running peak and travelled path".into());
     }
+    if let Some(state) = super::initial_state(report.model) {
+        say("Initial state", state);
+    }
     say("Rate", rate.into());
     say(
         "Trained on",

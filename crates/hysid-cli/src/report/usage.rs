@@ -44,11 +44,17 @@ fn limits(report: &Report) -> Part {
     }
     rows.push(vec![unit::label(&names.output).into(), span(trained.output).into()]);
     let table = Table::new(["quantity", "range in training"]).with_rows(rows);
-    let mut limits = vec![
-        "Outside these ranges the model extrapolates, and its error is unknown.",
-        "It starts every record in the virgin state. If the specimen has a history that the record does not \
-         contain, the initial state is wrong.",
-    ];
+    let mut limits = vec!["Outside these ranges the model extrapolates, and its error is unknown."];
+    limits.push(match super::initial_state(report.model) {
+        None => {
+            "It starts every record in the virgin state. If the specimen has a history that the record does not \
+             contain, give its initial state (--initial-state)."
+        }
+        Some(_) => {
+            "It starts every record in the state in which most training records begin. If the specimen is in \
+             another state, give it (--initial-state)."
+        }
+    });
     if !report.model.needs_time() && report.model.rate().is_none() {
         limits.push("It is rate-independent: the same input path gives the same output at any speed.");
     }

@@ -16,7 +16,9 @@ pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
 pub use thinning::Thinning;
 
-/// One run of an experiment, in the order of time. A model begins each record in the virgin state.
+/// One run of an experiment, in the order of time. It may begin after a
+/// [lead-in](crate::data::initial_state); without one, a model is fitted to it from the virgin state, and
+/// simulates it from its own initial state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     name: String,
@@ -24,6 +26,7 @@ pub struct Record {
     inputs: Vec<Vec<f64>>,
     given_rate: Option<Vec<f64>>,
     output: Vec<f64>,
+    lead_in: Option<Vec<f64>>,
 }
 
 impl Record {
@@ -34,7 +37,7 @@ impl Record {
     /// No rows, differing lengths, an input that is not finite, values beyond
     /// [`crate::error::LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
-        let record = Self { name: name.into(), time: None, inputs, given_rate: None, output };
+        let record = Self { name: name.into(), time: None, inputs, given_rate: None, output, lead_in: None };
         Excitation::new(&record.name, columns(&record.inputs))?;
         record.excitation().check_column(Channel::Output, &record.output, true)?;
         Ok(record)
@@ -71,6 +74,17 @@ impl Record {
         Ok(self)
     }
 
+    /// The same record after a [lead-in](crate::data::initial_state): the turning points of the first input
+    /// before the first row, in its unit; empty for the virgin state.
+    ///
+    /// # Errors
+    /// A value that is not finite, or beyond [`crate::error::LARGEST_VALUE`].
+    pub fn with_lead_in(mut self, lead_in: Vec<f64>) -> Result<Self> {
+        self.excitation().with_lead_in(&lead_in)?;
+        self.lead_in = Some(lead_in);
+        Ok(self)
+    }
+
     /// Everything except the output, which is what a simulation needs.
     pub fn excitation(&self) -> Excitation<'_> {
         Excitation {
@@ -78,6 +92,7 @@ impl Record {
             time: self.time(),
             inputs: columns(&self.inputs),
             given_rate: self.given_rate(),
+            lead_in: self.lead_in(),
         }
     }
 
@@ -114,6 +129,18 @@ impl Record {
     /// The given rate of the first input, if there is one.
     pub fn given_rate(&self) -> Option<&[f64]> {
         self.given_rate.as_deref()
+    }
+
+    /// The turning points of the first input before the first row, in its unit: empty for the virgin state,
+    /// `None` if they were not given.
+    pub fn lead_in(&self) -> Option<&[f64]> {
+        self.lead_in.as_deref()
+    }
+
+    /// The first input at each turning point of the lead-in and at the first row, in its unit; empty without a
+    /// lead-in. A fit drives the memory with them before the rows.
+    pub fn lead_in_rows(&self) -> Vec<f64> {
+        self.excitation().lead_in_rows()
     }
 
     /// The output; NaN is a blank.
@@ -159,6 +186,7 @@ impl Record {
             inputs: self.inputs.iter().map(cut).collect(),
             given_rate: self.given_rate.as_ref().map(cut),
             output: cut(&self.output),
+            lead_in: self.lead_in.clone(),
         }
     }
 
@@ -341,6 +369,35 @@ impl Dataset {
             record.output[..rows].fill(f64::NAN);
         }
         self
+    }
+
+    /// The same data, each record after the lead-in that `lead_in` gives for it and its index.
+    ///
+    /// # Errors
+    /// A value that is not finite, or too large.
+    pub fn with_lead_ins(mut self, lead_in: impl Fn(usize, &Record) -> Vec<f64>) -> Result<Dataset> {
+        let records = std::mem::take(&mut self.records).into_iter().enumerate();
+        self.records = records
+            .map(|(index, record)| {
+                let lead_in = lead_in(index, &record);
+                record.with_lead_in(lead_in)
+            })
+            .collect::<Result<_>>()?;
+        Ok(self)
+    }
+
+    /// The lead-in that most records with an output have; of several as frequent, that of the first of them.
+    pub fn most_frequent_lead_in(&self) -> &[f64] {
+        let mut counts: Vec<(&[f64], usize)> = Vec::new();
+        for record in self.records.iter().filter(|record| record.scored() > 0) {
+            let lead_in = record.lead_in().unwrap_or_default();
+            match counts.iter_mut().find(|(known, _)| *known == lead_in) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((lead_in, 1)),
+            }
+        }
+        // Of equal counts `max_by_key` gives the last.
+        counts.iter().rev().max_by_key(|(_, count)| *count).map_or(&[], |(lead_in, _)| lead_in)
     }
 
     /// Warnings of records that are copies or parts of records of `trained`, or contain them.

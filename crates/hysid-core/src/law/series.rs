@@ -9,9 +9,9 @@ use crate::law::{Law, Sample};
 /// The samples of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// The sample of each row.
+    /// The sample of each row, those of a [lead-in](crate::data::initial_state) first.
     pub samples: Vec<Sample>,
-    /// The measured output; NaN where it is blank.
+    /// The measured output; NaN where it is blank, as in a lead-in.
     pub output: Vec<f64>,
 }
 
@@ -21,7 +21,12 @@ impl Series {
     /// # Errors
     /// A rate that cannot be computed.
     pub fn of(record: &Record, rate: Option<RateMethod>) -> Result<Self> {
-        Ok(Self { samples: samples(&record.excitation(), rate)?, output: record.output().to_vec() })
+        let mut of_record =
+            Self { samples: lead_in_samples(&record.lead_in_rows()).collect(), output: Vec::new() };
+        of_record.output.resize(of_record.samples.len(), f64::NAN);
+        of_record.samples.extend(samples(&record.excitation(), rate)?);
+        of_record.output.extend(record.output());
+        Ok(of_record)
     }
 
     /// All records of a data set that have an output.
@@ -47,6 +52,11 @@ pub fn samples(excitation: &Excitation<'_>, rate: Option<RateMethod>) -> Result<
     let step = |row: usize| time.filter(|_| row > 0).map_or(0.0, |time| time[row] - time[row - 1]);
     let rows = excitation.inputs()[0].iter().zip(rates).enumerate();
     Ok(rows.map(|(row, (&x, rate))| Sample { x, rate, step: step(row) }).collect())
+}
+
+/// Samples of the rows of a lead-in, in which nothing has a rate and relaxation is complete.
+pub(crate) fn lead_in_samples(rows: &[f64]) -> impl Iterator<Item = Sample> + '_ {
+    rows.iter().map(|&x| Sample { x, rate: 0.0, step: f64::INFINITY })
 }
 
 /// Samples of an input without rate and time.

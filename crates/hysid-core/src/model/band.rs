@@ -1,16 +1,19 @@
 //! Prediction band: limits about the output between which the measured output lies with a given probability.
 //!
 //! ```text
-//! y ± q(p) √(f² + d²)                                                      theory.md (11.7)
-//! q(p) = quantile_p of |y_measured - y| / √(f² + d²)    on held-out rows
+//! y ± g_k q(p) √(f² + d²)                                                  theory.md (11.7)
+//! q(p) = median over the folds of quantile_p of |y_measured - y| / √(f² + d²)    on the held-out rows of a fold
+//! g_k  = e^{σ z(k/10)},   k = 5 .. 9                                       theory.md (11.12)
 //! ```
 //!
 //! `y` is the output of the model at a row and `p` the probability. `d` is the disagreement of the members of
 //! the ensemble at that row: half the distance between the 15.9 % and 84.1 % quantiles of their outputs. `f`
 //! is half the median held-out error, in the unit of the output.
 //!
-//! This is split conformal prediction. The factors `q(p)` are separate for rows inside and outside the
-//! trained range.
+//! For one fold this is split conformal prediction. A data set to come is one fold more: its own quantile is
+//! above the median of the folds as often as below, so the band contains the share `p` of its rows, or more, in
+//! five of ten data sets. `g_k` widens it for `k` of ten; `z` is the quantile function of the normal
+//! distribution. The factors `q(p)` are separate for rows inside and outside the trained range.
 
 use std::ops::RangeInclusive;
 
@@ -62,6 +65,52 @@ impl Prediction {
     }
 }
 
+/// How much a band contains: a share of the rows, in so many of ten data sets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandLevel {
+    /// Share of the rows, 0.5 to 0.99.
+    pub probability: f64,
+    /// Data sets of ten in which the band contains this share of the rows or more, 5 to 9.
+    pub of_ten: usize,
+}
+
+impl From<f64> for BandLevel {
+    fn from(probability: f64) -> Self {
+        Self { probability, of_ten: *BAND_OF_TEN.start() }
+    }
+}
+
+/// The fewest and the most data sets of ten that a band can be for.
+pub const BAND_OF_TEN: RangeInclusive<usize> = 5..=9;
+
+/// Standard deviation of the logarithm of the width that a data set needs over the width of its band, at a
+/// probability of 0.9: docs/accuracy.md, from the 36 generated cases of seed 11.
+const SPREAD_OF_WIDTHS: f64 = 0.54;
+
+/// `z(k/10)`, quantiles of the normal distribution, for each of [`BAND_OF_TEN`].
+const NORMAL_QUANTILES: [f64; 5] = [0.0, 0.253_347, 0.524_401, 0.841_621, 1.281_552];
+
+impl BandLevel {
+    /// Rejects a probability outside those of the calibration, and a number of data sets without a factor.
+    pub(crate) fn check(self) -> Result<()> {
+        let Self { probability, of_ten } = self;
+        if !BAND_PROBABILITIES.contains(&probability) {
+            let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
+            return Err(Error::Probability { probability, least: *least, most: *most });
+        }
+        if !BAND_OF_TEN.contains(&of_ten) {
+            return Err(Error::DataSetsOfTen(of_ten));
+        }
+        Ok(())
+    }
+
+    /// `g_k`: times the width of the band for five of ten data sets (theory.md (11.12)).
+    fn widening(self) -> f64 {
+        let place = self.of_ten.saturating_sub(*BAND_OF_TEN.start()).min(NORMAL_QUANTILES.len() - 1);
+        (SPREAD_OF_WIDTHS * NORMAL_QUANTILES[place]).exp()
+    }
+}
+
 /// Result on a held-out row.
 #[derive(Debug, Clone, Copy)]
 pub struct HeldOutRow {
@@ -90,31 +139,53 @@ fn of_rows(level: f64, rows: usize) -> f64 {
     (level * (1.0 + 1.0 / rows as f64)).min(1.0)
 }
 
+/// The factors of the levels: medians over the folds that have rows enough, or those of all rows if none has.
+fn factors(folds: &[Vec<HeldOutRow>], floor: f64) -> Vec<f64> {
+    let scores = |rows: &[HeldOutRow]| {
+        let mut scores = Predictions::default();
+        rows.iter().for_each(|row| scores.push(row.error.abs() / floor.hypot(row.disagreement), row.weight));
+        (scores, rows.len())
+    };
+    let mut of_folds: Vec<(Predictions, usize)> =
+        folds.iter().filter(|fold| fold.len() >= FEWEST_ROWS).map(|fold| scores(fold)).collect();
+    if of_folds.is_empty() {
+        of_folds.push(scores(&folds.concat()));
+    }
+    let median = |level: f64| {
+        let mut quantiles = Predictions::default();
+        for (scores, rows) in &mut of_folds {
+            quantiles.push(scores.quantile(of_rows(level, *rows)), 1.0);
+        }
+        quantiles.quantile(0.5)
+    };
+    LEVELS.map(median).to_vec()
+}
+
 impl Band {
-    /// A band calibrated on held-out rows; `None` if they are too few.
-    pub fn calibrate(rows: &[HeldOutRow]) -> Option<Self> {
-        let (outside, inside): (Vec<HeldOutRow>, Vec<HeldOutRow>) =
-            rows.iter().partition(|row| row.outside > 0.5);
-        if rows.len() < FEWEST_ROWS {
+    /// A band calibrated on the held-out rows of each fold; `None` if they are too few in all.
+    pub fn calibrate(folds: &[Vec<HeldOutRow>]) -> Option<Self> {
+        let all: Vec<HeldOutRow> = folds.iter().flatten().copied().collect();
+        if all.len() < FEWEST_ROWS {
             return None;
         }
         let mut errors = Predictions::default();
-        rows.iter().for_each(|row| errors.push(row.error.abs(), row.weight));
+        all.iter().for_each(|row| errors.push(row.error.abs(), row.weight));
         // A typical error, so that rows where all members agree by chance do not ask for factors beyond all
         // reason.
         let floor = 0.5 * errors.quantile(0.5).max(f64::MIN_POSITIVE);
-        let factors = |of: &[HeldOutRow]| {
-            let rows = if of.len() < FEWEST_ROWS { rows } else { of };
-            let mut scores = Predictions::default();
-            rows.iter()
-                .for_each(|row| scores.push(row.error.abs() / floor.hypot(row.disagreement), row.weight));
-            LEVELS.map(|level| scores.quantile(of_rows(level, rows.len()))).to_vec()
+        let of_class = |is_outside: bool| -> Vec<Vec<HeldOutRow>> {
+            let of_fold = |fold: &Vec<HeldOutRow>| {
+                fold.iter().copied().filter(|row| (row.outside > 0.5) == is_outside).collect()
+            };
+            folds.iter().map(of_fold).collect()
         };
-        let (mut of_outside, of_inside) = (factors(&outside), factors(&inside));
-        if outside.len() < FEWEST_ROWS {
-            of_outside.clone_from(&of_inside);
-        }
-        Some(Self { floor, inside: of_inside, outside: of_outside, rows: (inside.len(), outside.len()) })
+        let (inside, outside) = (of_class(false), of_class(true));
+        let rows = |class: &[Vec<HeldOutRow>]| class.iter().map(Vec::len).sum::<usize>();
+        let of_inside =
+            if rows(&inside) < FEWEST_ROWS { factors(folds, floor) } else { factors(&inside, floor) };
+        let of_outside =
+            if rows(&outside) < FEWEST_ROWS { of_inside.clone() } else { factors(&outside, floor) };
+        Some(Self { floor, inside: of_inside, outside: of_outside, rows: (rows(&inside), rows(&outside)) })
     }
 
     /// The same band, wider by the factor `times`.
@@ -129,19 +200,10 @@ impl Band {
     }
 
     /// Half the width of the band at a row, in the output's unit.
-    pub(crate) fn half_width(&self, level: f64, disagreement: f64, outside: f64) -> f64 {
-        let inside = factor(&self.inside, level);
-        let factor = inside + outside * (factor(&self.outside, level) - inside);
-        factor * self.floor.hypot(disagreement)
-    }
-
-    /// Rejects a probability outside those of the calibration.
-    pub(crate) fn check(level: f64) -> Result<()> {
-        if BAND_PROBABILITIES.contains(&level) {
-            return Ok(());
-        }
-        let (least, most) = (BAND_PROBABILITIES.start(), BAND_PROBABILITIES.end());
-        Err(Error::Probability { probability: level, least: *least, most: *most })
+    pub(crate) fn half_width(&self, level: BandLevel, disagreement: f64, outside: f64) -> f64 {
+        let inside = factor(&self.inside, level.probability);
+        let factor = inside + outside * (factor(&self.outside, level.probability) - inside);
+        level.widening() * factor * self.floor.hypot(disagreement)
     }
 
     /// Rejects invalid factors of a file.
@@ -187,9 +249,9 @@ mod tests {
                 outside: 0.0,
                 weight: 1.0,
             };
-            let band = Band::calibrate(&(1..=rows).map(row).collect::<Vec<_>>()).unwrap();
+            let band = Band::calibrate(&[(1..=rows).map(row).collect()]).unwrap();
             for level in [0.5, 0.8, 0.9, 0.95] {
-                let held = band.half_width(level, 0.0, 0.0);
+                let held = band.half_width(level.into(), 0.0, 0.0);
                 assert!(
                     (level..level + 1.0 / f64::from(rows)).contains(&held),
                     "{rows} rows, {level}: {held}"
@@ -203,15 +265,45 @@ mod tests {
         let row = |error: f64| HeldOutRow { error, disagreement: 0.0, outside: 0.0, weight: 1.0 };
         let rows: Vec<HeldOutRow> =
             (1..=200).map(|k| row(if k % 2 == 0 { f64::from(k) } else { -f64::from(k) })).collect();
-        let band = Band::calibrate(&rows).unwrap();
+        let band = Band::calibrate(std::slice::from_ref(&rows)).unwrap();
         assert_eq!(band.rows(), (200, 0));
         assert!((band.floor - 0.5 * 100.5).abs() < 1e-12, "{}", band.floor);
         // Each vote stands at the middle of its weight: 0.9 of 201 votes below is between 181 and 182.
-        let half = band.half_width(0.9, 0.0, 0.0);
+        let half = band.half_width(0.9.into(), 0.0, 0.0);
         assert!((half - 181.4).abs() < 1e-9, "{half}");
-        assert_eq!(band.half_width(0.9, 0.0, 1.0), half, "nothing is known of the outside");
-        assert!((band.half_width(0.9, 2.0 * band.floor, 0.0) - half * 5f64.sqrt()).abs() < 1e-9);
-        assert_eq!(Band::calibrate(&rows[..19]), None);
-        assert!(Band::check(0.9).is_ok() && Band::check(0.995).is_err() && Band::check(f64::NAN).is_err());
+        assert_eq!(band.half_width(0.9.into(), 0.0, 1.0), half, "nothing is known of the outside");
+        assert!((band.half_width(0.9.into(), 2.0 * band.floor, 0.0) - half * 5f64.sqrt()).abs() < 1e-9);
+        assert_eq!(Band::calibrate(&[rows[..19].to_vec()]), None);
+        let is_refused = |probability: f64| BandLevel::from(probability).check().is_err();
+        assert!(!is_refused(0.9) && is_refused(0.995) && is_refused(f64::NAN));
+        for of_ten in 0..12 {
+            let level = BandLevel { probability: 0.9, of_ten };
+            assert_eq!(level.check().is_ok(), (5..=9).contains(&of_ten), "{of_ten}");
+        }
+        let of_nine = BandLevel { probability: 0.9, of_ten: 9 };
+        let times = band.half_width(of_nine, 0.0, 0.0) / half;
+        assert!((times - (SPREAD_OF_WIDTHS * 1.281_552).exp()).abs() < 1e-12);
+    }
+
+    /// Four folds of small errors and one of errors a hundred times as large: the band is that of the third.
+    #[test]
+    fn one_bad_fold_does_not_decide_the_width() {
+        let fold = |size: f64| -> Vec<HeldOutRow> {
+            let row = |k: i32| HeldOutRow {
+                error: size * f64::from(k) / 100.0,
+                disagreement: 0.0,
+                outside: 0.0,
+                weight: 0.01,
+            };
+            (1..=100).map(row).collect()
+        };
+        let band = Band::calibrate(&[fold(1.0), fold(1.2), fold(100.0), fold(1.1), fold(0.9)]).unwrap();
+        let alone = Band::calibrate(&[fold(1.1)]).unwrap();
+        let half = |band: &Band| band.half_width(0.9.into(), 0.0, 0.0);
+        assert!((half(&band) - half(&alone)).abs() < 1e-9, "{} and {}", half(&band), half(&alone));
+        // Folds too short to tell are counted together.
+        let short: Vec<Vec<HeldOutRow>> = fold(1.0).chunks(10).map(<[HeldOutRow]>::to_vec).collect();
+        let together = Band::calibrate(&short).unwrap();
+        assert!((half(&together) - half(&Band::calibrate(&[fold(1.0)]).unwrap())).abs() < 1e-9);
     }
 }

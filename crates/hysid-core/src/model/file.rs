@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::rate::RateMethod;
 use crate::data::record::ColumnNames;
 use crate::data::unit;
-use crate::error::{Error, Result};
+use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::law::Classical;
 use crate::model::input_transform::InputTransform;
 use crate::model::{Band, Ensemble, Group, Model, Predictor, Provenance, TrainedRanges};
@@ -17,8 +17,11 @@ use crate::network::scaling::Scaling;
 use crate::network::{Architecture, Layout, Network};
 use crate::options::ModelName;
 
-/// Version of the layout that is written.
-pub const FORMAT_VERSION: u64 = 5;
+/// Latest version of the layout. A model is written in the earliest that has all that it needs.
+pub const FORMAT_VERSION: u64 = 6;
+
+/// Version of the layout of a model that begins in the virgin state: the same without initial states.
+pub const VIRGIN_FORMAT_VERSION: u64 = 5;
 
 /// Up to this version the checksum passed over all white space, in texts too.
 const LOOSE_CHECKSUM: u64 = 4;
@@ -39,6 +42,8 @@ struct File {
     #[serde(default, skip_serializing_if = "InputTransform::is_none")]
     preprocessing: InputTransform,
     trained_ranges: TrainedRanges,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    lead_in: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     network: Option<NetworkParts>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -228,6 +233,7 @@ impl MemberParts {
             rate: self.rate,
             names: columns.clone(),
             trained: self.trained_ranges,
+            lead_in: Vec::new(),
             band: None,
             provenance: self.training,
         };
@@ -235,11 +241,21 @@ impl MemberParts {
     }
 }
 
+/// True if the file says anything of an initial state.
+fn has_initial_state(model: &Model) -> bool {
+    let Provenance { options, selection, lead_ins, .. } = &model.provenance;
+    !model.lead_in.is_empty()
+        || !lead_ins.is_empty()
+        || options.initial_state().is_some()
+        || selection.as_ref().is_some_and(|selection| selection.found_states.is_some())
+}
+
 pub(super) fn write(model: &Model) -> String {
     let (network, law, ensemble) = parts(&model.body);
+    let version = if has_initial_state(model) { FORMAT_VERSION } else { VIRGIN_FORMAT_VERSION };
     let file = File {
         format: FORMAT.into(),
-        version: FORMAT_VERSION,
+        version,
         written_by: format!("hysid {}", env!("CARGO_PKG_VERSION")),
         model: model.name(),
         columns: model.names.clone(),
@@ -247,6 +263,7 @@ pub(super) fn write(model: &Model) -> String {
         rate: model.rate,
         preprocessing: model.preprocessing.clone(),
         trained_ranges: model.trained.clone(),
+        lead_in: model.lead_in.clone(),
         network,
         law,
         ensemble,
@@ -256,7 +273,7 @@ pub(super) fn write(model: &Model) -> String {
     };
     let mut text =
         serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
-    let sum = checksum(&text, FORMAT_VERSION).expect("the key is there");
+    let sum = checksum(&text, version).expect("the key is there");
     let end = text.rfind("00000000").expect("the value is there");
     text.replace_range(end..end + 8, &format!("{sum:08x}"));
     text.push('\n');
@@ -303,7 +320,7 @@ pub(super) fn read(text: &str) -> Result<Model> {
     }
     let file = match version {
         // The text itself tells the place of an error.
-        FORMAT_VERSION => serde_json::from_str(text),
+        VIRGIN_FORMAT_VERSION | FORMAT_VERSION => serde_json::from_str(text),
         _ => serde_json::from_value(upgraded(value)),
     };
     let file: File = file.map_err(|error| {
@@ -356,6 +373,7 @@ fn assemble(file: File) -> Result<Model> {
         rate: file.rate,
         names: file.columns,
         trained: file.trained_ranges,
+        lead_in: file.lead_in,
         band: file.band.map(Band::validated).transpose()?,
         provenance: file.training,
     };
@@ -366,6 +384,9 @@ fn assemble(file: File) -> Result<Model> {
 fn checked(model: Model, name: ModelName) -> Result<Model> {
     model.preprocessing.check()?;
     model.trained.check()?;
+    if model.lead_in.iter().any(|value| value.is_nan() || value.abs() > LARGEST_VALUE) {
+        return Err(Error::Parts("its lead-in has a value that is none".into()));
+    }
     let added = model.preprocessing.added_inputs();
     let inputs = match &model.body {
         Predictor::Network { network, scaling } if network.architecture().inputs == scaling.inputs.len() => {

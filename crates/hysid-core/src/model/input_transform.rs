@@ -71,7 +71,8 @@ impl InputOptions {
             (Some(share), Some(method)) => Some(share * common_rate(data, method)?),
             _ => None,
         };
-        let longest = || data.records().iter().map(|record| path(&record.inputs()[0])).fold(0.0, f64::max);
+        let way = |record: &Record| path(&record.lead_in_rows()) + path(&record.inputs()[0]);
+        let longest = || data.records().iter().map(way).fold(0.0, f64::max);
         Ok(InputTransform {
             companding: self.companding.map(|share| share * largest),
             rate_companding,
@@ -182,6 +183,21 @@ impl Past {
         self.last = Some(x);
         [self.largest / largest, (10.0 * self.path / longest).ln_1p() / f64::ln(11.0)]
     }
+
+    /// Adds the first input at each row of a lead-in.
+    fn take_all(&mut self, rows: &[f64], origin: f64, scales: (f64, f64)) {
+        for &x in rows {
+            self.take(limited(x) - origin, scales);
+        }
+    }
+}
+
+/// A lead-in as a model sees it.
+pub(crate) struct SeenLeadIn {
+    /// The transformed first input at each row.
+    pub first: Vec<f64>,
+    /// All further transformed inputs, which have their values of the first row of the record.
+    pub others: Vec<f64>,
 }
 
 impl InputTransform {
@@ -227,6 +243,17 @@ impl InputTransform {
         }
     }
 
+    /// Transforms a lead-in, whose last row has the first input of `first_row`. `past` then contains it.
+    pub(crate) fn lead_in(&self, rows: &[f64], first_row: &[f64], past: &mut Past) -> SeenLeadIn {
+        if let Some(scales) = self.history {
+            past.take_all(rows, self.origin(0), scales);
+        }
+        let mut others = Vec::new();
+        self.sample(first_row, &mut past.clone(), &mut others);
+        others.remove(0);
+        SeenLeadIn { first: rows.iter().map(|&x| self.input(limited(x))).collect(), others }
+    }
+
     /// The transformed columns of an excitation; `None` if they are unchanged.
     ///
     /// # Errors
@@ -246,6 +273,7 @@ impl InputTransform {
             .collect();
         if let Some(scales) = self.history {
             let mut past = Past::default();
+            past.take_all(&excitation.lead_in_rows(), self.origin(0), scales);
             let (largest, path) = x.iter().map(|&x| past.take(x - self.origin(0), scales).into()).unzip();
             inputs.extend([largest, path]);
         }
@@ -255,7 +283,8 @@ impl InputTransform {
             rates.iter_mut().for_each(|rate| *rate = self.rate(*rate));
             Ok(rates)
         };
-        Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()? }))
+        let lead_in = excitation.lead_in().map(|turns| turns.iter().map(|&x| self.input(x)).collect());
+        Ok(Some(SeenColumns { inputs, rate: rate.map(seen_rate).transpose()?, lead_in }))
     }
 
     /// Transformed data, and the method of their rate.
@@ -301,6 +330,7 @@ pub(crate) fn limited(value: f64) -> f64 {
 pub(crate) struct SeenColumns {
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
+    lead_in: Option<Vec<f64>>,
 }
 
 impl SeenColumns {
@@ -309,6 +339,9 @@ impl SeenColumns {
         let mut seen = Record::new(measured.name(), self.inputs, measured.output().to_vec())?;
         if let Some(time) = measured.time() {
             seen = seen.with_time(time.to_vec())?;
+        }
+        if let Some(lead_in) = self.lead_in {
+            seen = seen.with_lead_in(lead_in)?;
         }
         match self.rate {
             Some(rate) => seen.with_given_rate(rate),
@@ -332,8 +365,12 @@ mod tests {
     #[test]
     fn every_row_follows_the_formulas() {
         let data = data();
-        let shaping =
-            InputOptions { companding: Some(0.1), rate_companding: Some(0.5), history: true, warm_up: 0 };
+        let shaping = InputOptions {
+            companding: Some(0.1),
+            rate_companding: Some(0.5),
+            history: true,
+            ..InputOptions::default()
+        };
         let rate = Some(RateMethod::Backward);
         let preprocessing = shaping.of(&data, rate, Origin::OfData).unwrap();
         let (seen, method) = preprocessing.data(&data, rate).unwrap();

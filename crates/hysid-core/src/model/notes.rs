@@ -1,5 +1,6 @@
 //! Notes on a fitted model, other than its errors.
 
+use crate::data::initial_state::{InitialState, in_words};
 use crate::data::metrics::Errors;
 use crate::data::warning::Warning;
 use crate::model::selection::{Selection, WarmUp};
@@ -14,7 +15,8 @@ impl Model {
     /// that could not distinguish candidates. Empty if there are none.
     pub fn notes(&self) -> Vec<String> {
         let size = self.size_warning().map(|warning| warning.to_string());
-        self.warm_up_note().into_iter().chain(self.one_loop_note()).chain(size).collect()
+        let beginning = self.warm_up_note().into_iter().chain(self.initial_state_note());
+        beginning.chain(self.one_loop_note()).chain(size).collect()
     }
 
     /// A note on more parameters than rows; for an ensemble, of its largest member. For a single network
@@ -43,6 +45,46 @@ impl Model {
             selected.map_or_else(String::new, why),
             percent(&provenance.train),
             percent(behind)
+        ))
+    }
+
+    /// A note on initial states that were found, in which new data then begin.
+    fn initial_state_note(&self) -> Option<String> {
+        let provenance = self.provenance();
+        let found = provenance.selection.as_ref().and_then(|selection| selection.found_states);
+        if found.is_none() && provenance.options.initial_state() != Some(InitialState::Unknown) {
+            return None;
+        }
+        let range = self.trained_ranges().inputs[0];
+        let mut counts: Vec<(String, usize)> = Vec::new();
+        for known in &provenance.lead_ins {
+            let state = in_words(&known.lead_in, range);
+            match counts.iter_mut().find(|(other, _)| *other == state) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((state, 1)),
+            }
+        }
+        let all = in_words(self.lead_in(), range);
+        let begin = match counts.as_slice() {
+            [] => format!("all records begin {all}"),
+            counts => {
+                let begin = |(state, count): &(String, usize)| match count {
+                    1 => format!("1 record begins {state}"),
+                    count => format!("{count} records begin {state}"),
+                };
+                counts.iter().map(begin).collect::<Vec<String>>().join(", ")
+            }
+        };
+        let why = found.map_or_else(String::new, |found| {
+            format!(
+                ", because the cross-validation error of quick models is {:.3} % of std with these states, and \
+                 {:.3} % from the virgin state",
+                Significant(found.found_percent),
+                Significant(found.virgin_percent)
+            )
+        });
+        Some(format!(
+            "initial state: {begin}{why}; new data begin {all} unless another initial state is given (initial_state)"
         ))
     }
 

@@ -6,10 +6,11 @@
 use crate::data::rate::RateMethod;
 use crate::data::record::Excitation;
 use crate::error::{DataProblem, Result};
+use crate::law::series::lead_in_samples;
 use crate::law::{Classical, ClassicalState, Sample};
 use crate::model::band::disagreement;
 use crate::model::ensemble::{Excursion, MedianBuffers};
-use crate::model::input_transform::{InputTransform, Past};
+use crate::model::input_transform::{InputTransform, Past, SeenLeadIn};
 use crate::model::ranges::Ranges;
 use crate::model::{Ensemble, Model, Predictor};
 use crate::network::free_run::{CHUNK, FreeRun};
@@ -32,6 +33,10 @@ pub(super) struct Runner<'m> {
     /// Rates of the rows of a chunk, by each method that the model or a member has.
     rates: Vec<(RateMethod, Vec<f64>)>,
     steps: Vec<f64>,
+    /// Lead-in of a record that has none of its own.
+    lead_in: &'m [f64],
+    /// The memory has been driven along the lead-in of the record.
+    is_begun: bool,
     /// What the trained ranges are compared with, if that is wanted: its rate is that of this method.
     ranges: Option<(Ranges, Option<RateMethod>)>,
 }
@@ -79,17 +84,17 @@ struct Chunk<'a> {
 }
 
 impl<'m> Runner<'m> {
-    /// A run of a model, from the virgin state.
+    /// A run of a model, from its initial state where a record has no other.
     pub fn of_model(model: &'m Model) -> Self {
         let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
         let range = match &model.body {
             Predictor::Ensemble(ensemble) => ensemble.range(),
             Predictor::Network { .. } | Predictor::Law(_) => model.trained.inputs[0],
         };
-        Self { range, excursion: Excursion::beyond(range), ..run }
+        Self { range, excursion: Excursion::beyond(range), lead_in: &model.lead_in, ..run }
     }
 
-    /// A run of what simulates alone.
+    /// A run of what simulates alone, from the virgin state where a record has no other.
     pub fn of_body(
         body: &'m Predictor,
         preprocessing: Option<&'m InputTransform>,
@@ -114,6 +119,8 @@ impl<'m> Runner<'m> {
             range,
             rates: methods.into_iter().map(|method| (method, Vec::new())).collect(),
             steps: Vec::new(),
+            lead_in: &[],
+            is_begun: false,
             ranges: None,
         }
     }
@@ -135,13 +142,14 @@ impl<'m> Runner<'m> {
         around.fold((1, 0), |most, around| (most.0.max(around.0), most.1.max(around.1)))
     }
 
-    /// Back to the virgin state, before another record.
+    /// Back to the initial state, before another record.
     pub fn reset(&mut self) {
+        self.is_begun = false;
         self.body.singles_mut().iter_mut().for_each(Single::reset);
         self.excursion = Excursion::beyond(self.range);
     }
 
-    /// The outputs of a whole record, from the virgin state.
+    /// The outputs of a whole record, from its initial state.
     ///
     /// # Errors
     /// Another number of inputs than the model has, a rate that cannot be computed.
@@ -176,6 +184,20 @@ impl<'m> Runner<'m> {
         Ok(())
     }
 
+    /// Drives the memory along the lead-in, before the first row of a record, which is here.
+    fn begin(&mut self, excitation: &Excitation<'_>, first: usize) {
+        if std::mem::replace(&mut self.is_begun, true) {
+            return;
+        }
+        let lead_in = excitation.lead_in().unwrap_or(self.lead_in);
+        if lead_in.is_empty() {
+            return;
+        }
+        let first_row: Vec<f64> = excitation.inputs().iter().map(|input| input[first]).collect();
+        let rows: Vec<f64> = lead_in.iter().chain(&first_row[..1]).copied().collect();
+        self.body.singles_mut().iter_mut().for_each(|single| single.lead_in(&rows, &first_row));
+    }
+
     fn chunk(
         &mut self,
         excitation: &Excitation<'_>,
@@ -184,6 +206,7 @@ impl<'m> Runner<'m> {
         spreads: Option<&mut [Spread]>,
     ) -> Result<()> {
         let rows = first..first + outputs.len();
+        self.begin(excitation, first);
         for (method, rates) in &mut self.rates {
             rates.resize(rows.len(), 0.0);
             method.fill(excitation, first, rates)?;
@@ -270,6 +293,20 @@ impl<'m> Single<'m> {
         match &mut self.mechanism {
             Mechanism::Network(network) => network.reset(),
             Mechanism::Law(law, state, _) => *state = law.virgin(),
+        }
+    }
+
+    /// Drives the memory along a lead-in, whose last row has the first input of `first_row`.
+    fn lead_in(&mut self, rows: &[f64], first_row: &[f64]) {
+        let nothing = InputTransform::default();
+        let SeenLeadIn { first, others } =
+            self.preprocessing.unwrap_or(&nothing).lead_in(rows, first_row, &mut self.past);
+        match &mut self.mechanism {
+            Mechanism::Network(network) => network.lead_in(&first, &others),
+            Mechanism::Law(law, state, _) => {
+                let samples: Vec<Sample> = lead_in_samples(&first).collect();
+                law.run_on(state, &samples, &mut vec![0.0; samples.len()]);
+            }
         }
     }
 

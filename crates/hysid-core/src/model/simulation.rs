@@ -6,7 +6,7 @@ use crate::data::record::Excitation;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
 use crate::model::runner::{Runner, Spread};
-use crate::model::{Band, Model, Prediction};
+use crate::model::{Band, BandLevel, Model, Prediction};
 
 /// A simulation that takes the rows of a record in blocks. The outputs are those of [`Model::response`] or
 /// [`Model::predict`] to the last bit, for any division into blocks.
@@ -16,7 +16,7 @@ use crate::model::{Band, Model, Prediction};
 pub struct Simulation<'m> {
     model: &'m Model,
     runner: Runner<'m>,
-    band: Option<(&'m Band, f64)>,
+    band: Option<(&'m Band, BandLevel)>,
     record: String,
     window: Window,
 }
@@ -27,6 +27,8 @@ struct Window {
     time: Option<Vec<f64>>,
     inputs: Vec<Vec<f64>>,
     rate: Option<Vec<f64>>,
+    /// Lead-in of the record, if it has one of its own.
+    lead_in: Option<Vec<f64>>,
     /// Rows of the record before the window.
     before: usize,
     /// Rows of the window that are simulated.
@@ -34,12 +36,13 @@ struct Window {
 }
 
 impl<'m> Simulation<'m> {
-    pub(super) fn new(model: &'m Model, band: Option<(&'m Band, f64)>) -> Self {
+    pub(super) fn new(model: &'m Model, band: Option<(&'m Band, BandLevel)>) -> Self {
         let runner = Runner::of_model(model).watching(model);
         Self { model, runner, band, record: String::new(), window: Window::default() }
     }
 
-    /// Begins a record of this name, from the virgin state. Pending rows of an earlier record are dropped.
+    /// Begins a record of this name, from the initial state of the model, or after the lead-in of the first
+    /// rows that it takes. Pending rows of an earlier record are dropped.
     pub fn begin(&mut self, record: impl Into<String>) {
         self.runner.reset();
         self.record = record.into();
@@ -91,9 +94,9 @@ impl<'m> Simulation<'m> {
 
 impl Prediction {
     /// Outputs with their band, if there is one.
-    pub(super) fn of(band: Option<(&Band, f64)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
+    pub(super) fn of(band: Option<(&Band, BandLevel)>, output: Vec<f64>, spreads: &[Spread]) -> Self {
         let half = |spread: &Spread| {
-            band.map(|(band, probability)| band.half_width(probability, spread.disagreement, spread.outside))
+            band.map(|(band, level)| band.half_width(level, spread.disagreement, spread.outside))
         };
         let halves: Vec<f64> = spreads.iter().filter_map(half).collect();
         Self {
@@ -127,6 +130,7 @@ impl Window {
             self.inputs = vec![Vec::new(); rows.inputs().len()];
             self.time = rows.time().map(|_| Vec::new());
             self.rate = rows.given_rate().map(|_| Vec::new());
+            self.lead_in = rows.lead_in().map(<[f64]>::to_vec);
         }
         let (expected, found) = (self.inputs.len(), rows.inputs().len());
         if expected != found {
@@ -156,7 +160,8 @@ impl Window {
 
     fn excitation<'a>(&'a self, name: &'a str) -> Excitation<'a> {
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
-        Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref())
+        let excitation = Excitation::unchecked(name, self.time.as_deref(), inputs, self.rate.as_deref());
+        excitation.after(self.lead_in.as_deref())
     }
 
     /// Drops all rows that are simulated but so many, the last ones.

@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 
+use crate::data::initial_state::InitialState;
 use crate::error::{Result, SampleError};
+use crate::law::series::lead_in_samples;
 use crate::law::{ClassicalState, Sample};
 use crate::model::ensemble::{Excursion, MedianBuffers};
-use crate::model::input_transform::{Past, limited};
+use crate::model::input_transform::{Past, SeenLeadIn, limited};
 use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
@@ -15,6 +17,8 @@ use crate::network::Simulator;
 pub struct Stepper<'m> {
     model: Cow<'m, Model>,
     state: State,
+    /// Lead-in of the record.
+    lead_in: Vec<f64>,
 }
 
 /// What is known of the past.
@@ -64,7 +68,7 @@ impl Memory {
 
 impl<'m> Stepper<'m> {
     pub(super) fn new(model: Cow<'m, Model>) -> Self {
-        Self { state: State::virgin(&model), model }
+        Self { state: State::virgin(&model), lead_in: model.lead_in.clone(), model }
     }
 
     /// Advances to the next sample and returns the output there, in the user's unit.
@@ -78,12 +82,27 @@ impl<'m> Stepper<'m> {
     /// then unchanged.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
+        if self.state.last.is_none() && !self.lead_in.is_empty() {
+            let rows: Vec<f64> = self.lead_in.iter().chain(&inputs[..1]).copied().collect();
+            self.state.lead_in(&self.model, &rows, inputs);
+        }
         Ok(self.state.advance(&self.model, inputs, time, rate))
     }
 
-    /// Returns to the virgin state.
+    /// Returns to the initial state of the model.
     pub fn reset(&mut self) {
         self.state.reset(&self.model);
+        self.lead_in.clone_from(&self.model.lead_in);
+    }
+
+    /// Returns to another initial state.
+    ///
+    /// # Errors
+    /// An unknown state. The stepper is then unchanged.
+    pub fn reset_to(&mut self, state: InitialState) -> Result<()> {
+        self.lead_in = self.model.lead_in_of(state)?;
+        self.state.reset(&self.model);
+        Ok(())
     }
 }
 
@@ -127,6 +146,33 @@ impl State {
     fn rate(&self, model: &Model, inputs: &[f64], elapsed: f64, given: Option<f64>) -> Option<f64> {
         let backward = || self.last.map_or(0.0, |(_, before)| (inputs[0] - before) / elapsed);
         model.rate.map(|_| given.unwrap_or_else(backward))
+    }
+
+    /// Drives the memory along a lead-in, whose last row has the first input of the first sample.
+    fn lead_in(&mut self, model: &Model, rows: &[f64], first_row: &[f64]) {
+        if let (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) = (&model.body, &mut self.memory) {
+            for (state, member) in memory.members.iter_mut().zip(ensemble.members()) {
+                state.lead_in(member, rows, first_row);
+            }
+            return;
+        }
+        let SeenLeadIn { first, others } = model.preprocessing.lead_in(rows, first_row, &mut self.past);
+        match (&model.body, &mut self.memory) {
+            (Predictor::Network { scaling, .. }, Memory::Network(simulator, u)) => {
+                let mut channels: Vec<[f64; 1]> = vec![[0.0]; u.len()];
+                for x in first {
+                    scaling.fill_lead_in(&[x], &others, &mut channels);
+                    u.iter_mut().zip(&channels).for_each(|(u, [channel])| *u = *channel);
+                    simulator.step(u, f64::INFINITY);
+                }
+            }
+            (Predictor::Law(law), Memory::Law(state)) => {
+                for sample in lead_in_samples(&first) {
+                    law.step(state, sample);
+                }
+            }
+            _ => unreachable!("the memory was made for the body"),
+        }
     }
 
     /// Takes a sample that was checked.

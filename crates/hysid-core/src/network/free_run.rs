@@ -39,6 +39,16 @@ impl<'a> FreeRun<'a> {
         self.simulator.reset();
     }
 
+    /// Drives the memory along a lead-in: the first input at each of its rows, and the further inputs at the
+    /// first row of the record.
+    pub fn lead_in(&mut self, first: &[f64], others: &[f64]) {
+        self.channels.iter_mut().for_each(|channel| channel.resize(first.len(), 0.0));
+        self.scaling.fill_lead_in(first, others, &mut self.channels);
+        let u: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
+        let steps = vec![f64::INFINITY; first.len()];
+        self.simulator.run(&u, &steps, &mut vec![0.0; first.len()]);
+    }
+
     /// Simulates the rows of the excitation from `first` on, with the time step before each.
     pub fn rows(
         &mut self,
@@ -55,7 +65,7 @@ impl<'a> FreeRun<'a> {
         Ok(())
     }
 
-    /// The output of each row, in the user's unit.
+    /// The output of each row, in the user's unit; from the virgin state if the excitation has no lead-in.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -67,6 +77,10 @@ impl<'a> FreeRun<'a> {
         let mut y = vec![0.0; excitation.len()];
         let mut steps = if self.network.architecture().relaxation > 0 { vec![0.0; CHUNK] } else { vec![] };
         self.reset();
+        let lead_in = excitation.lead_in_rows();
+        if !lead_in.is_empty() {
+            self.lead_in(&lead_in, &excitation.others_at_first_row());
+        }
         for (index, y) in y.chunks_mut(CHUNK).enumerate() {
             let first = index * CHUNK;
             let steps_here = y.len().min(steps.len());

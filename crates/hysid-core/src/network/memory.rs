@@ -343,17 +343,19 @@ impl MemoryLayer {
             let mut slope = sensitivity.as_ref().map_or(0.0, |s| s.stress[m]);
             let mut step = f64::NAN;
             let mut factors = (1.0, 1.0);
+            let mut decay_by_ln_tau = 0.0;
             for t in 0..rows {
                 if steps[t] != step {
                     step = steps[t];
                     factors = relaxation::decay(step, tau);
+                    // φE, which falls to 0 as φ = h/τ grows beyond all bounds.
+                    decay_by_ln_tau = if step == f64::INFINITY { 0.0 } else { step / tau * factors.0 };
                 }
                 let increment = u[channel][t] - last;
                 if sensitivity.is_some() {
                     let (e, g) = factors;
-                    let phi = step / tau;
                     // theory.md (2.10), with (1 - E - φE)/φ = G - E
-                    slope = e * slope + phi * e * stress + increment * (g - e);
+                    slope = e * slope + decay_by_ln_tau * stress + increment * (g - e);
                     ln_tau[m][t] = slope;
                 }
                 stress = relaxation::advance(stress, increment, factors);

@@ -78,7 +78,7 @@ impl Scaling {
         })
     }
 
-    /// A record as scaled inputs of a network of this architecture.
+    /// A record as scaled inputs of a network of this architecture, the rows of its lead-in first.
     ///
     /// # Errors
     /// A rate that cannot be computed.
@@ -89,12 +89,36 @@ impl Scaling {
         rate: Option<RateMethod>,
     ) -> Result<Drive> {
         let rate = rate.filter(|_| architecture.rate);
-        let mut channels = vec![vec![0.0; record.len()]; architecture.channels()];
+        let lead_in = record.lead_in_rows();
+        let rows = lead_in.len() + record.len();
+        let mut channels = vec![vec![0.0; rows]; architecture.channels()];
         let excitation = record.excitation();
-        self.fill_channels(&excitation, rate, 0, record.len(), &mut channels)?;
-        let mut steps = vec![0.0; if architecture.relaxation > 0 { record.len() } else { 0 }];
-        Self::fill_steps(&excitation, 0, &mut steps);
+        let mut behind: Vec<&mut [f64]> =
+            channels.iter_mut().map(|channel| &mut channel[lead_in.len()..]).collect();
+        self.fill_channels(&excitation, rate, 0, record.len(), &mut behind)?;
+        self.fill_lead_in(&lead_in, &excitation.others_at_first_row(), &mut channels);
+        let mut steps = vec![f64::INFINITY; if architecture.relaxation > 0 { rows } else { 0 }];
+        if let Some(behind) = steps.get_mut(lead_in.len()..) {
+            behind.fill(0.0);
+            Self::fill_steps(&excitation, 0, behind);
+        }
         Ok(Drive { channels, steps })
+    }
+
+    /// Fills the channels of the rows of a lead-in: the first input, its rate, which is 0, if there is a channel
+    /// for it, and the further inputs with their values at the first row of the record.
+    pub(crate) fn fill_lead_in(&self, first: &[f64], others: &[f64], channels: &mut [impl AsMut<[f64]>]) {
+        let has_rate = channels.len() > self.inputs.len();
+        let mut channels = channels.iter_mut().map(|channel| &mut channel.as_mut()[..first.len()]);
+        let Some(channel) = channels.next() else { return };
+        let factor = 1.0 / self.inputs[0];
+        channel.iter_mut().zip(first).for_each(|(u, x)| *u = x * factor);
+        if let Some(rate) = has_rate.then(|| channels.next()).flatten() {
+            rate.fill(0.0);
+        }
+        for ((channel, value), scale) in channels.zip(others).zip(&self.inputs[1..]) {
+            channel.fill(value * (1.0 / scale));
+        }
     }
 
     /// Fills the channels (first input, its rate if there is a method for it, further inputs) of
@@ -134,6 +158,13 @@ impl Scaling {
         for (row, step) in (first..).zip(steps) {
             *step = if row == 0 { 0.0 } else { time[row] - time[row - 1] };
         }
+    }
+
+    /// Measured outputs of the rows of [`Scaling::drive`] in scaled units: those of a lead-in are blank.
+    pub fn target(&self, record: &Record) -> Vec<f64> {
+        let mut target = vec![f64::NAN; record.lead_in_rows().len()];
+        target.extend(self.scaled_output(record.output()));
+        target
     }
 
     /// Measured outputs in scaled units; blanks stay NaN.

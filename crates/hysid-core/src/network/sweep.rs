@@ -16,8 +16,8 @@ pub struct Drive {
     /// One column for each channel (first input, its rate if there is one, further inputs), each with one
     /// value a row.
     pub channels: Vec<Vec<f64>>,
-    /// The time step before each row, 0 at the first, in the unit of time; empty for an architecture without
-    /// relaxation neurons.
+    /// The time step before each row, 0 at the first, in the unit of time; infinite at the rows of a
+    /// [lead-in](crate::data::initial_state). Empty for an architecture without relaxation neurons.
     pub steps: Vec<f64>,
 }
 

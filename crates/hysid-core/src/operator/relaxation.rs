@@ -25,7 +25,9 @@ use super::{InvalidOperator, is_usable};
 /// increment of the input, both between 0 and 1 (theory.md (1.11)).
 ///
 /// `time_step` is `h`, and `tau > 0`, in the same unit of time. `time_step = 0`, a jump of the input, gives
-/// exactly `(1, 1)`; a negative or NaN `time_step` counts as 0. Short steps cause no cancellation.
+/// exactly `(1, 1)`; a negative or NaN `time_step` counts as 0. An infinite `time_step`, after which nothing is
+/// left of any stress, gives `(0, 0)`, except for an infinite `tau`, a spring, which gives `(1, 1)`. Short steps
+/// cause no cancellation.
 #[inline(always)]
 pub fn decay(time_step: f64, tau: f64) -> (f64, f64) {
     let steps = time_step / tau;

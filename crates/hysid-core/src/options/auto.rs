@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::options::FitSpec;
 use crate::options::network::SEED;
@@ -50,6 +51,9 @@ pub struct AutoOptions {
     pub history: Option<bool>,
     /// Warm-up: rows at the beginning of each record that advance the memory and are not scored in training.
     pub warm_up: Option<usize>,
+    /// Initial state of every record.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_state: Option<InitialState>,
     /// λ: penalty `½ λ ‖c‖²` on the output weights of networks (theory.md (3.1)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ridge: Option<f64>,
@@ -78,6 +82,7 @@ impl Default for AutoOptions {
             companding: None,
             history: None,
             warm_up: None,
+            initial_state: None,
             ridge: None,
             decay: None,
             seed: SEED,

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
+use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::error::{Error, OptionError, Result};
 use crate::network::{Family, Sizes};
@@ -32,6 +33,8 @@ pub struct NamedOptions {
     pub companding: Option<f64>,
     pub rate_companding: Option<f64>,
     pub warm_up: Option<usize>,
+    #[serde(deserialize_with = "named")]
+    pub initial_state: Option<InitialState>,
     #[serde(deserialize_with = "named")]
     pub training: Option<Trainer>,
     pub starts: Option<usize>,
@@ -156,6 +159,7 @@ impl NamedOptions {
             companding: self.companding.map(|share| share > 0.0),
             history: self.history,
             warm_up: self.warm_up,
+            initial_state: self.initial_state,
             ridge: self.ridge,
             decay: self.decay,
             seed: self.seed.unwrap_or(defaults.seed),
@@ -218,6 +222,7 @@ impl NamedOptions {
             rate_companding: self.rate_companding.filter(|share| *share != 0.0),
             history: self.history.unwrap_or_default(),
             warm_up: self.warm_up.unwrap_or_default(),
+            initial_state: self.initial_state,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::initial_state::InitialState;
 use crate::data::rate::RateMethod;
 use crate::network::Family;
 use crate::options::ModelName;
@@ -98,6 +99,26 @@ impl FitSpec {
             Self::Classical(options) => options.rate,
             Self::Auto(options) => options.rate,
         }
+    }
+
+    /// Initial state of every record; `None` if it is not decided.
+    pub fn initial_state(&self) -> Option<InitialState> {
+        match self {
+            Self::Network(options) => options.shaping.initial_state,
+            Self::Classical(options) => options.shaping.initial_state,
+            Self::Auto(options) => options.initial_state,
+        }
+    }
+
+    /// The same with another initial state of every record.
+    pub fn with_initial_state(&self, state: Option<InitialState>) -> Self {
+        let mut spec = self.clone();
+        match &mut spec {
+            Self::Network(options) => options.shaping.initial_state = state,
+            Self::Classical(options) => options.shaping.initial_state = state,
+            Self::Auto(options) => options.initial_state = state,
+        }
+        spec
     }
 
     /// Number of requested starts; 1 if the model's own default is taken.

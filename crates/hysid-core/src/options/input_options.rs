@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::data::initial_state::InitialState;
 use crate::error::Result;
 use crate::options::table::check;
 
@@ -28,6 +29,9 @@ pub struct InputOptions {
     /// A record that does not begin in the virgin state reaches its own memory in these rows.
     #[serde(skip_serializing_if = "is_zero")]
     pub warm_up: usize,
+    /// Initial state of every record; `None` for the lead-ins that the records have, virgin without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_state: Option<InitialState>,
 }
 
 fn is_zero(rows: &usize) -> bool {

@@ -3,6 +3,7 @@
 
 use serde_json::Value;
 
+use crate::data::initial_state::InitialState;
 use crate::error::{OptionError, Result};
 use crate::law::duhem_nn::MOST_STATES;
 use crate::network::Family;
@@ -89,7 +90,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 28] = [
+pub const OPTIONS: [FitOption; 29] = [
     FitOption {
         name: "model",
         group: Model,
@@ -172,6 +173,15 @@ pub const OPTIONS: [FitOption; 28] = [
                   do not begin in the virgin state",
         values: Values::Whole,
         default: "chosen by cross-validation for auto, otherwise 0",
+        used_by: |_, _| true,
+    },
+    FitOption {
+        name: "initial_state",
+        group: Training,
+        meaning: "State of the memory at the beginning of each record: without history, after a visit of the upper or \
+                  the lower end of the input range, demagnetised, or unknown and found for each record",
+        values: Values::Names(initial_states),
+        default: "virgin; for auto, cross-validation chooses among virgin, a warm-up and unknown",
         used_by: |_, _| true,
     },
     FitOption {
@@ -340,6 +350,10 @@ fn trainers() -> Vec<&'static str> {
     Trainer::ALL.map(Trainer::name).into()
 }
 
+fn initial_states() -> Vec<&'static str> {
+    InitialState::ALL.map(InitialState::name).into()
+}
+
 fn signs() -> Vec<&'static str> {
     Sign::ALL.map(Sign::name).into()
 }
@@ -365,7 +379,7 @@ fn of_none(_: ModelName, _: Trainer) -> bool {
 }
 
 /// Options of every model, whatever it is.
-const OF_EVERY_MODEL: [&str; 5] = ["model", "members", "companding", "warm_up", "seed"];
+const OF_EVERY_MODEL: [&str; 6] = ["model", "members", "companding", "warm_up", "initial_state", "seed"];
 
 /// Checks values of options.
 ///

@@ -15,8 +15,8 @@ const OPEN: f64 = 0.1;
 /// A virgin record begins in the middle of its loops; within this share of their height from one side it does not.
 const SIDE: f64 = 0.15;
 
-const HELP: &str =
-    "add a few earlier rows with blank outputs before it, or blank the output of its first cycle";
+const HELP: &str = "add a few earlier rows with blank outputs before it, give its initial state, or blank the output of its first \
+     cycle";
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     (0..survey.data.records().len()).filter_map(|record| beginning(survey, record)).collect()

@@ -210,6 +210,7 @@ impl<'m> Probe<'m> {
         let mut inputs = vec![x.to_vec()];
         inputs.extend(self.held.iter().map(|&value| vec![value; x.len()]));
         let record = Record::new(name, inputs, vec![f64::NAN; x.len()])?.with_time(time.to_vec())?;
+        let record = record.with_lead_in(Vec::new())?;
         if self.model.rate() == Some(RateMethod::Given) {
             let rate = RateMethod::Central.rate(&record)?;
             return record.with_given_rate(rate);

@@ -60,3 +60,16 @@ def truth(name: str, value: Any) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise TypeError(f"{name} {value!r}: True or False is needed")
     return bool(value)
+
+
+def name_of(what: str, value: Any) -> str | None:
+    """A name, or None.
+
+    Raises
+    ------
+    TypeError
+        Something else.
+    """
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{what} {value!r}: a name is needed")
+    return value

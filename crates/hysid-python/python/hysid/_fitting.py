@@ -70,6 +70,7 @@ def fit(
     rate_companding: float | None = None,
     history: bool | None = None,
     warm_up: int | None = None,
+    initial_state: str | None = None,
     training: str | None = None,
     starts: int | None = None,
     epochs: int | None = None,
@@ -114,7 +115,7 @@ def fit(
         Method for the rate of the first input: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
     records : array of shape (n,), optional
-        A label for each row; where the label changes, a new record starts in the virgin state.
+        A label for each row; where the label changes, a new record starts in the initial state.
     model : str, optional
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
@@ -142,6 +143,10 @@ def fit(
     warm_up : int, optional
         Rows at the beginning of each record that drive the memory and are not trained on, for records that do
         not begin in the virgin state. Default: chosen by cross-validation for auto, otherwise 0.
+    initial_state : str, optional
+        State of the memory at the beginning of each record: without history, after a visit of the upper or the
+        lower end of the input range, demagnetised, or unknown and found for each record. Default: virgin; for
+        auto, cross-validation chooses among virgin, a warm-up and unknown.
     training : str, optional
         Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the
         sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.

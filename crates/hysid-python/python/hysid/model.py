@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
-from hysid._arguments import real, truth
+from hysid._arguments import name_of, real, truth, whole
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
@@ -320,9 +320,10 @@ class Model:
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,
         *,
+        initial_state: str | None = None,
         same_units: bool = False,
     ) -> Any:
-        """Simulate the output from the inputs, starting in the virgin state.
+        """Simulate the output from the inputs, from the initial state of the memory.
 
         Contiguous float64 columns are not copied.
 
@@ -335,7 +336,11 @@ class Model:
         rate : array of shape (n,), optional
             The rate of the first input, for a model that was trained with a given rate.
         records : array of shape (n,), optional
-            A label for each row; where the label changes, a new record starts in the virgin state.
+            A label for each row; where the label changes, a new record starts in the initial state.
+        initial_state : str, optional
+            State of the memory at the beginning of each record: ``"virgin"``, ``"saturated-up"`` (after a visit of the
+            upper end of the trained input range), ``"saturated-down"`` or ``"demagnetised"``. By default that of most
+            training records, which is ``"virgin"`` unless the fit found or was given another.
         same_units : bool
             Do not convert units. Otherwise, units in the names of pandas objects are converted to those of the
             training, and a conversion that is not known is an error.
@@ -350,8 +355,9 @@ class Model:
         ValueError
             Invalid inputs.
         """
+        state = name_of("initial_state", initial_state)
         arranged = self._converted(columns(x, None, time, rate, records), same_units)
-        return _like(x, self._simulated(arranged), f"{self.output}_model")
+        return _like(x, self._simulated(arranged, state), f"{self.output}_model")
 
     def predict(
         self,
@@ -361,11 +367,14 @@ class Model:
         records: ArrayLike | None = None,
         *,
         probability: float = 0.9,
+        of_ten: int = 5,
+        initial_state: str | None = None,
         same_units: bool = False,
     ) -> Prediction:
-        """Simulate with a prediction band that contains the measured output with a given probability.
+        """Simulate with a prediction band that contains the measured output in a given share of the rows.
 
-        The band was calibrated on held-out training data and assumes that new data resemble them.
+        The band was calibrated on held-out training data and assumes that new data resemble them. The share is right
+        on average over data sets; in one of them it may be more or less.
 
         Parameters
         ----------
@@ -374,7 +383,12 @@ class Model:
         time, rate, records : array of shape (n,), optional
             As of `simulate`.
         probability : float
-            Probability of the band, from 0.5 to 0.99.
+            Probability of the band, from 0.5 to 0.99: the share of the rows that it contains.
+        of_ten : int
+            Data sets of ten in which the band contains at least that share, from 5, on average, to 9; 9 makes the band
+            about twice as wide.
+        initial_state : str, optional
+            As of `simulate`.
         same_units : bool
             As of `simulate`.
 
@@ -399,9 +413,11 @@ class Model:
         True
         """
         probability = real("probability", probability)
+        of_ten = whole("of_ten", of_ten, 5, 9)
+        state = name_of("initial_state", initial_state)
         arranged = self._converted(columns(x, None, time, rate, records), same_units)
         runs = [
-            self._native.predict(name, *driving, probability) for name, driving in _of_records(arranged)
+            self._native.predict(name, *driving, probability, of_ten, state) for name, driving in _of_records(arranged)
         ]
         self._warn_of_range(arranged)
         name = f"{self.output}_model"
@@ -409,8 +425,8 @@ class Model:
         columns_of = (np.concatenate(parts) for parts in zip(*runs))
         return Prediction(*(_like(x, *one) for one in zip(columns_of, (name, *low_high))))
 
-    def _simulated(self, arranged: Columns) -> np.ndarray:
-        outputs = [self._native.simulate(name, *driving) for name, driving in _of_records(arranged)]
+    def _simulated(self, arranged: Columns, initial_state: str | None = None) -> np.ndarray:
+        outputs = [self._native.simulate(name, *driving, initial_state) for name, driving in _of_records(arranged)]
         self._warn_of_range(arranged)
         return outputs[0] if len(outputs) == 1 else np.concatenate(outputs)
 
@@ -433,6 +449,7 @@ class Model:
         rate: ArrayLike | None = None,
         records: ArrayLike | None = None,
         *,
+        initial_state: str | None = None,
         same_units: bool = False,
         after_warm_up: bool = False,
     ) -> Errors:
@@ -445,6 +462,8 @@ class Model:
         y : array of shape (n,)
             The measured output; rows with NaN are not scored.
         time, rate, records : array of shape (n,), optional
+            As of `simulate`.
+        initial_state : str, optional
             As of `simulate`.
         same_units : bool
             As of `simulate`.
@@ -461,8 +480,11 @@ class Model:
         ValueError
             Invalid inputs, or no measured output.
         """
+        state = name_of("initial_state", initial_state)
         arranged = self._converted(columns(x, y, time, rate, records), same_units)
-        return self._evaluated(arranged, after_warm_up=truth("after_warm_up", after_warm_up))
+        return self._evaluated(
+            arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
+        )
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
         """Columns in the units of the training, converted where names contain units; warns of conversions."""
@@ -491,16 +513,18 @@ class Model:
         warn(notes)
         return result
 
-    def _evaluated(self, arranged: Columns, *, after_warm_up: bool = False) -> Errors:
+    def _evaluated(
+        self, arranged: Columns, *, after_warm_up: bool = False, initial_state: str | None = None
+    ) -> Errors:
         data = arranged.dataset()
-        errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up)))
+        errors = Errors(**json.loads(self._native.evaluate(data, after_warm_up, initial_state)))
         if arranged.output is not None and arranged.output.name is None:
             errors = replace(errors, output=self.output)
         warn(self._native.range_warnings(data))
         return errors
 
     def step(self, x: Any, time: float | None = None, rate: float | None = None) -> float:
-        """Simulate one sample, for control loops and structural analyses; the first starts in the virgin state.
+        """Simulate one sample, for control loops and structural analyses; the first starts in the initial state.
 
         Parameters
         ----------
@@ -526,9 +550,18 @@ class Model:
             stepper = self._stepper = self._native.stepper()
         return stepper.step(x, time, rate)
 
-    def reset(self) -> None:
-        """Go back to the virgin state before the next `step`."""
-        self._stepper = None
+    def reset(self, initial_state: str | None = None) -> None:
+        """Go back to the initial state before the next `step`.
+
+        Parameters
+        ----------
+        initial_state : str, optional
+            As of `simulate`.
+        """
+        state = name_of("initial_state", initial_state)
+        stepper = self._native.stepper()
+        stepper.reset(state)
+        self._stepper = stepper
 
     def stepper(self) -> Stepper:
         """Give an independent stepper with the methods `step` and `reset`.
@@ -536,7 +569,7 @@ class Model:
         Returns
         -------
         Stepper
-            In the virgin state.
+            In the initial state of the model; its `reset` takes another one by its name.
         """
         return self._native.stepper()
 

@@ -21,7 +21,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     """A model of hysteresis as an estimator of scikit-learn.
 
     Rows are samples in the order of time, because the output of a model with memory depends on earlier rows.
-    `predict` is a free run over the rows in this order, from the virgin state; it does not use measured outputs. Time
+    `predict` is a free run over the rows in this order, from the initial state; it does not use measured outputs. Time
     stamps and labels of records are columns of `X`, named by `time` and `record`, so that they stay with their rows in
     a pipeline or a cross-validation. For cross-validation use ``GroupKFold`` over the records; `fit` warns of a
     shuffled split, such as ``ShuffleSplit``, because it destroys the order.
@@ -32,7 +32,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         The column of `X` with the time stamps, increasing within each record: its name in a pandas object, or its
         index.
     record : str or int, optional
-        The column of `X` with the labels of the records; where the label changes, a new record starts in the virgin
+        The column of `X` with the labels of the records; where the label changes, a new record starts in the initial
         state.
     rate : str, default "auto"
         As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
@@ -40,7 +40,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         As of `hysid.fit`; the default ``"auto"`` is accurate and slow. In a search or a cross-validation, name a
         model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
-    warm_up, training, starts, epochs, population, stall, validation, ridge, decay : optional
+    warm_up, initial_state, training, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, states, thresholds, sign, dead_zones, free_weights : optional
     logarithmic_thresholds, degradation, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
@@ -85,6 +85,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         rate_companding: float | None = None,
         history: bool | None = None,
         warm_up: int | None = None,
+        initial_state: str | None = None,
         training: str | None = None,
         starts: int | None = None,
         epochs: int | None = None,
@@ -119,6 +120,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.rate_companding = rate_companding
         self.history = history
         self.warm_up = warm_up
+        self.initial_state = initial_state
         self.training = training
         self.starts = starts
         self.epochs = epochs

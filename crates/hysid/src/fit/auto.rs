@@ -23,6 +23,7 @@
 //! docs/accuracy.md of the repository reports the settings that were compared, on which cases, and the
 //! errors.
 
+mod beginning;
 mod candidates;
 mod combination;
 mod prior;
@@ -42,7 +43,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::network::{Fitted, Observer};
 use crate::model::input_transform::InputTransform;
-use crate::model::selection::{Selection, WarmUp};
+use crate::model::selection::{FoundStates, Selection, WarmUp};
 use crate::model::{
     Band, Ensemble, Found, Group, HeldOutRow, Model, Node, NodeKind, Predictor, Provenance, Weights,
 };
@@ -51,6 +52,7 @@ use crate::options::auto::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
 use crate::validation::{PooledErrors, folds};
+use beginning::{Beginning, as_chosen};
 use candidates::{Candidate, candidates, quick};
 use combination::{Combination, Leaf};
 use prior::Evidence;
@@ -76,7 +78,8 @@ pub(crate) fn requests(data: &Dataset, options: &AutoOptions) -> Vec<FitSpec> {
 /// The candidates: all that suit the data, or the one requested model.
 fn wanted(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     match &options.only {
-        Some(request) => vec![Candidate::alone(request)],
+        // The records have their initial state before any candidate is fitted to them.
+        Some(request) => vec![Candidate::alone(&request.with_initial_state(None))],
         None => candidates(data, options),
     }
 }
@@ -92,19 +95,20 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let Some(first) = candidates.first() else {
         return Err(Error::NoCandidate);
     };
+    let data = &*as_chosen(data, options)?;
     let few = data.thinned(MOST_ROWS);
     let folds = folds(&few, MOST_FOLDS);
     let work = Work::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
     let alone = work.first_fit(first, &few)?;
-    let warm_up = match options.warm_up {
-        Some(rows) => WarmUp::decided(rows),
-        None => warm_up::better(quick(options), &few, &folds, &work),
-    };
+    let beginning = Beginning::of(&quick(options), &few, folds, options, &work);
+    let data = &*beginning.of_all(data)?;
+    let Beginning { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
     let held_out: Vec<HeldOut> = folds.into_iter().map(HeldOut::of).collect();
-    let first_member = (warm_up.rows == 0 && !work.is_stopped()).then(|| alone.clone());
+    let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();
+    let first_member = is_first.then(|| alone.clone());
     if held_out.is_empty() {
         return without_folds(data, &few, options, &candidates[0], alone, &work);
     }
@@ -113,7 +117,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
     let Stages { trials, dropped, .. } = stages;
-    Chosen { data, options, bench, evidence, trials, dropped, warm_up }.fit(alone)
+    Chosen { data, options, bench, evidence, trials, dropped, warm_up, found }.fit(alone)
 }
 
 /// Data too few to hold any out: the first candidate, unjudged.
@@ -152,6 +156,7 @@ struct Chosen<'w, 'o, 'a> {
     trials: Vec<Trial>,
     dropped: Vec<Candidate>,
     warm_up: WarmUp,
+    found: Option<FoundStates>,
 }
 
 impl Chosen<'_, '_, '_> {
@@ -216,29 +221,30 @@ impl Chosen<'_, '_, '_> {
     fn selection(&self, combination: &Combination) -> Selection {
         let mut selection = selection(&self.trials, self.bench.folds, combination);
         selection.warm_up = (self.warm_up.rows > 0).then_some(self.warm_up);
+        selection.found_states = self.found;
         selection.one_loop = self.evidence == Evidence::OneLoop;
         selection.dropped = self.dropped.iter().map(Candidate::name).collect();
         selection
     }
 
-    /// The band that these rows ask for, wider where the data cannot tell candidates apart.
-    fn band(&self, rows: &[HeldOutRow]) -> Option<Band> {
-        let band = Band::calibrate(rows)?;
+    /// The band that the rows held out ask for, wider where the data cannot tell candidates apart.
+    fn band(&self, folds: &[Vec<HeldOutRow>]) -> Option<Band> {
+        let band = Band::calibrate(folds)?;
         Some(match self.evidence {
             Evidence::SeveralLoops => band,
             Evidence::OneLoop => band.wider(prior::WIDER_BAND),
         })
     }
 
-    /// Every row held out, predicted with weights that were found on the other folds: rows that chose the
+    /// The rows held out of each fold, predicted with weights that were found on the other folds: rows that chose the
     /// weights would look better than new ones.
-    fn rows_held_out(&self, combination: &Combination) -> Vec<HeldOutRow> {
+    fn rows_held_out(&self, combination: &Combination) -> Vec<Vec<HeldOutRow>> {
         let folds = self.bench.folds;
         let of_fold = |fold: usize| {
             let of_others = (folds.len() > 1).then(|| self.combination(|other| other != fold)).flatten();
             of_others.as_ref().unwrap_or(combination).rows(&self.trials, folds, fold)
         };
-        (0..folds.len()).flat_map(of_fold).collect()
+        (0..folds.len()).map(of_fold).collect()
     }
 
     /// One small model, with what is known of it.

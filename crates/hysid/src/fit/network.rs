@@ -29,6 +29,7 @@ use std::ops::ControlFlow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::law::facts::Origin;
 use crate::model::Model;
@@ -158,8 +159,16 @@ impl Fitted {
 /// # Errors
 /// Data from which no model can be identified, invalid options, or a stop before there was a model.
 pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) -> Result<Fitted> {
+    let begun = wanted_of(options).of(data, observer)?;
+    let data = begun.as_ref();
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options.clone())?.run(observer)
+}
+
+/// The initial state that is asked for.
+fn wanted_of(options: &FitOptions) -> Wanted {
+    let FitOptions { shaping, rate, seed, .. } = *options;
+    Wanted { state: shaping.initial_state, origin: Origin::OfData, rate, seed }
 }
 
 /// Resumes a fit of the same data. The result is the same to the last bit as without the interruption.
@@ -167,6 +176,8 @@ pub fn fit(data: &Dataset, options: &FitOptions, observer: &mut Observer<'_>) ->
 /// # Errors
 /// A checkpoint of other data, or one that is inconsistent.
 pub fn resume(data: &Dataset, checkpoint: Checkpoint, observer: &mut Observer<'_>) -> Result<Fitted> {
+    let begun = wanted_of(checkpoint.options()).of(data, observer)?;
+    let data = begun.as_ref();
     let (options, state) = checkpoint.for_data(data)?;
     let seen = Transformed::of(data, &options.shaping, options.rate, Origin::OfData)?;
     Fitting::new(data, &seen, options)?.from(state)?.run(observer)

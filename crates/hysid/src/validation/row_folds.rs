@@ -1,7 +1,7 @@
 //! Folds of rows whose sums are kept apart: what is trained on is the sum of all less the one held out, so each row is in
 //! one fold. Measurements are dealt out as for the folds of data.
 
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::validation::dealt;
 
 /// Blocks that the rows are cut into where there are few measurements.
@@ -19,7 +19,7 @@ const SLACK: f64 = 0.03;
 /// How rows are cut into folds.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RowFolds {
-    /// Fold of every row of every record that has an output.
+    /// Fold of every row of every record that has an output, the rows of its lead-in first.
     pub of_rows: Vec<Vec<usize>>,
     /// Number of folds.
     pub count: usize,
@@ -58,7 +58,7 @@ impl RowFolds {
         if judged.is_empty() {
             judged = (0..count).collect();
         }
-        let rows = |record: &usize| data.records()[*record].len();
+        let rows = |record: &usize| driven(&data.records()[*record]);
         let of_rows = used.iter().zip(&folds).map(|(record, &fold)| vec![fold; rows(record)]).collect();
         Self { of_rows, count, judged }
     }
@@ -71,15 +71,19 @@ impl RowFolds {
             seen += usize::from(!y.is_nan());
             fold
         };
-        let outputs = used.iter().map(|&record| data.records()[record].output());
-        let of_rows = outputs.map(|output| output.iter().map(&mut fold_of).collect()).collect();
+        let of_rows = used.iter().map(|&record| {
+            let record = &data.records()[record];
+            let lead_in = vec![f64::NAN; record.lead_in_rows().len()];
+            lead_in.iter().chain(record.output()).map(&mut fold_of).collect()
+        });
+        let of_rows = of_rows.collect();
         Self { of_rows, count: BLOCKS, judged: (0..BLOCKS).collect() }
     }
 
     /// All rows in one fold, for sums that nothing is held out of.
     pub fn none(data: &Dataset) -> Self {
         let used = data.records().iter().filter(|record| record.scored() > 0);
-        Self { of_rows: used.map(|record| vec![0; record.len()]).collect(), ..Self::one() }
+        Self { of_rows: used.map(|record| vec![0; driven(record)]).collect(), ..Self::one() }
     }
 
     /// One fold for rows that are of no record.
@@ -88,10 +92,15 @@ impl RowFolds {
     }
 }
 
+/// Rows that the memory is driven by.
+fn driven(record: &Record) -> usize {
+    record.lead_in_rows().len() + record.len()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::record::{ColumnNames, Record};
+    use crate::data::record::ColumnNames;
 
     fn data(records: Vec<Record>) -> Dataset {
         Dataset::new(ColumnNames::plain(1), records).unwrap()

@@ -13,6 +13,7 @@ pub struct Excitation<'a> {
     pub(super) time: Option<&'a [f64]>,
     pub(super) inputs: Vec<&'a [f64]>,
     pub(super) given_rate: Option<&'a [f64]>,
+    pub(super) lead_in: Option<&'a [f64]>,
 }
 
 impl<'a> Excitation<'a> {
@@ -21,7 +22,7 @@ impl<'a> Excitation<'a> {
     /// # Errors
     /// No rows, differing lengths, an input that is not finite, values beyond [`LARGEST_VALUE`].
     pub fn new(name: &'a str, inputs: Vec<&'a [f64]>) -> Result<Self> {
-        let excitation = Self { name, time: None, inputs, given_rate: None };
+        let excitation = Self { name, time: None, inputs, given_rate: None, lead_in: None };
         if excitation.inputs.is_empty() {
             return Err(excitation.defect(None, None, DataProblem::Inputs { expected: 1, found: 0 }));
         }
@@ -41,7 +42,7 @@ impl<'a> Excitation<'a> {
         inputs: Vec<&'a [f64]>,
         given_rate: Option<&'a [f64]>,
     ) -> Self {
-        Self { name, time, inputs, given_rate }
+        Self { name, time, inputs, given_rate, lead_in: None }
     }
 
     /// The same with strictly increasing time stamps, one a row.
@@ -72,6 +73,24 @@ impl<'a> Excitation<'a> {
         self.check_column(Channel::Rate, rate, false)?;
         self.given_rate = Some(rate);
         Ok(self)
+    }
+
+    /// The same after a [lead-in](crate::data::initial_state): the turning points of the first input before
+    /// the first row, in its unit. Without rows it is the virgin state, whatever the model was trained with.
+    ///
+    /// # Errors
+    /// A value that is not finite or beyond [`LARGEST_VALUE`].
+    pub fn with_lead_in(mut self, lead_in: &'a [f64]) -> Result<Self> {
+        if let Some(&value) = lead_in.iter().find(|value| value.is_nan() || value.abs() > LARGEST_VALUE) {
+            return Err(self.defect(None, Some(Channel::Input(0)), DataProblem::LeadIn(value)));
+        }
+        self.lead_in = Some(lead_in);
+        Ok(self)
+    }
+
+    /// The same after a lead-in that was checked before; `None` for the initial state of the model.
+    pub(crate) fn after(self, lead_in: Option<&'a [f64]>) -> Self {
+        Self { lead_in, ..self }
     }
 
     pub(super) fn check_column(&self, channel: Channel, values: &[f64], may_be_blank: bool) -> Result<()> {
@@ -124,5 +143,24 @@ impl<'a> Excitation<'a> {
     /// The given rate of the first input, if there is one.
     pub fn given_rate(&self) -> Option<&'a [f64]> {
         self.given_rate
+    }
+
+    /// The turning points of the first input before the first row; empty for the virgin state, `None` for the
+    /// initial state of the model.
+    pub fn lead_in(&self) -> Option<&'a [f64]> {
+        self.lead_in
+    }
+
+    /// As [`Record::lead_in_rows`](super::Record::lead_in_rows).
+    pub fn lead_in_rows(&self) -> Vec<f64> {
+        match self.lead_in {
+            None | Some([]) => Vec::new(),
+            Some(turns) => turns.iter().chain(self.inputs[0].first()).copied().collect(),
+        }
+    }
+
+    /// The further inputs at the first row, which they have throughout a lead-in.
+    pub(crate) fn others_at_first_row(&self) -> Vec<f64> {
+        self.inputs[1..].iter().map(|input| input[0]).collect()
     }
 }

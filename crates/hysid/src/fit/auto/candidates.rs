@@ -6,6 +6,7 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
+use crate::fit::initial_state::QUICK;
 use crate::law::duhem_nn::MOST_NEURONS;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
@@ -93,9 +94,6 @@ const ROWS_OF_A_SEARCH: usize = 1500;
 const STARTS_IN_HASTE: usize = 4;
 const EPOCHS_IN_HASTE: usize = 16;
 const EPOCHS_NEAR: usize = 12;
-
-/// Stops of a candidate that is quickly fitted.
-const QUICK_STOPS: usize = 60;
 
 /// Rows that a network's early iterations use at most.
 const THIN: usize = 1500;
@@ -198,9 +196,9 @@ impl Candidate {
 pub(super) fn quick(options: &AutoOptions) -> Candidate {
     let request = FitSpec::Classical(ClassicalOptions {
         rate: options.rate,
-        deterioration: Some(options.deterioration.unwrap_or(true)),
-        operators: Some(QUICK_STOPS),
-        hidden: Some(0),
+        deterioration: options.deterioration.or(QUICK.deterioration),
+        operators: Some(QUICK.stops),
+        hidden: QUICK.hidden,
         seed: options.seed,
         ..ClassicalOptions::of(ClassicalModel::RandomStops)
     });

@@ -39,6 +39,7 @@ pub(super) fn selection(trials: &[Trial], folds: &[HeldOut], combination: &Combi
         candidates,
         single: None,
         warm_up: None,
+        found_states: None,
         one_loop: false,
         dropped: Vec::new(),
     }

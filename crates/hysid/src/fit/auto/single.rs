@@ -153,6 +153,9 @@ fn scaled(record: &Record, share: f64, origin: f64) -> Result<Record> {
     if let Some(time) = record.time() {
         scaled = scaled.with_time(time.to_vec())?;
     }
+    if let Some(lead_in) = record.lead_in() {
+        scaled = scaled.with_lead_in(lead_in.iter().map(|x| origin + share * (*x - origin)).collect())?;
+    }
     if let Some(rate) = record.given_rate() {
         scaled = scaled.with_given_rate(rate.iter().map(|rate| rate * share).collect())?;
     }
@@ -190,8 +193,8 @@ fn distilled(
     Ok(nearest.map(|(_, model)| model))
 }
 
-/// Rows held out with the errors of a single model.
-pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<HeldOutRow> {
+/// The rows held out of each fold with the errors of a single model.
+pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<Vec<HeldOutRow>> {
     let of_fold = |(predicted, fold): (&Vec<f64>, &HeldOut)| -> Vec<HeldOutRow> {
         let Rows { measured, outside, .. } = &fold.rows;
         let rows = predicted.iter().zip(measured).zip(outside);
@@ -203,5 +206,5 @@ pub(super) fn rows_held_out(predicted: &[Vec<f64>], folds: &[HeldOut]) -> Vec<He
         })
         .collect()
     };
-    predicted.iter().zip(folds).flat_map(of_fold).collect()
+    predicted.iter().zip(folds).map(of_fold).collect()
 }

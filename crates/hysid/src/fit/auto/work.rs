@@ -40,6 +40,11 @@ impl<'o, 'a> Work<'o, 'a> {
         self.observer.is_over()
     }
 
+    /// Asks the observer whether to stop, between fits.
+    pub fn is_to_stop(&self) -> bool {
+        self.observer.is_to_stop()
+    }
+
     /// Fits done.
     pub fn done(&self) -> usize {
         self.fits().done

@@ -297,7 +297,8 @@ impl<'a> Task<'a> {
     ) -> Result<Identified<DuhemNn>> {
         let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
         let law = DuhemNn { cell, ..self.frame.law.clone() }.validated()?;
-        Ok(Identified { law, train_nrmse_percent: value.nrmse_percent(), evaluations, termination })
+        let train_nrmse_percent = value.nrmse_percent();
+        Ok(Identified { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
 
     /// The Gram matrix of the terms of the output and the target, and of the Jacobian for given output weights.

@@ -100,6 +100,12 @@ impl Sums {
         self.quadratic()
     }
 
+    /// Adds the rows of `other` for the factor 1, and takes them away for -1.
+    pub fn add(&mut self, other: &Sums, factor: f64) {
+        let rows = if factor > 0.0 { self.rows + other.rows } else { self.rows - other.rows };
+        self.add_multiple(other, factor, rows);
+    }
+
     fn add_multiple(&mut self, other: &Sums, factor: f64, rows: usize) {
         self.gram.add_multiple(&other.gram, factor);
         self.rows = rows;

@@ -20,7 +20,7 @@ use crate::law::turning_point_stack::{Change, TurningPointStack};
 use crate::network::scaling::Scaling;
 use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::ClassicalOptions;
-use crate::stop_check::StopCheck;
+use crate::stop_check::{Pace, StopCheck};
 use crate::validation::RowFolds;
 
 /// Default number of intervals of each axis.
@@ -115,7 +115,7 @@ impl LineDensity {
 
 /// Least squares on a plane: features are constant, input, reversible intervals, cells; the output is
 /// scaled.
-struct Problem {
+pub(crate) struct Problem {
     plane: Plane,
     penalty: Penalty,
 }
@@ -124,6 +124,11 @@ struct Problem {
 const FIRST: usize = 2;
 
 impl Problem {
+    /// A plane of so many intervals, whose lines are where the output changes.
+    pub fn of(series: &[Series], range: (f64, f64), intervals: usize) -> Self {
+        Self::new(Plane::new(LineDensity::new(series, range).lines(intervals)))
+    }
+
     fn new(plane: Plane) -> Self {
         let n = plane.intervals();
         let cell = |i: usize, j: usize| FIRST + n + i * (i + 1) / 2 + j;
@@ -153,13 +158,33 @@ impl Problem {
         Self { plane, penalty }
     }
 
-    fn features(&self) -> usize {
+    /// Number of features, the constant among them.
+    pub fn features(&self) -> usize {
         FIRST + self.plane.intervals() + self.plane.cells()
     }
 
     /// Weights of the intervals.
     fn reversible(&self) -> std::ops::Range<usize> {
         FIRST..FIRST + self.plane.intervals()
+    }
+
+    /// The features of the rows that have an output.
+    ///
+    /// # Errors
+    /// A stop.
+    pub fn rows(&self, series: &Series, scaling: &Scaling, stop: StopCheck<'_>) -> Result<Vec<Vec<f64>>> {
+        let (mut rows, mut pace) = (Rows::new(&self.plane), Pace::new(stop));
+        let mut all = Vec::new();
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if pace.is_over(4 * rows.features.len()) {
+                return Err(Error::Stopped);
+            }
+            rows.advance(sample.x, sample.x / scaling.inputs[0], !y.is_nan());
+            if !y.is_nan() {
+                all.push(rows.features.clone());
+            }
+        }
+        Ok(all)
     }
 
     /// # Errors

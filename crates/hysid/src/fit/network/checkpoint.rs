@@ -98,6 +98,8 @@ fn checksum(data: &Dataset) -> u32 {
         add(record.output());
         add(record.time().unwrap_or(&[]));
         add(record.given_rate().unwrap_or(&[]));
+        // Without a lead-in, as in a fit that knows of none.
+        record.lead_in().filter(|lead_in| !lead_in.is_empty()).into_iter().for_each(&mut add);
     }
     hasher.finalize()
 }

@@ -19,7 +19,7 @@ use crate::fit::network::checkpoint::Snapshot;
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{Frame, require};
-use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
+use crate::fit::network::{Fitted, Observer, Progress, SharedObserver, wanted_of};
 use crate::law::facts::Origin;
 use crate::model::history::Phase;
 use crate::model::input_transform::{InputTransform, Transformed};
@@ -248,7 +248,7 @@ impl<'a> Fitting<'a> {
         }
         let is_to_stop = || observer.is_to_stop();
         let stop = StopCheck::new(&is_to_stop);
-        let folds = self.folds();
+        let folds = wanted_of(&self.asked).on_folds(self.folds(), stop)?;
         let (shaping, rate) = (self.asked.shaping, self.asked.rate);
         let seen: Vec<Transformed> = folds
             .iter()

@@ -75,7 +75,7 @@ impl<'a> Objective<'a> {
         let used = || data.records().iter().filter(|record| record.scored() > 0);
         let drives: Result<Vec<Drive>> =
             used().map(|record| scaling.drive(record, &architecture, options.rate)).collect();
-        let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+        let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
         Ok(Self {
             architecture,
             layout: Layout::new(architecture),
@@ -137,9 +137,13 @@ impl<'a> Objective<'a> {
 
     /// Mean time step and duration of the longest record, in the unit of time; `None` without time stamps.
     pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
-        let durations = self.drives.iter().map(|drive| drive.steps.iter().sum::<f64>());
+        // The rows of a lead-in take an infinite time.
+        fn measured(drive: &Drive) -> impl Iterator<Item = &f64> {
+            drive.steps.iter().filter(|step| step.is_finite())
+        }
+        let durations = self.drives.iter().map(|drive| measured(drive).sum::<f64>());
         let longest = durations.clone().fold(0.0, f64::max);
-        let steps: usize = self.drives.iter().map(|drive| drive.steps.len().saturating_sub(1)).sum();
+        let steps: usize = self.drives.iter().map(|drive| measured(drive).count().saturating_sub(1)).sum();
         let step = durations.sum::<f64>() / steps.max(1) as f64;
         (longest > 0.0).then_some((step, longest))
     }

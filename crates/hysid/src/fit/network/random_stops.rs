@@ -18,12 +18,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::FEWEST_ROWS;
 use crate::data::rate::RateMethod;
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
 use crate::fit::law::linear::{FoldSums, Sums, logarithmic, lowest};
 use crate::fit::network::start::{self, Capacities};
 use crate::network::scaling::Scaling;
-use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network};
+use crate::network::{Architecture, Columns, Drive, GramOverRecords, Network, RowsOverRecords};
 use crate::optimise::non_negative::{Bounds, Penalty, Quadratic};
 use crate::options::classical::Sign;
 use crate::stop_check::StopCheck;
@@ -98,18 +98,7 @@ pub(crate) fn fit_random_stops_until(
         if best.is_some() && stop.is_asked() {
             break;
         }
-        let architecture = Architecture {
-            inputs: data.names().inputs.len(),
-            rate: options.rate.is_some(),
-            stops: options.stops,
-            deterioration,
-            linear: true,
-            relaxation: 0,
-            hidden,
-            direct: true,
-            constant: true,
-        };
-        architecture.check()?;
+        let architecture = architecture(data, options, deterioration, hidden)?;
         let candidate = match fit_readout(data, options, &scaling, architecture, stop) {
             Err(Error::Stopped) if best.is_some() => break,
             candidate => candidate?,
@@ -123,6 +112,72 @@ pub(crate) fn fit_random_stops_until(
     Ok(best.expect("at least one candidate"))
 }
 
+/// Random stops whose output weights are not known yet.
+pub(crate) struct Drawn {
+    architecture: Architecture,
+    parameters: Vec<f64>,
+}
+
+impl Drawn {
+    /// The stops for these data, with the first of the architectures that the options leave open.
+    ///
+    /// # Errors
+    /// Numbers of neurons that no network has.
+    pub fn of(data: &Dataset, options: &RandomStopsOptions) -> Result<Self> {
+        let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
+        let architecture = architecture(data, options, deterioration, hidden)?;
+        let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
+        Ok(Self { architecture, parameters })
+    }
+
+    /// Number of output weights.
+    pub fn features(&self) -> usize {
+        self.architecture.output_weights()
+    }
+
+    /// The features of the output layer and then the target, column by column, of the rows of a record that
+    /// have an output.
+    ///
+    /// # Errors
+    /// A rate that cannot be computed, or a stop.
+    pub fn rows(
+        &self,
+        record: &Record,
+        scaling: &Scaling,
+        rate: Option<RateMethod>,
+        stop: StopCheck<'_>,
+    ) -> Result<Vec<Vec<f64>>> {
+        let Self { architecture, parameters } = self;
+        let drives = [scaling.drive(record, architecture, rate)?];
+        let targets = [scaling.target(record)];
+        let columns = Columns { architecture, parameters, output: None };
+        let rows = RowsOverRecords { columns, first: 0, drives: &drives, targets: &targets, stop }.columns();
+        if stop.is_asked() { Err(Error::Stopped) } else { Ok(rows) }
+    }
+}
+
+/// The architecture of random stops.
+fn architecture(
+    data: &Dataset,
+    options: &RandomStopsOptions,
+    deterioration: bool,
+    hidden: usize,
+) -> Result<Architecture> {
+    let architecture = Architecture {
+        inputs: data.names().inputs.len(),
+        rate: options.rate.is_some(),
+        stops: options.stops,
+        deterioration,
+        linear: true,
+        relaxation: 0,
+        hidden,
+        direct: true,
+        constant: true,
+    };
+    architecture.check()?;
+    Ok(architecture)
+}
+
 /// Draws the stops, and finds the output weights.
 fn fit_readout(
     data: &Dataset,
@@ -134,7 +189,7 @@ fn fit_readout(
     let used = || data.records().iter().filter(|record| record.scored() > 0);
     let drives: Vec<Drive> =
         used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
-    let targets: Vec<Vec<f64>> = used().map(|record| scaling.scaled_output(record.output())).collect();
+    let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
     let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
     let sums = fold_sums(
         &Columns { architecture: &architecture, parameters: &parameters, output: None },

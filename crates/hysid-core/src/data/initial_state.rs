@@ -1,0 +1,166 @@
+//! Initial state: the state of the memory at the beginning of a record.
+//!
+//! ```text
+//! virgin             no lead-in
+//! saturated-up       h
+//! saturated-down     l
+//! demagnetised       c + (-1)^k A (1 - k/40),  k = 0 .. 39,   A = max(h - c, c - l)     theory.md (11.10)
+//! ```
+//!
+//! A *lead-in* is what the first input did before the first row of a record: its turning points, in its unit.
+//! `l` and `h` are the ends of the trained range of the first input, and `c` is its origin. A model is driven
+//! from its virgin state along the lead-in and then to the input of the first row, with one step for each
+//! leg. The legs are quasi-static: the rate is 0, and each takes an infinite time, so that relaxation is
+//! complete. Further inputs have their values of the first row. The rows of a lead-in have no output.
+
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::significant::Significant;
+
+/// Half cycles of a demagnetisation.
+const HALF_CYCLES: usize = 40;
+
+/// Levels between the ends of the range after which an unknown initial state may be.
+const LEVELS: usize = 8;
+
+/// State of the memory at the beginning of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum InitialState {
+    /// No history.
+    #[default]
+    Virgin,
+    /// After a visit of the upper end of the trained range.
+    SaturatedUp,
+    /// After a visit of the lower end of the trained range.
+    SaturatedDown,
+    /// After cycles about the origin whose amplitude fell to 0.
+    Demagnetised,
+    /// To be found for each record, from its output.
+    Unknown,
+}
+
+impl InitialState {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Virgin, Self::SaturatedUp, Self::SaturatedDown, Self::Demagnetised, Self::Unknown];
+
+    /// The name on the command line, in Python and in model files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Virgin => "virgin",
+            Self::SaturatedUp => "saturated-up",
+            Self::SaturatedDown => "saturated-down",
+            Self::Demagnetised => "demagnetised",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// The names of those that need no output to be found.
+    pub fn known() -> Vec<&'static str> {
+        Self::ALL.into_iter().filter(|state| *state != Self::Unknown).map(Self::name).collect()
+    }
+
+    /// The lead-in, in the unit of the first input, for its trained range and its origin in that unit. `None`
+    /// for an unknown state.
+    pub fn lead_in(self, (low, high): (f64, f64), origin: f64) -> Option<Vec<f64>> {
+        match self {
+            Self::Virgin => Some(Vec::new()),
+            Self::SaturatedUp => Some(vec![high]),
+            Self::SaturatedDown => Some(vec![low]),
+            Self::Demagnetised => {
+                let amplitude = if high - origin >= origin - low { high - origin } else { low - origin };
+                let turn = |k: usize| {
+                    let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+                    origin + sign * amplitude * (1.0 - k as f64 / HALF_CYCLES as f64)
+                };
+                Some((0..HALF_CYCLES).map(turn).collect())
+            }
+            Self::Unknown => None,
+        }
+    }
+}
+
+impl FromStr for InitialState {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|state| state.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).into();
+            Error::UnknownName { what: "initial state", name: name.into(), known }
+        })
+    }
+}
+
+/// The lead-ins that are tried where the initial state is unknown, for this range of the first input, in its
+/// unit: none, either end, and each of eight levels between after the farther end.
+pub fn lead_ins_tried((low, high): (f64, f64)) -> Vec<Vec<f64>> {
+    let level = |k: usize| low + (high - low) * k as f64 / (LEVELS + 1) as f64;
+    let after = |k: usize| vec![if 2 * k > LEVELS { low } else { high }, level(k)];
+    let levels = (1..=LEVELS).map(after);
+    [Vec::new(), vec![high], vec![low]].into_iter().chain(levels).collect()
+}
+
+/// A lead-in in a few words, for this trained range of the first input.
+pub fn in_words(lead_in: &[f64], (low, high): (f64, f64)) -> String {
+    let shown = |x: &f64| format!("{:.3}", Significant(*x));
+    match lead_in {
+        [] => InitialState::Virgin.name().into(),
+        [end] if *end == high => InitialState::SaturatedUp.name().into(),
+        [end] if *end == low => InitialState::SaturatedDown.name().into(),
+        turns if turns.len() == HALF_CYCLES => InitialState::Demagnetised.name().into(),
+        turns => format!("after {}", turns.iter().map(shown).collect::<Vec<String>>().join(", then ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_state_has_the_lead_in_of_its_definition() {
+        let range = (-1.0, 3.0);
+        let lead_in = |state: InitialState| state.lead_in(range, 0.5).unwrap();
+        assert!(lead_in(InitialState::Virgin).is_empty());
+        assert_eq!(lead_in(InitialState::SaturatedUp), [3.0]);
+        assert_eq!(lead_in(InitialState::SaturatedDown), [-1.0]);
+        assert_eq!(InitialState::Unknown.lead_in(range, 0.5), None);
+        let turns = lead_in(InitialState::Demagnetised);
+        assert_eq!((turns.len(), turns[0], turns[1]), (40, 3.0, 0.5 - 2.5 * 39.0 / 40.0));
+        let falls = |pair: &[f64]| (pair[1] - 0.5) * (pair[0] - 0.5) < 0.0;
+        assert!(turns.windows(2).all(falls));
+        let gap = 2.5 / 40.0;
+        let even = |pair: &[f64]| ((pair[0] - 0.5).abs() - (pair[1] - 0.5).abs() - gap).abs() < 1e-12;
+        assert!(turns.windows(2).all(even));
+        assert!(((turns[39] - 0.5).abs() - gap).abs() < 1e-12);
+        // The larger end may be the lower one.
+        assert_eq!(InitialState::Demagnetised.lead_in(range, 2.0).unwrap()[0], -1.0);
+    }
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        for state in InitialState::ALL {
+            assert_eq!(state.name().parse(), Ok(state));
+            assert_eq!(serde_json::to_value(state).unwrap(), state.name());
+        }
+        let error = "saturated".parse::<InitialState>().unwrap_err().to_string();
+        assert!(error.contains("saturated-up") && error.contains("unknown"), "{error}");
+    }
+
+    #[test]
+    fn a_level_comes_after_the_farther_end() {
+        let tried = lead_ins_tried((0.0, 9.0));
+        assert_eq!(tried.len(), 11);
+        assert_eq!(tried[..3], [vec![], vec![9.0], vec![0.0]]);
+        assert_eq!(
+            (&tried[3][..], &tried[6][..], &tried[7][..]),
+            (&[9.0, 1.0][..], &[9.0, 4.0][..], &[0.0, 5.0][..])
+        );
+        assert_eq!(in_words(&tried[1], (0.0, 9.0)), "saturated-up");
+        assert_eq!(in_words(&tried[2], (0.0, 9.0)), "saturated-down");
+        assert_eq!(in_words(&tried[3], (0.0, 9.0)), "after 9, then 1");
+    }
+}

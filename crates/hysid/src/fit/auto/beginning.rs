@@ -1,0 +1,160 @@
+//! How the records begin: in the virgin state, after a warm-up, or in states that are found for them.
+//!
+//! Each way is judged by the validation error of candidates that take a moment to fit. The virgin state is kept
+//! unless another way is better by 10 %.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
+use crate::data::initial_state::InitialState;
+use crate::data::record::{Dataset, Record};
+use crate::error::Result;
+use crate::fit::auto::candidates::Candidate;
+use crate::fit::auto::score::Score;
+use crate::fit::auto::trial::{Bench, HeldOut, Trial};
+use crate::fit::auto::warm_up::{WORTH, better};
+use crate::fit::auto::work::Work;
+use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
+use crate::law::facts::Origin;
+use crate::model::selection::{FoundStates, WarmUp};
+use crate::options::FitSpec;
+use crate::options::auto::AutoOptions;
+use crate::options::classical::{ClassicalModel, ClassicalOptions};
+use crate::stop_check::StopCheck;
+use crate::validation::Fold;
+
+/// Data whose records begin as it was chosen, and their folds.
+pub(super) struct Beginning {
+    pub data: Dataset,
+    pub folds: Vec<Fold>,
+    pub warm_up: WarmUp,
+    /// The records have other lead-ins than before.
+    pub is_changed: bool,
+    /// Why states were found, if cross-validation decided it.
+    pub found: Option<FoundStates>,
+}
+
+/// The data in the initial state that the user chose, if it is a known one.
+///
+/// # Errors
+/// None for data with an input.
+pub(super) fn as_chosen<'d>(data: &'d Dataset, options: &AutoOptions) -> Result<Cow<'d, Dataset>> {
+    match options.initial_state {
+        None | Some(InitialState::Unknown) => Ok(Cow::Borrowed(data)),
+        Some(state) => known(data, state, Origin::OfData).map(Cow::Owned),
+    }
+}
+
+impl Beginning {
+    /// How the records of these data begin.
+    pub fn of(
+        quick: &Candidate,
+        data: &Dataset,
+        folds: Vec<Fold>,
+        options: &AutoOptions,
+        work: &Work,
+    ) -> Self {
+        let has_lead_in = |record: &Record| record.lead_in().is_some();
+        let is_open = options.initial_state.is_none() && !data.records().iter().any(has_lead_in);
+        let warm_up = match options.warm_up {
+            Some(rows) => WarmUp::decided(rows),
+            None => better(quick.clone(), data, &folds, work),
+        };
+        let unknown = match (options.initial_state, options.warm_up) {
+            (Some(InitialState::Unknown), _) => found(quick, data, &folds, options, work),
+            (None, None) if is_open => {
+                found(quick, data, &folds, options, work).filter(|found| found.is_worth(warm_up))
+            }
+            _ => None,
+        };
+        let Some(unknown) = unknown else {
+            return Self { data: data.clone(), folds, warm_up, is_changed: false, found: None };
+        };
+        Self {
+            data: unknown.data,
+            folds: unknown.folds,
+            warm_up: if is_open { WarmUp::decided(0) } else { warm_up },
+            is_changed: true,
+            found: unknown.errors.filter(|_| is_open),
+        }
+    }
+
+    /// The data with the lead-ins of these records, which are some of their rows.
+    ///
+    /// # Errors
+    /// None for lead-ins that records have.
+    pub fn of_all<'d>(&self, all: &'d Dataset) -> Result<Cow<'d, Dataset>> {
+        if !self.is_changed {
+            return Ok(Cow::Borrowed(all));
+        }
+        let records = self.data.records();
+        let of_record = |index: usize, _: &Record| records[index].lead_in().unwrap_or_default().to_vec();
+        all.clone().with_lead_ins(of_record).map(Cow::Owned)
+    }
+}
+
+/// Data and folds with the lead-ins that were found.
+struct Unknown {
+    data: Dataset,
+    folds: Vec<Fold>,
+    /// Errors on the folds; `None` where they are those of the virgin state, and without folds.
+    errors: Option<FoundStates>,
+}
+
+impl Unknown {
+    /// True if it is better than the virgin state by 10 %, and no worse than a warm-up that is.
+    fn is_worth(&self, warm_up: WarmUp) -> bool {
+        let Some(FoundStates { found_percent, virgin_percent }) = self.errors else { return false };
+        let ratio = found_percent / virgin_percent;
+        let of_warm_up = warm_up.without_percent.zip(warm_up.with_percent);
+        ratio < WORTH && of_warm_up.is_none_or(|(without, with)| ratio <= without / with)
+    }
+}
+
+/// A Preisach plane that takes a moment to fit, for data of one input.
+fn relays(data: &Dataset, options: &AutoOptions) -> Option<Candidate> {
+    let preisach = ClassicalOptions {
+        operators: Some(QUICK_INTERVALS),
+        seed: options.seed,
+        ..ClassicalOptions::of(ClassicalModel::Preisach)
+    };
+    (data.names().inputs.len() == 1).then(|| Candidate::alone(&FitSpec::Classical(preisach)))
+}
+
+/// The lead-ins of all records, and those found on the training part of each fold; `None` if there was no time,
+/// or the quick candidate cannot be fitted.
+fn found(
+    quick: &Candidate,
+    data: &Dataset,
+    folds: &[Fold],
+    options: &AutoOptions,
+    work: &Work,
+) -> Option<Unknown> {
+    let is_to_stop = || work.is_to_stop();
+    let stop = StopCheck::new(&is_to_stop);
+    let (rate, seed) = (options.rate, options.seed);
+    let begun: Vec<Fold> =
+        folds.par_iter().map(|fold| found_on(fold, rate, seed, stop).ok()?).collect::<Option<_>>()?;
+    let data = initial_state::found(data, rate, seed, stop).ok()??;
+    let percent = |folds: &[Fold]| -> Option<f64> {
+        let held_out: Vec<HeldOut> = folds.iter().cloned().map(HeldOut::of).collect();
+        // A magnet is not seen by stops alone, nor deterioration by relays.
+        let judges = std::iter::once(quick.clone()).chain(relays(&data, options));
+        let mut trials: Vec<Trial> = judges.map(Trial::of).collect();
+        let places: Vec<usize> = (0..trials.len()).collect();
+        Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
+        let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
+        let scores = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).sum());
+        scores.min_by(f64::total_cmp).map(|score| 100.0 * (0.5 * score).exp())
+    };
+    let has_past = |record: &Record| !record.lead_in_rows().is_empty();
+    let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));
+    let errors = || {
+        let (found_percent, virgin_percent) = (percent(&begun)?, percent(folds)?);
+        Some(FoundStates { found_percent, virgin_percent })
+    };
+    // Folds with the same lead-ins as before have the same errors.
+    let errors = is_changed.then(errors).flatten();
+    Some(Unknown { data, folds: begun, errors })
+}
