@@ -122,7 +122,7 @@ fn finished(
     termination: Termination,
     runs: Vec<Run>,
 ) -> Result<Fitted> {
-    let request = FitSpec::Classical(options.clone());
+    let request = FitSpec::Classical(ClassicalOptions { near: Vec::new(), ..options.clone() });
     let found = Found {
         options: request,
         chosen_start: 0,

@@ -253,7 +253,8 @@ impl Sensitivities {
             direct[layout.ln_path_leaks.start + i] = kept * cell.path_leaks[i] * memory.moved;
             if shape.has_time {
                 let steps = memory.elapsed / cell.relaxation_times[i];
-                direct[layout.ln_relaxation_times.start + i] = -kept * steps;
+                // After an infinite step nothing is kept.
+                direct[layout.ln_relaxation_times.start + i] = if kept == 0.0 { 0.0 } else { -kept * steps };
             }
             carry::<S>(cell, back, carried);
             carried[i] += 1.0 - leak;

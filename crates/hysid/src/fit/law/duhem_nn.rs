@@ -342,9 +342,13 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Mean time step and duration of the longest record; 0 without time stamps.
+/// Mean time step and duration of the longest record; 0 without time stamps. The steps of a lead-in are infinite
+/// and do not count.
 fn time_scales(series: &[Series]) -> (f64, f64) {
-    let durations = series.iter().map(|series| series.samples.iter().map(|sample| sample.step).sum::<f64>());
+    let steps = |series: &Series| -> f64 {
+        series.samples.iter().map(|sample| sample.step).filter(|step| step.is_finite()).sum()
+    };
+    let durations = series.iter().map(steps);
     let steps: usize = series.iter().map(|series| series.samples.len() - 1).sum();
     (durations.clone().sum::<f64>() / steps.max(1) as f64, durations.fold(0.0, f64::max))
 }
