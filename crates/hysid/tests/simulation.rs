@@ -1,5 +1,6 @@
 //! Free runs in blocks: however a record is cut, the outputs are those of the whole to the last bit.
 
+mod noisy_record;
 mod small_models;
 
 use std::ops::ControlFlow;
@@ -15,6 +16,7 @@ use hysid::options::chosen::NamedOptions;
 use hysid::options::classical::ClassicalModel;
 use hysid::options::{FitSpec, ModelName};
 
+use noisy_record::noisy;
 use small_models::{record, small};
 
 const METHODS: [RateMethod; 4] =
@@ -132,7 +134,7 @@ const OPTIONS: &str = r#"{"stops": 3, "hidden": 2, "relaxation": 1, "starts": 1,
 #[test]
 fn an_ensemble_and_its_band_are_the_same_in_blocks() {
     for method in [None, Some(RateMethod::Central), Some(RateMethod::SavitzkyGolay)] {
-        let train = vec![record(150, "a"), record(110, "b"), record(130, "c")];
+        let train = vec![noisy(150, "a"), noisy(110, "b"), noisy(130, "c")];
         let model = fitted(train, &small(ModelName::AUTO, method));
         assert!(model.ensemble().unwrap().members().len() > 1);
         let unseen = [record(1500, "long"), record(2, "short")];
