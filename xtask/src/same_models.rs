@@ -32,7 +32,7 @@ const FITS: [&str; 10] = [
 ];
 
 /// What is fitted to one specimen only, by its name.
-const FURTHER: [(&str, &str); 14] = [
+const FURTHER: [(&str, &str); 15] = [
     ("ferromagnet", "--seed 5"),
     ("rate-dependent-actuator", "--members 1"),
     ("ferromagnet", "--model preisach-nn --starts 2 --epochs 6 --members 2"),
@@ -46,6 +46,7 @@ const FURTHER: [(&str, &str); 14] = [
     ("reinforced-concrete-joint", "--model bouc-wen --degradation --starts 2 --epochs 6"),
     ("reinforced-concrete-joint", "--model xpnn+ --companding 0.3 --history --starts 2 --epochs 6"),
     ("rate-dependent-actuator", "--model rate-dependent-prandtl-ishlinskii --starts 2 --epochs 6"),
+    ("rate-dependent-actuator", "--model duhem-nn --starts 2 --epochs 6"),
     (
         "rate-dependent-actuator",
         "--model rate-dependent-prandtl-ishlinskii --logarithmic-thresholds --starts 2 --epochs 6",

@@ -77,11 +77,17 @@ fn peak(bench: &Workbench, options: &str) -> f64 {
 fn estimates_are_near_to_what_is_taken() {
     let bench = Workbench::new();
     let cases = [
-        // A Gauss-Newton matrix of a thousand parameters; few rows of many inputs; cells of a plane.
+        // A Gauss-Newton matrix of a thousand parameters; few rows of many inputs; cells of a plane;
+        // derivatives of a recurrent network.
         (2000, 1, json!({ "model": "xpnn", "stops": 30, "hidden": 30, "starts": 2, "epochs": 1 })),
         (50, 99, json!({ "model": "xpnn+", "starts": 2, "epochs": 1 })),
         (300, 1, json!({ "model": "preisach", "operators": 50 })),
         (20_000, 1, json!({ "model": "modified-prandtl-ishlinskii", "operators": 40 })),
+        (
+            2000,
+            1,
+            json!({ "model": "duhem-nn", "hidden": 30, "operators": 40, "states": 4, "starts": 2, "epochs": 1 }),
+        ),
     ];
     for (rows, inputs, options) in cases {
         let set = data(&bench, rows, inputs);

@@ -457,6 +457,9 @@ fn a_fit_can_be_broken_off_and_gives_the_best_so_far() {
             assert_eq!(found.termination == Termination::Stopped, is_stopped);
             assert!(error(&found.law, &data, rate) < 100.0);
         }
+        let untrained = ClassicalOptions { epochs: Some(0), ..options.clone() };
+        let untrained = DuhemNn::fit(&data, &untrained, &mut go_on).unwrap();
+        assert!((error(&untrained.law, &data, rate) - untrained.train_nrmse_percent).abs() < 1e-6);
         let stopped = DuhemNn::identify(&data, &options, &mut go_on, StopCheck::new(&|| true));
         assert!(matches!(stopped, Err(Error::Stopped)));
     }

@@ -20,7 +20,7 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, OptionError, Result};
+use crate::error::{Error, LARGEST_VALUE, OptionError, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::search::{
     Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned_to,
@@ -121,7 +121,7 @@ impl<'a> Training<'a> {
     }
 
     fn run(mut self, whole: &Task<'_>, observer: &mut SearchObserver<'_>) -> Result<Identified<DuhemNn>> {
-        let last = if self.held.is_some() { (self.epochs / 6).max(1) } else { 0 };
+        let last = if self.held.is_some() { self.epochs.div_ceil(6) } else { 0 };
         let rounds = self.epochs + last;
         let mut tell = |round, evaluations, nrmse_percent| {
             let told =
@@ -363,7 +363,8 @@ fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, 
     if layout.ln_path_leaks.contains(&index) {
         (PATH_LEAKS.0.ln(), PATH_LEAKS.1.ln())
     } else if layout.ln_relaxation_times.contains(&index) {
-        ((0.1 * step).ln(), (100.0 * duration).ln())
+        let usable = |time: f64| time.clamp(f64::MIN_POSITIVE, LARGEST_VALUE).ln();
+        (usable(0.1 * step), usable(100.0 * duration))
     } else {
         (-LARGEST_WEIGHT, LARGEST_WEIGHT)
     }
