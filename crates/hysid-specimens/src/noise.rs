@@ -22,14 +22,7 @@ pub fn with_noise(data: &Dataset, percent: f64, seed: u64) -> Result<Dataset> {
     let mut generator = Xoshiro256PlusPlus::seed_from_u64(seed);
     let records = data.records().iter().map(|record| {
         let output = record.output().iter().map(|y| y + deviation * normal(&mut generator)).collect();
-        let mut noisy = Record::new(record.name(), record.inputs().to_vec(), output)?;
-        if let Some(time) = record.time() {
-            noisy = noisy.with_time(time.to_vec())?;
-        }
-        if let Some(rate) = record.given_rate() {
-            noisy = noisy.with_given_rate(rate.to_vec())?;
-        }
-        Ok(noisy)
+        record.clone().with_output(output)
     });
     Dataset::new(data.names().clone(), records.collect::<Result<_>>()?)
 }
