@@ -63,7 +63,7 @@ CASES = {
 }
 
 
-@pytest.mark.filterwarnings("ignore:warm-up")
+@pytest.mark.filterwarnings("ignore:warm-up", "ignore:initial state")
 @pytest.mark.parametrize("case", CASES)
 def test_model_files_are_the_same_byte_by_byte(case, program, tmp_path):
     name, keywords, rate, blank_every = CASES[case]

@@ -409,7 +409,6 @@ fn a_band_contains_its_share_in_as_many_data_sets_as_it_is_for() {
         in_band += usize::from(narrow >= 0.9);
         in_wide_band += usize::from(wide >= 0.9);
     }
-    eprintln!("{in_band} {in_wide_band} {shares}");
     assert!((CASES / 4..=3 * CASES / 4).contains(&in_band), "{in_band} of {CASES}");
     assert!(in_wide_band * 10 >= 8 * CASES, "{in_wide_band} of {CASES}");
     assert!((0.8..0.97).contains(&shares), "{shares}");

@@ -15,6 +15,7 @@ use hysid::law::series::{run, samples_of};
 use hysid::model::Model;
 use hysid::network::scaling::Scaling;
 use hysid::network::{Architecture, Family, Network, Sizes};
+use hysid::options::auto::AutoOptions;
 use hysid::options::chosen::NamedOptions;
 use hysid::options::classical::ClassicalModel;
 use hysid::options::network::FitOptions;
@@ -339,11 +340,18 @@ fn a_forecast_begins_with_the_state_of_its_record() {
 #[test]
 fn auto_finds_states_where_they_matter_and_says_so() {
     let (train, test) = remanent();
-    let auto = small(ModelName::AUTO, None);
+    let FitSpec::Auto(options) = small(ModelName::AUTO, None) else { panic!("auto was asked for") };
+    // Few candidates, so that it is quick.
+    let auto = FitSpec::Auto(AutoOptions {
+        companding: Some(false),
+        history: Some(false),
+        deterioration: Some(false),
+        ..options
+    });
     let model = fitted(&train, &auto);
     let selection = model.provenance().selection.as_ref().unwrap();
     let found = selection.found_states.expect("states that were found");
-    assert!(found.found_percent < 0.9 * found.virgin_percent);
+    assert!(found.found_percent < 0.8 * found.virgin_percent);
     assert_eq!(selection.warm_up, None);
     assert_eq!(model.lead_in(), [train.input_range(0).1]);
     assert!(model.ensemble().unwrap().members().iter().all(|member| member.lead_in().is_empty()));

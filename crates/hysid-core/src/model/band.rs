@@ -85,7 +85,7 @@ pub const BAND_OF_TEN: RangeInclusive<usize> = 5..=9;
 
 /// Standard deviation of the logarithm of the width that a data set needs over the width of its band, at a
 /// probability of 0.9: docs/accuracy.md, from the 36 generated cases of seed 11.
-const SPREAD_OF_WIDTHS: f64 = 0.54;
+const SPREAD_OF_WIDTHS: f64 = 0.62;
 
 /// `z(k/10)`, quantiles of the normal distribution, for each of [`BAND_OF_TEN`].
 const NORMAL_QUANTILES: [f64; 5] = [0.0, 0.253_347, 0.524_401, 0.841_621, 1.281_552];

@@ -407,7 +407,8 @@ class Model:
         --------
         >>> import hysid
         >>> train, test = hysid.specimen("terfenol-rod").data(noise=0.5)
-        >>> model = hysid.fit(train.x, train.y, model="xpnn", members=2, stops=4, hidden=3, epochs=10)
+        >>> options = {"model": "xpnn", "members": 2, "stops": 4, "hidden": 3, "epochs": 10}
+        >>> model = hysid.fit(train.x, train.y, initial_state="virgin", **options)
         >>> output, low, high = model.predict(test.x, probability=0.95)
         >>> bool((low < output).all() and (output < high).all())
         True

@@ -12,9 +12,8 @@ use crate::validation::Fold;
 /// Share of the shortest record that is left out of the training. Designed.
 const SHARE: f64 = 0.05;
 
-/// The validation error that another beginning than the virgin state must come to, as a share of that of the
-/// virgin state. Designed.
-pub(super) const WORTH: f64 = 0.9;
+/// What leaving rows out must better the error by to be worth it. Designed.
+const WORTH: f64 = 0.9;
 
 /// Rows at the beginning of each record that are better not trained on: 0, or a share of the shortest
 /// record. Both ways are judged on the same rows, behind those, by a candidate that is quickly fitted.
