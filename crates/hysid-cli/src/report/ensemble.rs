@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use hysid::model::selection::{CandidateResult, Selection};
-use hysid::model::{Ensemble, Group, Model, NodeKind};
+use hysid::model::{Ensemble, Group, Model, Node, NodeKind};
 use hysid_document::{Cell, Part, Table, number};
 
 use super::Report;
@@ -25,7 +25,7 @@ pub fn section(report: &Report) -> Option<Part> {
     };
     let mut parts = vec![Part::Definitions(lines)];
     parts.extend(content);
-    parts.extend(left_out(&others));
+    parts.extend(left_out(&others, &selection.dropped));
     parts.push(held_out(selection));
     Some(Part::section(heading, parts))
 }
@@ -44,7 +44,7 @@ fn nodes(
     let costs: Vec<Option<f64>> = ensemble.members().iter().map(|member| cost(report, member)).collect();
     candidates.sort_by(|a, b| b.share.inside.total_cmp(&a.share.inside));
     let row = |one: &&CandidateResult| {
-        let members = members_of(ensemble, one);
+        let members = members_of(ensemble.group(), one);
         let cost: Option<f64> = members.iter().map(|&member| costs[member]).sum();
         let parameters: usize = members.iter().map(|&member| ensemble.members()[member].parameters()).sum();
         vec![
@@ -125,17 +125,24 @@ fn single(selection: &Selection, mut candidates: Vec<&CandidateResult>) -> Vec<P
     vec![Part::paragraph(first), Part::Table(table), Part::note(format!("{words} {errors}"))]
 }
 
-/// What was tried in vain.
-fn left_out(candidates: &[&CandidateResult]) -> Option<Part> {
+/// The candidates that are not part of the model: those that were validated, and those that were dropped before.
+fn left_out(candidates: &[&CandidateResult], dropped: &[String]) -> Option<Part> {
     let mut candidates = candidates.to_vec();
     candidates.sort_by(|a, b| a.error_percent.0.total_cmp(&b.error_percent.0));
     let row = |one: &&CandidateResult| {
         vec![one.name.as_str().into(), one.kind.as_str().into(), errors(one.error_percent).into()]
     };
-    let table =
-        Table::new(["candidate", "kind", "error alone (% of std)"]).with_rows(candidates.iter().map(row));
-    let summary = format!("Candidates without weight: {}", candidates.len());
-    (!candidates.is_empty()).then(|| Part::Folded(summary, vec![Part::Table(table)]))
+    let mut parts = Vec::new();
+    if !candidates.is_empty() {
+        let columns = ["candidate", "kind", "error alone (% of std)"];
+        parts.push(Part::Table(Table::new(columns).with_rows(candidates.iter().map(row))));
+    }
+    if !dropped.is_empty() {
+        let names = dropped.join(", ");
+        parts.push(Part::note(format!("Dropped early, because others had lower errors: {names}.")));
+    }
+    let count = candidates.len() + dropped.len();
+    (!parts.is_empty()).then(|| Part::Folded(format!("Candidates without weight: {count}"), parts))
 }
 
 fn held_out(selection: &Selection) -> Part {
@@ -146,21 +153,17 @@ fn held_out(selection: &Selection) -> Part {
     )
 }
 
-/// The places of a candidate's members.
-fn members_of(ensemble: &Ensemble, candidate: &CandidateResult) -> Vec<usize> {
-    let named = |group: &'_ Group, name: &str| -> Option<Group> {
-        group.nodes.iter().find_map(|node| match &node.kind {
-            NodeKind::Group(group) if group.name == name => Some(group.clone()),
-            _ => None,
-        })
+/// The places of a candidate's members. In ensembles of older files the groups of the candidates lie in groups of
+/// their kinds, whose names are those of no candidate.
+fn members_of(group: &Group, candidate: &CandidateResult) -> Vec<usize> {
+    let of_node = |node: &Node| match &node.kind {
+        NodeKind::Group(group) if group.name == candidate.name => {
+            group.shares().into_iter().map(|(member, _)| member).collect()
+        }
+        NodeKind::Group(group) => members_of(group, candidate),
+        NodeKind::Member(_) => Vec::new(),
     };
-    let found = named(ensemble.group(), &candidate.kind).and_then(|kind| named(&kind, &candidate.name));
-    let nodes = found.map_or_else(Vec::new, |group| group.nodes);
-    let member = |node: &hysid::model::Node| match node.kind {
-        NodeKind::Member(place) => Some(place),
-        NodeKind::Group(_) => None,
-    };
-    nodes.iter().filter_map(member).collect()
+    group.nodes.iter().flat_map(of_node).collect()
 }
 
 /// Nanoseconds for a sample on the training data; `None` if it cannot be run there.

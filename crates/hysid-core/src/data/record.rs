@@ -447,7 +447,8 @@ impl Dataset {
             return None;
         }
         let travel = |records: &[usize]| {
-            let (low, high) = range(self.records[records[0]].inputs[0].iter());
+            let record = &self.records[records[0]];
+            let (low, high) = range(record.lead_in_rows().iter().chain(&record.inputs[0]));
             high - low
         };
         order.sort_by(|a, b| travel(a).total_cmp(&travel(b)));

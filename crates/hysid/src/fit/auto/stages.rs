@@ -57,17 +57,29 @@ impl Stages<'_, '_, '_> {
         self.expect(others.len(), laws.len());
         self.first_starts(others, first);
         let refined = self.refined();
+        self.expect(refined.len(), laws.len());
         self.first_starts(refined, None);
+        self.expect(0, laws.len());
         let promising = self.screened(laws);
+        self.expect(promising.len(), 0);
         self.first_starts(promising, None);
         self.further_starts();
     }
 
+    /// Tells how many fits may still come if `others` candidates and `laws` are untried, of which about a third and
+    /// a quarter will go on.
     fn expect(&self, others: usize, laws: usize) {
-        let folds = self.bench.folds.len();
-        let further = others / 3 * self.options.starts.saturating_sub(1) * folds;
-        let first = (others + laws / 4) * (folds + 1);
-        self.bench.work.expect(first + laws + further + self.options.members);
+        let (first_folds, other_folds) = self.first_folds();
+        let of_all = other_folds.len() + 1;
+        let tried = |count: usize, share: usize| count * first_folds.len() + count.div_ceil(share) * of_all;
+        let to_come = tried(others, 3) + laws + tried(laws.div_ceil(4), 1) + self.fits_of_further_starts(2);
+        self.bench.work.expect(to_come);
+    }
+
+    /// Fits of the further starts of some candidates, and to everything.
+    fn fits_of_further_starts(&self, candidates: usize) -> usize {
+        let further = self.options.starts.saturating_sub(1);
+        candidates * further * (self.bench.folds.len() + 1)
     }
 
     /// One start of each: on the first folds, and of the best of each kind on the others and everything. The very
@@ -191,7 +203,7 @@ impl Stages<'_, '_, '_> {
         let places = combination.shares().into_iter().map(|(place, _)| place);
         let places: Vec<usize> = places.filter(is_random).collect();
         let further = self.options.starts.saturating_sub(1);
-        work.expect(places.len() * further * folds.len() + self.options.members);
+        work.expect(self.fits_of_further_starts(places.len()));
         for start in 1..=further {
             self.bench.try_start(&mut self.trials, &places, start);
         }
