@@ -51,10 +51,12 @@ fn path(rows: usize, size: f64, pace: f64) -> Vec<f64> {
     (0..rows).map(|k| x(k as f64)).collect()
 }
 
-/// The record with its lead-in as rows without an output, and the same with the lead-in told.
+/// The record with its lead-in as rows without an output, of which the last rests at the first input, and the same
+/// with the lead-in told.
 fn both_ways(record: &Record, lead_in: &[f64]) -> (Record, Record) {
-    let x: Vec<f64> = lead_in.iter().chain(&record.inputs()[0]).copied().collect();
-    let mut y = vec![f64::NAN; lead_in.len()];
+    let x = &record.inputs()[0];
+    let x: Vec<f64> = lead_in.iter().chain(&x[..1]).chain(x).copied().collect();
+    let mut y = vec![f64::NAN; lead_in.len() + 1];
     y.extend(record.output());
     let as_rows = Record::new(record.name(), vec![x], y).unwrap();
     (as_rows, without_time(record).with_lead_in(lead_in.to_vec()).unwrap())
@@ -132,7 +134,7 @@ fn a_lead_in_drives_the_memory_as_rows_before_the_record_do() {
             assert_eq!(of_told.provenance().train, of_rows.provenance().train, "{what}");
             assert_eq!(of_told.evaluate(&told).unwrap(), of_told.provenance().train, "{what}");
             for (as_rows, told) in as_rows.records().iter().zip(told.records()) {
-                let behind = of_rows.simulate(as_rows).unwrap().split_off(lead_in.len());
+                let behind = of_rows.simulate(as_rows).unwrap().split_off(lead_in.len() + 1);
                 assert_eq!(bits(&of_told.simulate(told).unwrap()), bits(&behind), "{what}");
             }
         }
