@@ -2,8 +2,8 @@
 //!
 //! Of several records, some are held out in turn. Records that are one measurement, given twice or cut out of
 //! a longer one, stay in one fold, since a copy of training data is not unseen. A single record is divided in
-//! time: a model is fitted to its beginning and predicts the following rows, with its memory continued.
-//! Blocks from the beginning and middle are held out too.
+//! time: a model is fitted to its beginning and predicts the following rows, with its memory continued. A
+//! validation also holds out blocks from the beginning and middle, so that every row is held out once at least.
 
 mod pooled;
 mod row_folds;
@@ -48,12 +48,26 @@ impl Fold {
 /// Shares of a single record that are fitted to, from its beginning, and those that follow and are judged.
 const FORECASTS: [(f64, f64); 3] = [(0.5, 0.25), (0.6, 0.3), (0.7, 0.3)];
 
+/// A forecast from at least so many percent of a record resembles one from all of it.
+const MOST_OF_A_RECORD: f64 = 60.0;
+
 /// Shares of a single record between which a block is held out from the rest.
 const BLOCKS: [(f64, f64); 2] = [(0.0, 0.35), (0.35, 0.65)];
 
 /// The folds of a data set: at most `most` of several records, five of a single one; none for too few data.
 pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
     cuts(data, most).iter().map(|cut| cut.fold(data)).collect()
+}
+
+/// The folds by which candidates are chosen: those of several records, the forecasts from most of a single one. The
+/// other folds of a single record choose no better and cost as much (docs/accuracy.md).
+pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
+    let mut cuts = cuts(data, most);
+    let is_long = |cut: &Cut| matches!(cut, Cut::Forecast { percent, .. } if percent.0 >= MOST_OF_A_RECORD);
+    if cuts.iter().filter(|cut| is_long(cut)).count() > 1 {
+        cuts.retain(is_long);
+    }
+    cuts.iter().map(|cut| cut.fold(data)).collect()
 }
 
 /// Where data are cut into a fold: a fold is a copy of the data, and a thousand of them would be too many to keep.

@@ -1,6 +1,6 @@
 //! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
-//! 1. *Folds* of the training data, [`crate::validation::folds`].
+//! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only the forecasts from most of it.
 //! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate,
 //!    deterioration, relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
 //!    those with a weight once more from another start; the prediction of a candidate is the median of its
@@ -9,7 +9,7 @@
 //! 3. *Weights*: the best eight candidates are weighted by their scores and combined by their weighted median.
 //!    Rows inside and outside the trained range have separate scores.
 //! 4. *Members*: the fewest starts whose error on the folds is at most 1 % above that of all, fitted to all
-//!    data: an [`Ensemble`](crate::model::Ensemble), or one small model.
+//!    data: an [`Ensemble`], or one small model.
 //! 5. *Prediction band*, calibrated on the folds.
 //!
 //! ```text
@@ -51,7 +51,7 @@ use crate::options::FitSpec;
 use crate::options::auto::AutoOptions;
 use crate::options::table::check;
 use crate::termination::Termination;
-use crate::validation::{PooledErrors, folds};
+use crate::validation::{PooledErrors, folds_to_choose_by};
 use beginning::{Beginning, as_chosen};
 use candidates::{Candidate, candidates, quick};
 use combination::{Combination, Leaf};
@@ -97,7 +97,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     };
     let data = &*as_chosen(data, options)?;
     let few = data.thinned(MOST_ROWS);
-    let folds = folds(&few, MOST_FOLDS);
+    let folds = folds_to_choose_by(&few, MOST_FOLDS);
     let work = Work::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
@@ -113,6 +113,9 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return without_folds(data, &few, options, &candidates[0], alone, &work);
     }
     let (work, evidence) = (&work, Evidence::of(data));
+    let is_told =
+        |candidate: &Candidate| !candidate.is_degrading() || prior::shows_degradation(evidence, data);
+    let candidates: Vec<Candidate> = candidates.into_iter().filter(is_told).collect();
     let bench = Bench { data: &few, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);

@@ -153,10 +153,15 @@ impl Stages<'_, '_, '_> {
         score.with_prior(trial.prior(self.evidence))
     }
 
-    /// The best networks so far with other penalties, unless the user has decided.
+    /// The best networks so far with other penalties, unless the user has decided. One loop does not tell which
+    /// penalties serve inside it.
     fn refined(&self) -> Vec<Candidate> {
         let Self { options, .. } = self;
-        if options.only.is_some() || options.ridge.is_some() || options.decay.is_some() {
+        if self.evidence == Evidence::OneLoop
+            || options.only.is_some()
+            || options.ridge.is_some()
+            || options.decay.is_some()
+        {
             return Vec::new();
         }
         let is_network = |trial: &&Trial| trial.is_complete() && trial.candidate.kind == Kind::Networks;
