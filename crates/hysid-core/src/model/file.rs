@@ -250,6 +250,24 @@ fn has_initial_state(model: &Model) -> bool {
         || selection.as_ref().is_some_and(|selection| selection.found_states.is_some())
 }
 
+/// Indented JSON with the numbers of a list in one line instead of a line for each, which would double the file.
+fn with_numbers_in_line(indented: &str) -> String {
+    let is_number = |line: &str| line.starts_with(|first: char| first == '-' || first.is_ascii_digit());
+    let mut text = String::with_capacity(indented.len());
+    let mut is_in_list = false;
+    for line in indented.lines() {
+        let content = line.trim_start();
+        match (is_number(content), is_in_list) {
+            (true, true) => text.extend([" ", content]),
+            (true, false) | (false, true) => text.push_str(content),
+            (false, false) if text.is_empty() => text.push_str(line),
+            (false, false) => text.extend(["\n", line]),
+        }
+        is_in_list = is_number(content);
+    }
+    text
+}
+
 pub(super) fn write(model: &Model) -> String {
     let (network, law, ensemble) = parts(&model.body);
     let version = if has_initial_state(model) { FORMAT_VERSION } else { VIRGIN_FORMAT_VERSION };
@@ -271,8 +289,8 @@ pub(super) fn write(model: &Model) -> String {
         training: model.provenance.clone(),
         checksum: "00000000".into(),
     };
-    let mut text =
-        serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
+    let text = serde_json::to_string_pretty(&file).expect("a model has no map with keys other than strings");
+    let mut text = with_numbers_in_line(&text);
     let sum = checksum(&text, version).expect("the key is there");
     let end = text.rfind("00000000").expect("the value is there");
     text.replace_range(end..end + 8, &format!("{sum:08x}"));

@@ -136,7 +136,8 @@ pub struct CandidateResult {
 pub struct SingleModel {
     /// The candidate of which it is a fit.
     pub name: String,
-    /// True if it was distilled from the ensemble, false if it was fitted to the data alone.
+    /// True if it was distilled from the ensemble, false if it was fitted to the data alone. The smaller error decides;
+    /// the distance from the ensemble on paths that were not measured is part of it (theory.md (11.13)).
     pub distilled: bool,
     /// Error of the distilled model on held-out data, in percent, as that of the ensemble; `None` if none was
     /// made.

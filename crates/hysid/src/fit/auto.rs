@@ -113,9 +113,6 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return without_folds(data, &few, options, &candidates[0], alone, &work);
     }
     let (work, evidence) = (&work, Evidence::of(data));
-    let is_told =
-        |candidate: &Candidate| !candidate.is_degrading() || prior::shows_degradation(evidence, data);
-    let candidates: Vec<Candidate> = candidates.into_iter().filter(is_told).collect();
     let bench = Bench { data: &few, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);

@@ -157,11 +157,6 @@ impl Candidate {
             && matches!(&self.request, FitSpec::Classical(options) if options.model.is_searched())
     }
 
-    /// True for a law whose strength or stiffness decreases.
-    pub fn is_degrading(&self) -> bool {
-        matches!(&self.request, FitSpec::Classical(options) if options.degradation)
-    }
-
     /// The same searched from few starts in few epochs.
     pub fn in_haste(&self) -> Self {
         let mut hasty = self.clone();

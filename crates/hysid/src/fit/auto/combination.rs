@@ -8,7 +8,7 @@ use crate::fit::auto::prior::{self, Evidence};
 use crate::fit::auto::score::{Score, weights};
 use crate::fit::auto::trial::{HeldOut, Rows, Trial};
 use crate::model::{
-    Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Weights, disagreement,
+    Ensemble, Group, HeldOutRow, MedianBuffers, Model, Node, NodeKind, Provenance, Weights, disagreement,
 };
 use crate::validation::PooledErrors;
 
@@ -203,7 +203,9 @@ impl Combination {
         let mut of_leaf = |leaf: usize| {
             let Leaf { place, start } = self.leaves[leaf];
             model(place, start).map(|model| {
-                members.push(model);
+                // The history of its training tells nothing of the ensemble.
+                let provenance = Provenance { runs: Vec::new(), ..model.provenance().clone() };
+                members.push(model.with_provenance(provenance));
                 NodeKind::Member(members.len() - 1)
             })
         };

@@ -20,9 +20,6 @@ const INSIDE: f64 = 0.1;
 /// Reversals inside the loop from which on there is more than one loop.
 const SMALLER_LOOP: usize = 2;
 
-/// Reversals of a record in which a cycle is repeated.
-const REPEATED: usize = 4;
-
 /// Records whose speeds differ by more than this factor show more than one loop does.
 const OTHER_SPEED: f64 = 1.5;
 
@@ -64,14 +61,6 @@ impl Evidence {
             Self::OneLoop => inside_over_folds(candidate),
         }
     }
-}
-
-/// True if the data can show that a law degrades: they hold more than one loop, or repeat one.
-pub(super) fn shows_degradation(evidence: Evidence, data: &Dataset) -> bool {
-    let (low, high) = data.input_range(0);
-    let reversals = |x: &[f64]| turning_points(x, SMALLEST_REVERSAL * (high - low)).len();
-    evidence == Evidence::SeveralLoops
-        || data.records().iter().any(|record| reversals(&record.inputs()[0]) >= REPEATED)
 }
 
 fn differ_in_speed(data: &Dataset) -> bool {
@@ -131,17 +120,6 @@ mod tests {
         assert_eq!(evidence(&[-1.0, 0.97, -0.98, 1.0, -1.0]), Evidence::OneLoop);
         assert_eq!(evidence(&[0.0, 1.0]), Evidence::OneLoop);
         assert_eq!(evidence(&[198.0, 202.0, 198.0, 202.0, 198.0]), Evidence::OneLoop);
-    }
-
-    #[test]
-    fn a_loop_that_is_repeated_shows_degradation() {
-        let shows = |turning: &[f64]| {
-            let data = data(turning);
-            shows_degradation(Evidence::of(&data), &data)
-        };
-        assert!(!shows(&[0.0, 1.0, -1.0, 1.0]));
-        assert!(shows(&[0.0, 1.0, -1.0, 1.0, -1.0, 1.0]));
-        assert!(shows(&[0.0, 0.3, -0.2, 1.0]));
     }
 
     #[test]

@@ -1,6 +1,16 @@
-//! One small model instead of an ensemble: distilled from the ensemble, or fitted to the data alone,
-//! whichever has the smaller error on held-out data. Both are validated as such: on each fold a model is
-//! distilled from the ensemble of that fold.
+//! One small model instead of an ensemble: distilled from the ensemble, or fitted to the data alone. Both are
+//! validated as such: on each fold a model is distilled from the ensemble of that fold.
+//!
+//! The one with the smaller error is chosen, where its distance from the ensemble on paths that were not measured
+//! counts as an error too:
+//!
+//! ```text
+//! E = ½ ln(e^{2S} + d²/σ²)                                                  theory.md (11.13)
+//! ```
+//!
+//! `S` is the score on held-out data, `d` the root mean square distance from the ensemble on the inputs of the data
+//! at a half and three quarters of their size, and `σ` the standard deviation of the measured output. A network that
+//! is wild beside the measured paths may still predict all held-out rows well.
 
 use rayon::prelude::*;
 
@@ -12,6 +22,7 @@ use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, HeldOut, OnFold, Rows, Trial, fit_members};
 use crate::fit::auto::work::Work;
+use crate::fit::law::search::spread;
 use crate::model::input_transform::{InputTransform, origin};
 use crate::model::selection::SingleModel;
 use crate::model::{HeldOutRow, Model, Predictor};
@@ -32,6 +43,68 @@ pub(super) struct Single {
     pub how: SingleModel,
 }
 
+/// A candidate as it was fitted to the data alone.
+struct Plain {
+    place: usize,
+    predicted: Vec<Vec<f64>>,
+    score: Score,
+    /// What is known of the candidate beforehand.
+    prior: f64,
+    /// Logarithm of its error, with its distance from the ensemble where nothing was measured.
+    error: f64,
+}
+
+/// Paths that nobody measured, and what the ensemble predicts of them.
+struct Unmeasured {
+    records: Vec<Record>,
+    predicted: Vec<Vec<f64>>,
+    /// Standard deviation of the measured output.
+    deviation: f64,
+}
+
+impl Unmeasured {
+    fn of(data: &Dataset, ensemble: &Model) -> Result<Self> {
+        let mut records = Vec::new();
+        for share in SHARES {
+            for record in data.records() {
+                records.push(scaled(record, share, origin(data, 0))?);
+            }
+        }
+        let predicted = records.par_iter().map(|record| ensemble.simulate(record)).collect::<Result<_>>()?;
+        let measured: Vec<f64> = data
+            .records()
+            .iter()
+            .flat_map(|record| record.output().iter().copied())
+            .filter(|y| !y.is_nan())
+            .collect();
+        let (_, deviation) = spread(&measured);
+        Ok(Self { records, predicted, deviation: deviation.max(f64::MIN_POSITIVE) })
+    }
+
+    /// A score to which the mean square distance of a model from the ensemble on these paths is added: data cannot
+    /// tell there, and the ensemble is the best that is known.
+    fn with_distance(&self, score: Score, model: &Model) -> Result<f64> {
+        let of_record = |(record, predicted): (&Record, &Vec<f64>)| -> Result<(f64, usize)> {
+            let output = model.simulate(record)?;
+            let squares = output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b));
+            Ok((squares.sum(), predicted.len()))
+        };
+        let distances: Vec<(f64, usize)> =
+            self.records.par_iter().zip(&self.predicted).map(of_record).collect::<Result<_>>()?;
+        let (sum, rows) = distances.iter().fold((0.0, 0), |(sum, rows), (s, r)| (sum + s, rows + r));
+        let square = sum / rows.max(1) as f64 / (self.deviation * self.deviation);
+        let logarithm = |score: f64| ((2.0 * score).exp() + square).ln() / 2.0;
+        Ok(logarithm(score.inside) + logarithm(score.outside))
+    }
+}
+
+/// The fit to everything with the lowest training error of those that there are.
+fn closest_to_training(trial: &Trial) -> Option<&Model> {
+    let error =
+        |model: &&Model| model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY);
+    trial.members.values().min_by(|a, b| error(a).total_cmp(&error(b)))
+}
+
 /// What a single model is made from.
 pub(super) struct Makers<'w, 'o, 'a> {
     pub trials: &'w mut Vec<Trial>,
@@ -47,33 +120,38 @@ impl Makers<'_, '_, '_> {
     /// # Errors
     /// As a free run over the data.
     pub fn single(mut self, ensemble: &Model) -> Result<Option<Single>> {
-        let small = |place: &usize| {
-            self.trials[*place].is_complete() && self.trials[*place].candidate.kind != Kind::RandomStops
-        };
-        let plain = |place: usize| (place, plain_predictions(&self.trials[place]));
-        let plain = (0..self.trials.len()).filter(small).map(plain);
-        let scored = plain
-            .map(|(place, predicted)| (Score::of(&predicted, self.bench.folds, |_| true), place, predicted));
-        let rank = |(score, place, _): &(Score, usize, Vec<Vec<f64>>)| {
-            score.with_prior(self.trials[*place].prior(self.evidence)).sum()
-        };
-        let best = scored.min_by(|a, b| rank(a).total_cmp(&rank(b)));
-        let Some((score, place, predicted)) = best else { return Ok(None) };
-        let distilled = self.distilled(place, ensemble)?;
+        let unmeasured = Unmeasured::of(self.bench.data, ensemble)?;
+        let mut plain: Vec<Plain> = Vec::new();
+        for (place, trial) in self.trials.iter().enumerate() {
+            if !trial.is_complete() || trial.candidate.kind == Kind::RandomStops {
+                continue;
+            }
+            let Some(model) = closest_to_training(trial) else { continue };
+            let predicted = plain_predictions(trial);
+            let score = Score::of(&predicted, self.bench.folds, |_| true);
+            let prior = trial.prior(self.evidence);
+            let error = unmeasured.with_distance(score.with_prior(prior), model)?;
+            plain.push(Plain { place, predicted, score, prior, error });
+        }
+        plain.sort_by(|a, b| a.error.total_cmp(&b.error));
+        let Some(best) = plain.first() else { return Ok(None) };
+        let candidate = &self.trials[best.place].candidate;
+        let distilled = self.distilled(candidate, ensemble)?;
         let of_distilled =
             distilled.as_ref().map(|(_, predicted)| Score::of(predicted, self.bench.folds, |_| true));
         let mut how = SingleModel {
-            name: self.trials[place].candidate.name(),
+            name: candidate.name(),
             distilled: true,
             distilled_percent: of_distilled.map(Score::percent),
-            plain_percent: score.percent(),
+            plain_percent: best.score.percent(),
         };
         if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
-            && of_distilled.sum() <= score.sum()
+            && unmeasured.with_distance(of_distilled.with_prior(best.prior), &model)? <= best.error
         {
             return Ok(Some(Single { model, predicted, how }));
         }
         how.distilled = false;
+        let (place, predicted) = (best.place, best.predicted.clone());
         let model = self.plain(place);
         Ok(model.map(|model| Single { model, predicted, how }))
     }
@@ -83,15 +161,11 @@ impl Makers<'_, '_, '_> {
         let wanted: Vec<(usize, usize)> =
             (0..self.trials[place].starts.len()).map(|start| (place, start)).collect();
         fit_members(self.trials, &wanted, self.bench.data, self.bench.work);
-        let error =
-            |model: &&Model| model.provenance().trained_error().nrmse_std_percent.unwrap_or(f64::INFINITY);
-        let members = self.trials[place].members.values();
-        members.min_by(|a, b| error(a).total_cmp(&error(b))).cloned()
+        closest_to_training(&self.trials[place]).cloned()
     }
 
     /// A model distilled from the ensemble, and what those distilled on each fold predict.
-    fn distilled(&self, place: usize, ensemble: &Model) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
-        let candidate = &self.trials[place].candidate;
+    fn distilled(&self, candidate: &Candidate, ensemble: &Model) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
         let starts = if candidate.is_random() { STARTS } else { 1 };
         let mut predicted = Vec::new();
         for (fold, held_out) in self.bench.folds.iter().enumerate() {

@@ -126,7 +126,7 @@ impl Drawn {
     pub fn of(data: &Dataset, options: &RandomStopsOptions) -> Result<Self> {
         let (deterioration, hidden) = (options.deterioration.unwrap_or(false), options.hidden.unwrap_or(0));
         let architecture = architecture(data, options, deterioration, hidden)?;
-        let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
+        let parameters = drawn(&architecture, options.seed);
         Ok(Self { architecture, parameters })
     }
 
@@ -178,6 +178,12 @@ fn architecture(
     Ok(architecture)
 }
 
+/// Random stops, with few digits: a thousand numbers with all of theirs would fill most of a model file.
+fn drawn(architecture: &Architecture, seed: u64) -> Vec<f64> {
+    let short = |value: f64| format!("{value:.3e}").parse().unwrap_or(value);
+    start::draw(architecture, CAPACITIES, None, seed).into_iter().map(short).collect()
+}
+
 /// Draws the stops, and finds the output weights.
 fn fit_readout(
     data: &Dataset,
@@ -190,7 +196,7 @@ fn fit_readout(
     let drives: Vec<Drive> =
         used().map(|record| scaling.drive(record, &architecture, options.rate)).collect::<Result<_>>()?;
     let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
-    let parameters = start::draw(&architecture, CAPACITIES, None, options.seed);
+    let parameters = drawn(&architecture, options.seed);
     let sums = fold_sums(
         &Columns { architecture: &architecture, parameters: &parameters, output: None },
         &drives,
