@@ -118,7 +118,8 @@ impl Degradation {
 
     /// True if the element is so quick that it has come to its yield force and will only follow it.
     pub(super) fn is_at_rest(&self, n: f64, z: f64, e: f64) -> bool {
-        z >= 0.0 && self.quickness(n, z, e) > QUICK && {
+        // `|z| ≤ 1` and `n ≥ 1`: most elements are known not to be quick without a power.
+        z >= 0.0 && self.loss_ratio(e) > QUICK && self.quickness(n, z, e) > QUICK && {
             let ultimate = self.ultimate(n, e);
             (z - ultimate).abs() <= AT_REST * ultimate + 1e-9
         }
@@ -134,7 +135,12 @@ impl Degradation {
     /// How much faster the degraded element comes to rest at its yield force than the untouched one.
     pub(super) fn quickness(&self, n: f64, z: f64, e: f64) -> f64 {
         let largest = z.abs().max(self.ultimate(n, e));
-        (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e) * largest.powf(n - 1.0)
+        self.loss_ratio(e) * largest.powf(n - 1.0)
+    }
+
+    /// `ν/η`.
+    fn loss_ratio(&self, e: f64) -> f64 {
+        (1.0 + self.delta_nu * e) / (1.0 + self.delta_eta * e)
     }
 
     /// Parts for a yield displacement, beyond those for its quickness, that a narrow pinched range asks for.
