@@ -190,7 +190,7 @@ mod unix {
             return;
         }
         // The disk is full but for a few blocks, in which a name but no model has room.
-        fs::write(disk.join("filling"), [0u8; 8 * 1024]).unwrap();
+        fs::write(disk.join("filling"), [0u8; 12 * 1024]).unwrap();
         let ran = bench.run("fit good.csv -o small/m.json --no-report --model xpnn+ --starts 1 --epochs 1");
         let left: Vec<String> = bench.files("small");
         assert!(Command::new("umount").arg(&disk).status().unwrap().success());

@@ -225,7 +225,7 @@ fn other_files_and_versions_are_told_apart() {
 #[test]
 fn an_unknown_field_is_another_layout() {
     let text = FULL.to_json();
-    for place in ["\"format\"", "\"stops\": [", "\"weights\"", "\"output\": [\n"] {
+    for place in ["\"format\"", "\"stops\": [", "\"weights\"", "\"output\": ["] {
         let at = text.rfind(place).unwrap();
         let mut extended = text.clone();
         extended.insert_str(at, "\"novelty\": 1, ");
