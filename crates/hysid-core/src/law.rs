@@ -10,6 +10,7 @@
 //! | [`Preisach`](preisach::Preisach) | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
 //! | [`NeuroMadelung`](neuro_madelung::NeuroMadelung) | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
+//! | [`PeakOriented`](peak_oriented::PeakOriented) | reloading leads to the largest displacement so far, pinched; softening, deterioration | largest displacements, branch, work |
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
@@ -28,6 +29,7 @@ pub mod lugre;
 pub mod masing;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
+pub mod peak_oriented;
 pub mod play_weights;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
@@ -365,6 +367,7 @@ macro_rules! for_each_law {
             preisach::Preisach,
             neuro_madelung::NeuroMadelung,
             bouc_wen::BoucWen,
+            peak_oriented::PeakOriented,
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
             duhem_nn::DuhemNn,

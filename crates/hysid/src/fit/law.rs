@@ -10,6 +10,7 @@ pub mod lugre;
 pub mod masing;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
+pub mod peak_oriented;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
 pub mod rate_dependent_prandtl_ishlinskii;
