@@ -11,6 +11,7 @@
 //! | [`NeuroMadelung`](neuro_madelung::NeuroMadelung) | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
 //! | [`PeakOriented`](peak_oriented::PeakOriented) | reloading leads to the largest displacement so far, pinched; softening, deterioration | largest displacements, branch, work |
+//! | [`MenegottoPinto`](menegotto_pinto::MenegottoPinto) | steel: curves between two straight lines, isotropic hardening | branches |
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
@@ -27,6 +28,7 @@ pub mod interval;
 pub mod jiles_atherton;
 pub mod lugre;
 pub mod masing;
+pub mod menegotto_pinto;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
 pub mod peak_oriented;
@@ -368,6 +370,7 @@ macro_rules! for_each_law {
             neuro_madelung::NeuroMadelung,
             bouc_wen::BoucWen,
             peak_oriented::PeakOriented,
+            menegotto_pinto::MenegottoPinto,
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
             duhem_nn::DuhemNn,

@@ -8,6 +8,7 @@ pub mod jiles_atherton;
 pub(crate) mod linear;
 pub mod lugre;
 pub mod masing;
+pub mod menegotto_pinto;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
 pub mod peak_oriented;
