@@ -1,7 +1,7 @@
 //! Softening beyond a cap, and deterioration with dissipated work.
 //!
 //! ```text
-//! D = 1 - exp{-(e/e_D)^c},   σ = 1 - s D,   d_t = (1 + a D) d_m,   φ_b (1 - g D) in place of φ_b    theory.md (8.46)
+//! D = 1 - exp{-(e/e_D)^p},   σ = 1 - s_D D,   d_t = (1 + a D) d_m,   φ_b (1 - g D) in place of φ_b    theory.md (8.46)
 //! ```
 
 use serde::{Deserialize, Serialize};
@@ -23,9 +23,9 @@ pub struct Degradation {
     pub residual: f64,
     /// `e_D`: work at which the deterioration `D` is 1 - 1/e.
     pub endurance: f64,
-    /// `c`: below 1 deterioration slows down with work, above 1 it accelerates at first.
+    /// `p`: below 1 deterioration slows down with work, above 1 it accelerates at first.
     pub pace: f64,
-    /// `s`, 0 to 1: share of the strength that is lost at last.
+    /// `s_D`, 0 to 1: share of the strength that is lost at last.
     pub strength_loss: f64,
     /// `a`: growth of the target of reloading at last, as a share of the largest displacement.
     pub target_growth: f64,
@@ -61,8 +61,8 @@ impl Degradation {
             ("κ", "width of softening as a share of the displacement at the cap", self.softening),
             ("ρ", "share of the envelope that is left beyond the cap", self.residual),
             ("e_D", "work that deteriorates, in yield forces times yield displacements", self.endurance),
-            ("c_D", "pace of deterioration", self.pace),
-            ("s", "loss of strength at last", self.strength_loss),
+            ("p", "pace of deterioration", self.pace),
+            ("s_D", "loss of strength at last", self.strength_loss),
             ("a", "growth of the target of reloading at last", self.target_growth),
             ("g", "loss of height of the pinch point at last", self.pinching_growth),
         ];
