@@ -40,6 +40,7 @@ pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
 pub mod thresholds;
 pub mod turning_point_stack;
+mod yield_curve;
 
 use serde::{Deserialize, Serialize};
 

@@ -32,6 +32,7 @@ use crate::error::{LARGEST_VALUE, Result};
 use crate::law::facts::Facts;
 use crate::law::interval::Interval;
 use crate::law::properties::ODD;
+use crate::law::yield_curve::yielding;
 use crate::law::{Dimension, Law, Parameter, Sample};
 use crate::property::Property;
 
@@ -61,6 +62,9 @@ const LARGEST_DISPLACEMENT: f64 = 1e100;
 
 /// Branches that are closer to each other than this, in yield stresses, have met.
 const MET: f64 = 1e-12;
+
+/// Length of the chords of branches that are nearly met, in steps of the input.
+const STEPS_AHEAD: f64 = 8.0;
 
 /// Branches of a direction that are stored at most, so that a step takes little time.
 const MOST_BRANCHES: usize = 8;
@@ -122,22 +126,42 @@ struct Branch {
     room: f64,
     /// `R`.
     roundness: f64,
+    /// Two of its points, `d` and `q` with the sign of the direction.
+    chord: [(f64, f64); 2],
 }
 
 impl Branch {
+    fn new(from: f64, start: f64, room: f64, roundness: f64) -> Self {
+        Self { from, start, room, roundness, chord: [(from, start); 2] }
+    }
+
+    /// A lower bound of `q` at `d`, beyond the first end of the chord: the branch rises and is concave, so it is above
+    /// its chords.
+    fn least(&self, d: f64) -> f64 {
+        let [from, to] = self.chord;
+        if d >= to.0 || from.0 >= to.0 {
+            return if d >= to.0 { from.1.max(to.1) } else { from.1 };
+        }
+        from.1 + (to.1 - from.1) * ((d - from.0) / (to.0 - from.0))
+    }
+
+    /// `q` at `d`, and a chord for the next few steps as long as this one, `by`.
+    fn looked_at(&mut self, d: f64, by: f64) -> f64 {
+        let q = self.at(d);
+        let ahead = d + STEPS_AHEAD * by;
+        let [_, to] = self.chord;
+        let to = if to.0 > d && to.0 <= ahead { to } else { (ahead, self.at(ahead)) };
+        self.chord = [(d, q), to];
+        q
+    }
+
     /// `q` at `d`, both with the sign of the direction (theory.md (8.48)).
     fn at(&self, d: f64) -> f64 {
         if self.room <= 0.0 {
             return self.start;
         }
         let z = ((d - self.from) / self.room).max(0.0);
-        // Each form has no power that overflows.
-        let bend = if z > 1.0 {
-            (1.0 + z.powf(-self.roundness)).powf(-1.0 / self.roundness)
-        } else {
-            z * (1.0 + z.powf(self.roundness)).powf(-1.0 / self.roundness)
-        };
-        self.start + self.room * bend
+        self.start + self.room * yielding(z, self.roundness)
     }
 }
 
@@ -188,7 +212,7 @@ impl MenegottoPinto {
     /// The branch of a virgin material.
     fn virgin_branch(&self, direction: usize) -> Branch {
         let room = self.down.filter(|_| direction == 1).map_or(1.0, |down| down.ratio);
-        Branch { from: 0.0, start: 0.0, room, roundness: self.roundness }
+        Branch::new(0.0, 0.0, room, self.roundness)
     }
 
     /// The branch from the present point in a direction.
@@ -198,7 +222,7 @@ impl MenegottoPinto {
         let room = (self.yield_stress(direction, state.extremes) - start).max(0.0);
         let excursion = (state.extremes[direction] - (from + room)).abs();
         let roundness = self.roundness * (1.0 - self.loss * excursion / (self.pace + excursion));
-        Branch { from, start, room, roundness: roundness.max(LEAST_ROUNDNESS) }
+        Branch::new(from, start, room, roundness.max(LEAST_ROUNDNESS))
     }
 
     /// Advances to the next input and returns `q`.
@@ -219,7 +243,7 @@ impl MenegottoPinto {
         while opposite.last().is_some_and(|branch| -branch.from <= d_along) {
             opposite.pop();
         }
-        let along = followed(&mut state.branches[direction], d_along);
+        let along = followed(&mut state.branches[direction], d_along, (d - state.d).abs());
         (state.d, state.q) = (d, sign * along);
         state.q
     }
@@ -230,6 +254,9 @@ impl MenegottoPinto {
             None => self.virgin_branch(direction),
             Some(before) => {
                 let sign = sign_of(before);
+                if let Some(left) = state.branches[before].last_mut() {
+                    left.chord[1] = (sign * state.d, sign * state.q);
+                }
                 state.extremes[before] = state.extremes[before].max(sign * state.d);
                 self.branch(state, direction)
             }
@@ -239,18 +266,25 @@ impl MenegottoPinto {
             // The outermost loop matters most, and the innermost ones are met next.
             branches.remove(1);
         }
+        for earlier in branches.iter_mut() {
+            earlier.chord[0] = (branch.from, earlier.at(branch.from));
+        }
         branches.push(branch);
         state.direction = Some(direction);
     }
 }
 
 /// The smallest `q` of the branches at `d` (theory.md (8.51)). Branches later than its own have met it and are
-/// deleted.
-fn followed(branches: &mut Vec<Branch>, d: f64) -> f64 {
-    let (mut least, mut kept) = (f64::INFINITY, 0);
-    for (index, branch) in branches.iter().enumerate() {
-        let q = branch.at(d);
-        if q < least - MET {
+/// deleted. An earlier branch is only evaluated where the last one may have met it. `by` is the length of this step.
+fn followed(branches: &mut Vec<Branch>, d: f64, by: f64) -> f64 {
+    let Some((last, earlier)) = branches.split_last_mut() else { return 0.0 };
+    let (mut least, mut kept) = (last.at(d), earlier.len() + 1);
+    for (index, branch) in earlier.iter_mut().enumerate().rev() {
+        if least < branch.least(d) - 2.0 * MET {
+            continue;
+        }
+        let q = branch.looked_at(d, by);
+        if least >= q - MET {
             (least, kept) = (q, index + 1);
         }
     }
@@ -508,6 +542,22 @@ mod tests {
                     y.is_finite() && y >= bound.0 - slack && y <= bound.1 + slack,
                     "{law:?}: {y} {bound:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn the_branch_that_is_followed_is_the_least_of_all() {
+        let law = steel();
+        let mut state = law.virgin();
+        for to in refined(&numbers(300).iter().map(|u| 10.0 * u).collect::<Vec<f64>>(), 11) {
+            let before = state.clone();
+            let q = law.advance(&mut state, to);
+            let direction = state.direction.unwrap();
+            if before.direction == Some(direction) {
+                let sign = sign_of(direction);
+                let all = before.branches[direction].iter().map(|branch| branch.at(sign * state.d));
+                assert!((sign * q - all.fold(f64::INFINITY, f64::min)).abs() < 1e-11);
             }
         }
     }

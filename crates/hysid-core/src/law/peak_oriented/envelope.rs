@@ -5,12 +5,11 @@
 //! C(d) = 1 for d ≤ d_c,    C(d) = ρ + (1 - ρ)/{1 + [(d/d_c - 1)/κ]²} beyond theory.md (8.39)
 //! ```
 
+use crate::law::yield_curve::yielding;
+
 /// `R(d)` (theory.md (8.38)) for `d ≥ 0`: it begins with the slope 1 and approaches `1 - h + h d`.
 pub(super) fn hardening_curve(d: f64, n: f64, h: f64) -> f64 {
-    // The form for large `d` has no powers that overflow.
-    let yielding =
-        if d > 1.0 { (1.0 + d.powf(-n)).powf(-1.0 / n) } else { d * (1.0 + d.powf(n)).powf(-1.0 / n) };
-    h * d + (1.0 - h) * yielding
+    h * d + (1.0 - h) * yielding(d, n)
 }
 
 /// `C(d)` (theory.md (8.39)): the share that is left beyond the cap.
