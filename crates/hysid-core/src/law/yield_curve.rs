@@ -20,7 +20,7 @@ mod tests {
     #[test]
     fn it_is_the_quotient() {
         for n in [0.3_f64, 0.7, 1.0, 2.0, 5.5, 20.0, 50.0] {
-            for z in [1e-9, 0.03, 0.5, 0.99, 1.0, 1.01, 3.0, 200.0] {
+            for z in [1e-9_f64, 0.03, 0.5, 0.99, 1.0, 1.01, 3.0, 200.0] {
                 let quotient = z / (1.0 + z.powf(n)).powf(1.0 / n);
                 assert!((yielding(z, n) - quotient).abs() < 1e-14 * quotient, "{z} {n}");
             }

@@ -6,8 +6,8 @@
 //! unloading:  f/f_r = (1 - q)/(1 + c q)                                     theory.md (8.44)
 //! ```
 //!
-//! `τ` and `φ` are the shares of the way and of the force between zero force and the target, `t` runs from 0 to
-//! 1. The curve begins and ends along the lines to the pinch point `(τ_b, φ_ω)`; `w` tells how closely it
+//! `τ` and `φ` are the shares of the way and of the force between zero force and the target, and `t` runs from zero
+//! to one. The curve begins and ends along the lines to the pinch point `(τ_b, φ_ω)`; `w` tells how closely it
 //! follows them.
 
 /// A rational parabola from (0, 0) to (1, 1) with its control point.
