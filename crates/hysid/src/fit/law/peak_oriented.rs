@@ -1,5 +1,5 @@
 //! Identification of a peak-oriented law: yield displacements, shapes and degradation are found by search, and for
-//! each of their values offset, spring and strengths by least squares.
+//! each of their values offset and strengths by least squares.
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -10,7 +10,7 @@ use crate::fit::law::search::{
 };
 use crate::law::Law;
 use crate::law::peak_oriented::{Degradation, PINCH_BOUNDS, PeakOriented, Side};
-use crate::law::series::Series;
+use crate::law::series::{Series, work};
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 
@@ -32,13 +32,14 @@ impl Identify for PeakOriented {
         let (low, high) = data.input_range(0);
         // The member is virgin at 0.
         let range = high.max(-low).max(f64::MIN_POSITIVE);
-        let family = Members::new(range, options);
+        let family = Members::new(range, work(&series) < 0.0, options);
         let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
         let mut law = family.law(&found.parameters);
-        (law.offset, law.spring) = (found.weights[0], found.weights[1]);
-        law.up.strength = found.weights[2];
+        law.offset = found.weights[0];
+        law.up.strength = found.weights[1];
+        law.spring *= law.up.strength;
         if let Some(down) = &mut law.down {
-            down.strength = found.weights[3];
+            down.strength = found.weights[2];
         }
         Ok(found.identified(law.validated()?))
     }
@@ -53,11 +54,20 @@ struct Members {
     non_negative: Vec<bool>,
 }
 
-/// Searched parameters of the shape: `x+`, `n`, `h`, `u`, `c`, `τ_b`, `φ_b`, `w`.
-const SHAPE: usize = 8;
+/// Searched parameters of the shape: `x+`, `n`, `h`, `u`, `c`, `τ_b`, `φ_b`, `w` and `k x+/F+`.
+const SHAPE: usize = 9;
+
+/// Bounds of `k x+/F+`. A spring that is free by least squares takes the place of the envelope: with its slope far
+/// below 0 and as much hardening the error of the training data is less, and that of larger displacements more.
+const SPRING: (f64, f64) = (-0.05, 0.3);
+
+/// The same for an output that lags behind its input: a spring less a member, whose yield force is negative.
+const SPRING_OF_A_LAG: (f64, f64) = (-20.0, 0.0);
 
 impl Members {
-    fn new(range: f64, options: &ClassicalOptions) -> Self {
+    /// Members for displacements in this range; `lags` for an output that lags behind its input.
+    fn new(range: f64, lags: bool, options: &ClassicalOptions) -> Self {
+        let (low, high) = if lags { SPRING_OF_A_LAG } else { SPRING };
         let (asymmetric, degradation) = (options.asymmetric, options.degradation);
         let mut variables = vec![
             Variable::logarithmic(0.003 * range, 1.5 * range),
@@ -68,6 +78,7 @@ impl Members {
             Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
             Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
             Variable::logarithmic(0.3, 10.0),
+            Variable::linear(low, high),
         ];
         if asymmetric {
             variables.push(Variable::logarithmic(0.2, 5.0));
@@ -84,13 +95,13 @@ impl Members {
                 Variable::linear(0.0, 1.0),
             ]);
         }
-        let features = if asymmetric { 4 } else { 3 };
+        let features = if asymmetric { 3 } else { 2 };
         Self { range, asymmetric, degradation, variables, non_negative: vec![false; features] }
     }
 
     /// The law of unit strength.
     fn law(&self, parameters: &[f64]) -> PeakOriented {
-        let &[x, n, hardening, unloading, curvature, pinch_place, pinch_height, pinch_weight] =
+        let &[x, n, hardening, unloading, curvature, pinch_place, pinch_height, pinch_weight, spring] =
             parameters.first_chunk::<SHAPE>().expect("the shape is searched");
         let side = |yield_displacement| Side { strength: 1.0, yield_displacement };
         let degraded = SHAPE + usize::from(self.asymmetric);
@@ -99,7 +110,7 @@ impl Members {
             .then(|| Degradation::from_values(std::array::from_fn(|index| parameters[degraded + index])));
         PeakOriented {
             offset: 0.0,
-            spring: 0.0,
+            spring: spring / x,
             up: side(x),
             down: self.asymmetric.then(|| side(x * parameters[SHAPE])),
             n,
@@ -135,9 +146,9 @@ impl Family for Members {
                 continue;
             }
             if self.asymmetric {
-                columns.push(&[1.0, sample.x, up, down]);
+                columns.push(&[1.0, up + law.spring * sample.x, down]);
             } else {
-                columns.push(&[1.0, sample.x, up + down]);
+                columns.push(&[1.0, up + down + law.spring * sample.x]);
             }
         }
     }
@@ -147,7 +158,7 @@ impl Family for Members {
         let mut all = Vec::new();
         for share in [0.02, 0.05, 0.12, 0.3] {
             for height in [0.2, 0.5, 0.8] {
-                let mut member = vec![share * self.range, 2.0, 0.03, 0.3, 2.0, 0.5, height, 1.0];
+                let mut member = vec![share * self.range, 2.0, 0.03, 0.3, 2.0, 0.5, height, 1.0, 0.0];
                 if self.asymmetric {
                     member.push(1.0);
                 }
