@@ -180,7 +180,7 @@ fn command_lines() {
             (
                 "fit data.csv --model nn",
                 2,
-                "invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, jiles-atherton, lugre, duhem-nn, random-stops] (see `hysid --help`)",
+                "invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, peak-oriented, menegotto-pinto, jiles-atherton, lugre, duhem-nn, random-stops] (see `hysid --help`)",
             ),
             (
                 "fit data.csv --stops 0",

@@ -10,6 +10,8 @@
 //! | [`Preisach`](preisach::Preisach) | `y = c + k x + Σ_j v_j m_j(x) + Σ_ij w_ij R_ij[x]`, relays `R` | turning points |
 //! | [`NeuroMadelung`](neuro_madelung::NeuroMadelung) | `y = y_t + (x - x_t) N(x, x_t, y_t, x')`, `N` a small network | turning points |
 //! | [`BoucWen`](bouc_wen::BoucWen) | a spring in parallel with an element that yields, with degradation and pinching | `z`, energy |
+//! | [`PeakOriented`](peak_oriented::PeakOriented) | reloading leads to the largest displacement so far, pinched; softening, deterioration | largest displacements, branch, work |
+//! | [`MenegottoPinto`](menegotto_pinto::MenegottoPinto) | steel: curves between two straight lines, isotropic hardening | branches |
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
@@ -26,8 +28,10 @@ pub mod interval;
 pub mod jiles_atherton;
 pub mod lugre;
 pub mod masing;
+pub mod menegotto_pinto;
 pub mod modified_prandtl_ishlinskii;
 pub mod neuro_madelung;
+pub mod peak_oriented;
 pub mod play_weights;
 pub mod prandtl_ishlinskii;
 pub mod preisach;
@@ -36,6 +40,7 @@ pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
 pub mod thresholds;
 pub mod turning_point_stack;
+mod yield_curve;
 
 use serde::{Deserialize, Serialize};
 
@@ -365,6 +370,8 @@ macro_rules! for_each_law {
             preisach::Preisach,
             neuro_madelung::NeuroMadelung,
             bouc_wen::BoucWen,
+            peak_oriented::PeakOriented,
+            menegotto_pinto::MenegottoPinto,
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
             duhem_nn::DuhemNn,

@@ -166,7 +166,7 @@ fn law(found: &Found) -> Option<&'static str> {
     if found.deterioration == Verdict::Yes {
         return Some(
             "with fewer parameters, if its shape fits: bouc-wen with the option degradation (stiffness and strength that \
-             degrade, pinching); compare fits every law in all its variants",
+             degrade, pinching), or peak-oriented with it (members and joints); compare fits every law in all its variants",
         );
     }
     (found.rate_dependence == Verdict::Yes).then_some(

@@ -48,6 +48,7 @@ fn guaranteed(name: &str) -> (&'static [Property], &'static [Property]) {
             (&[WipingOut, Congruency, Masing, OddSymmetry, LoopClosure], &[Deterioration])
         }
         "bouc-wen" | "lugre" => (&[OddSymmetry], &[Deterioration]),
+        "peak-oriented" | "menegotto-pinto" => (&[OddSymmetry], &[RateDependence]),
         "neuro-madelung" => (&[WipingOut], &[]),
         "xpnn" | "xpnn+" | "duhem-nn" | "random-stops" => (&[], &[]),
         other => panic!("what theory says of {other} is missing here"),

@@ -249,7 +249,7 @@ impl Law for BoucWen {
 
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
-        variant: Some("degradation"),
+        variants: &["degradation"],
         ..Facts::searched("bouc-wen", &["degradation", "starts", "epochs", "rate_companding"], 0.15)
     };
 

@@ -15,8 +15,8 @@ pub struct Facts {
     pub options: &'static [&'static str],
     /// Smallest and largest values of such options, where they are not those of the table of options.
     pub limits: &'static [(&'static str, usize, usize)],
-    /// The option that selects a variant of the law: a further term, or another form.
-    pub variant: Option<&'static str>,
+    /// The options that select a variant of the law, each by itself: a further term, or another form.
+    pub variants: &'static [&'static str],
     /// Natural logarithm of a ratio of errors, for data of one loop: the error inside the loop divided by the
     /// cross-validation error, geometric mean over generated cases (docs/accuracy.md).
     pub log_error_inside: f64,
@@ -32,7 +32,7 @@ impl Facts {
             identification: Identification::LeastSquares,
             options,
             limits: &[],
-            variant: None,
+            variants: &[],
             log_error_inside,
         }
     }

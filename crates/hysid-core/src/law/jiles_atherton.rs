@@ -167,7 +167,7 @@ impl Law for JilesAtherton {
 
     const FACTS: Facts = Facts {
         origin: Origin::Zero,
-        variant: Some("differential_form"),
+        variants: &["differential_form"],
         ..Facts::searched("jiles-atherton", &["differential_form", "starts", "epochs"], 0.15)
     };
 

@@ -111,7 +111,7 @@ impl Law for RateDependentPrandtlIshlinskii {
 
     const FACTS: Facts = Facts {
         rate: Rate::Needed,
-        variant: Some("logarithmic_thresholds"),
+        variants: &["logarithmic_thresholds"],
         ..Facts::searched(
             "rate-dependent-prandtl-ishlinskii",
             &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],

@@ -53,6 +53,7 @@ pub struct NamedOptions {
     pub free_weights: Option<bool>,
     pub logarithmic_thresholds: Option<bool>,
     pub degradation: Option<bool>,
+    pub asymmetric: Option<bool>,
     pub differential_form: Option<bool>,
 }
 
@@ -203,6 +204,7 @@ impl NamedOptions {
             free_weights: self.free_weights,
             logarithmic_thresholds: self.logarithmic_thresholds.unwrap_or(defaults.logarithmic_thresholds),
             degradation: self.degradation.unwrap_or(defaults.degradation),
+            asymmetric: self.asymmetric.unwrap_or(defaults.asymmetric),
             differential_form: self.differential_form.unwrap_or(defaults.differential_form),
             hidden: self.hidden,
             states: self.states,
@@ -372,6 +374,7 @@ mod tests {
         };
         assert_eq!(law(given), expected);
         assert!(law(json!({ "model": "bouc-wen", "degradation": true })).degradation);
+        assert!(law(json!({ "model": "peak-oriented", "asymmetric": true })).asymmetric);
         assert!(law(json!({ "model": "jiles-atherton", "differential_form": true })).differential_form);
         let random_stops = law(json!({ "model": "random-stops", "hidden": 4, "no_deterioration": true }));
         assert_eq!((random_stops.hidden, random_stops.deterioration), (Some(4), Some(false)));

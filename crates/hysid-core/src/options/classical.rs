@@ -101,8 +101,12 @@ pub struct ClassicalOptions {
     /// True if the thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the
     /// rate.
     pub logarithmic_thresholds: bool,
-    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori.
+    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori, and for a peak-oriented
+    /// law that softens and deteriorates.
     pub degradation: bool,
+    /// True for a peak-oriented or Menegotto-Pinto law with different strengths upwards and downwards.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub asymmetric: bool,
     /// True for a Jiles-Atherton law in the form of 1992, false for that of 1986.
     pub differential_form: bool,
     /// Tanh neurons of a neuro-Madelung model, of a Duhem neural network or beside random stops.
@@ -135,6 +139,7 @@ impl ClassicalOptions {
     pub fn variant(&mut self, option: &str) -> Option<&mut bool> {
         match option {
             "degradation" => Some(&mut self.degradation),
+            "asymmetric" => Some(&mut self.asymmetric),
             "differential_form" => Some(&mut self.differential_form),
             "logarithmic_thresholds" => Some(&mut self.logarithmic_thresholds),
             _ => None,
@@ -152,6 +157,7 @@ impl ClassicalOptions {
             free_weights: None,
             logarithmic_thresholds: false,
             degradation: false,
+            asymmetric: false,
             differential_form: false,
             hidden: None,
             states: None,

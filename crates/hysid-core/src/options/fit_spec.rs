@@ -71,6 +71,7 @@ impl FitSpec {
                     options.shaping,
                     named([
                         ("deterioration", options.deterioration == Some(true)),
+                        ("asymmetric", options.asymmetric),
                         ("degradation", options.degradation),
                         ("differential form", options.differential_form),
                         ("logarithmic thresholds", options.logarithmic_thresholds),

@@ -90,7 +90,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 29] = [
+pub const OPTIONS: [FitOption; 30] = [
     FitOption {
         name: "model",
         group: Model,
@@ -327,7 +327,16 @@ pub const OPTIONS: [FitOption; 29] = [
     FitOption {
         name: "degradation",
         group: Classical,
-        meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori",
+        meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, or peak-oriented with softening \
+                  and deterioration",
+        values: Values::Flag,
+        default: "off",
+        used_by: of_none,
+    },
+    FitOption {
+        name: "asymmetric",
+        group: Classical,
+        meaning: "Use peak-oriented or menegotto-pinto with different strengths upwards and downwards",
         values: Values::Flag,
         default: "off",
         used_by: of_none,

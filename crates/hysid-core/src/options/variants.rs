@@ -9,8 +9,9 @@ impl FitSpec {
         if self.variants().len() > 1 { self.label() } else { self.model().name().into() }
     }
 
-    /// This specification in all variants of its law, the simplest first: Bouc-Wen with and without
-    /// degradation, Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its
+    /// This specification in all variants of its law, the simplest first: Bouc-Wen and peak-oriented with and
+    /// without degradation, peak-oriented and Menegotto-Pinto with the same and with different sides,
+    /// Jiles-Atherton in both forms, rate-dependent Prandtl-Ishlinskii with both spacings of its
     /// thresholds, and laws with an optional rate with and without it. A network has one variant.
     pub fn variants(&self) -> Vec<Self> {
         match self {
@@ -34,15 +35,16 @@ pub fn variants(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
     by_rate.iter().flat_map(terms).collect()
 }
 
-/// A law with and without the term, or the form, that it can have.
+/// A law with and without each term, or form, that it can have.
 fn terms(options: &ClassicalOptions) -> Vec<ClassicalOptions> {
-    let Some(variant) = options.model.facts().variant else { return vec![options.clone()] };
-    let with = |is_there| {
+    let with = |options: &ClassicalOptions, variant, is_there| {
         let mut options = options.clone();
         *options.variant(variant).expect("a law names an option that there is") = is_there;
         options
     };
-    vec![with(false), with(true)]
+    let both = |variant| move |options: ClassicalOptions| [false, true].map(|is| with(&options, variant, is));
+    let variants = options.model.facts().variants.iter();
+    variants.fold(vec![options.clone()], |all, variant| all.into_iter().flat_map(both(variant)).collect())
 }
 
 #[cfg(test)]
@@ -72,6 +74,11 @@ mod tests {
         assert_eq!(
             labels(bouc_wen, Some(RateMethod::Central)),
             ["bouc-wen", "bouc-wen (degradation)", "bouc-wen (rate)", "bouc-wen (degradation, rate)"]
+        );
+        let sides = ["", " (asymmetric)", " (degradation)", " (asymmetric, degradation)"];
+        assert_eq!(
+            labels(ModelName::Classical(ClassicalModel::PeakOriented), None),
+            sides.map(|sides| format!("peak-oriented{sides}"))
         );
         assert_eq!(labels(ModelName::AUTO, None), ["auto"]);
     }

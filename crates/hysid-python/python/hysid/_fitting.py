@@ -88,6 +88,7 @@ def fit(
     free_weights: bool | None = None,
     logarithmic_thresholds: bool | None = None,
     degradation: bool | None = None,
+    asymmetric: bool | None = None,
     differential_form: bool | None = None,
     time_limit: float | None = None,
     threads: int | None = None,
@@ -195,7 +196,10 @@ def fit(
         Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
         linear.
     degradation : bool, optional
-        Use bouc-wen with the degradation and pinching of Baber and Noori. Default: off.
+        Use bouc-wen with the degradation and pinching of Baber and Noori, or peak-oriented with softening and
+        deterioration. Default: off.
+    asymmetric : bool, optional
+        Use peak-oriented or menegotto-pinto with different strengths upwards and downwards. Default: off.
     differential_form : bool, optional
         Use jiles-atherton in its differential form of 1992 in place of that of 1986. Default: off.
     time_limit : float, optional

@@ -26,14 +26,31 @@ __all__ = [
     "jiles_atherton",
     "lugre",
     "masing",
+    "menegotto_pinto",
     "modified_prandtl_ishlinskii",
+    "peak_oriented",
     "prandtl_ishlinskii",
     "preisach",
     "rate_dependent_prandtl_ishlinskii",
 ]
 
+ENVELOPE = ("a0", "a1", "a2", "a3")
+"""Parameters of an envelope of generalized plays."""
+
 DEGRADATION = ("delta_a", "delta_nu", "delta_eta", "zeta_s", "p", "q", "psi_0", "delta_psi", "lambda")
 """Parameters of Baber and Noori's degradation and pinching."""
+
+DETERIORATION = (
+    "cap",
+    "softening",
+    "residual",
+    "endurance",
+    "pace",
+    "strength_loss",
+    "target_growth",
+    "pinching_growth",
+)
+"""Parameters of the softening and deterioration of a peak-oriented law."""
 
 
 def _run(law: str, parameters: dict[str, Any], x: Any, time: Any = None, rate: str | None = None) -> np.ndarray:
@@ -72,6 +89,14 @@ def _named(name: str, values: Mapping[str, Any], keys: Sequence[str]) -> dict[st
     if set(values) != set(keys):
         raise ValueError(f"{name}: a dict with the keys {', '.join(keys)} is needed")
     return {key: _number(f"{name}[{key!r}]", values[key]) for key in keys}
+
+
+def _symbols(name: str, values: Any, symbols: Sequence[str]) -> dict[str, float]:
+    """Numbers of a sequence, which has one for each of these symbols."""
+    numbers = _list(name, values)
+    if len(numbers) != len(symbols):
+        raise ValueError(f"{name}: {', '.join(symbols)} are needed, not {len(numbers)} numbers")
+    return dict(zip(symbols, numbers))
 
 
 def masing(x: Values, thresholds: ArrayLike, slopes: ArrayLike, constant: float = 0.0) -> np.ndarray:
@@ -195,14 +220,6 @@ def _play_weights(weights: Any) -> dict[str, Any]:
     return {"exponential": {**law, "plays": whole("weights['plays']", weights["plays"], 1)}}
 
 
-def _envelope(name: str, values: Any) -> dict[str, float]:
-    symbols = ("a0", "a1", "a2", "a3")
-    numbers = _list(name, values)
-    if len(numbers) != len(symbols):
-        raise ValueError(f"{name}: {', '.join(symbols)} are needed, not {len(numbers)} numbers")
-    return dict(zip(symbols, numbers))
-
-
 def generalized_prandtl_ishlinskii(
     x: Values,
     left: ArrayLike,
@@ -243,8 +260,8 @@ def generalized_prandtl_ishlinskii(
     """
     parts = {
         **_numbers(offset=offset, initial=initial, spacing=spacing),
-        "left": _envelope("left", left),
-        "right": _envelope("right", right),
+        "left": _symbols("left", left, ENVELOPE),
+        "right": _symbols("right", right, ENVELOPE),
         "weights": _play_weights(weights),
     }
     return _run("generalized-prandtl-ishlinskii", parts, x)
@@ -532,3 +549,144 @@ def lugre(
         viscous=viscous,
     )
     return _run("lugre", parts, x, time, "central")
+
+
+def peak_oriented(
+    x: Values,
+    strength: float,
+    yield_displacement: float,
+    n: float = 20.0,
+    hardening: float = 0.0,
+    unloading: float = 0.0,
+    curvature: float = 0.0,
+    pinch_place: float = 0.5,
+    pinch_height: float = 0.5,
+    pinch_weight: float = 1.0,
+    spring: float = 0.0,
+    offset: float = 0.0,
+    down: tuple[float, float] | None = None,
+    degradation: dict[str, float] | None = None,
+) -> np.ndarray:
+    """Simulate a peak-oriented law: reloading leads to the largest displacement so far on that side.
+
+    Parameters
+    ----------
+    x : array of shape (n,)
+        The displacement.
+    strength : float
+        Yield force, in the unit of the output.
+    yield_displacement : float
+        Yield displacement, in the unit of the input; above 0.
+    n : float
+        Sharpness of yielding, 0.5 to 20.
+    hardening : float
+        Slope of the envelope after yielding divided by that at first, 0 to 1.
+    unloading : float
+        0 unloads with the initial stiffness, 1 towards the origin.
+    curvature : float
+        Curvature of unloading, 0 to 20.
+    pinch_place, pinch_height : float
+        Pinch point as shares of the way and of the force between zero force and the target, 0.01 to 0.99.
+    pinch_weight : float
+        How closely reloading follows the two lines through the pinch point, 0.1 to 30.
+    spring : float
+        Stiffness of a spring beside the member, in the unit of the output per unit of the input.
+    offset : float
+        Constant added to the output, in its unit.
+    down : tuple of two floats, optional
+        Yield force and yield displacement of the side of negative forces, where they differ.
+    degradation : dict, optional
+        Parameters of softening and deterioration: ``cap``, ``softening``, ``residual``, ``endurance``, ``pace``,
+        ``strength_loss``, ``target_growth``, ``pinching_growth``.
+
+    Returns
+    -------
+    array of shape (n,)
+        The force.
+
+    Examples
+    --------
+    >>> force = hysid.classical.peak_oriented([0.0, 20.0, 15.0, 10.0], strength=100.0, yield_displacement=10.0)
+    >>> bool(np.allclose(force, [0.0, 100.0, 50.0, 0.0], atol=1e-3))
+    True
+    """
+    parts = {
+        **_numbers(
+            offset=offset,
+            spring=spring,
+            n=n,
+            hardening=hardening,
+            unloading=unloading,
+            curvature=curvature,
+            pinch_place=pinch_place,
+            pinch_height=pinch_height,
+            pinch_weight=pinch_weight,
+        ),
+        "up": _numbers(strength=strength, yield_displacement=yield_displacement),
+        "down": None if down is None else _symbols("down", down, ("strength", "yield_displacement")),
+        "degradation": None if degradation is None else _named("degradation", degradation, DETERIORATION),
+    }
+    return _run("peak-oriented", parts, x)
+
+
+def menegotto_pinto(
+    x: Values,
+    hardening_stiffness: float,
+    strength: float,
+    yield_displacement: float,
+    roundness: float = 20.0,
+    loss: float = 0.925,
+    pace: float = 0.15,
+    isotropic: float = 0.0,
+    offset: float = 0.0,
+    down: tuple[float, float] | None = None,
+) -> np.ndarray:
+    """Simulate a Menegotto-Pinto law: steel, by curves between two straight lines.
+
+    Parameters
+    ----------
+    x : array of shape (n,)
+        The strain or displacement.
+    hardening_stiffness : float
+        Slope of the hardening lines, in the unit of the output per unit of the input.
+    strength : float
+        Yield stress without the part of the hardening line, in the unit of the output.
+    yield_displacement : float
+        Yield strain or displacement, in the unit of the input; above 0.
+    roundness : float
+        Sharpness of the virgin bend, 0.5 to 50 (``R_0``).
+    loss, pace : float
+        Loss of sharpness after large excursions, 0 to 0.99, and the excursion in yield displacements at which half
+        of it is lost (``a_1`` and ``a_2``, in OpenSees ``cR1`` and ``cR2``).
+    isotropic : float
+        Isotropic hardening, -1 to 10; negative for softening.
+    offset : float
+        Constant added to the output, in its unit.
+    down : tuple of two floats, optional
+        Yield stress downwards divided by that upwards, and isotropic hardening downwards, where they differ.
+
+    Returns
+    -------
+    array of shape (n,)
+        The stress or force.
+
+    Examples
+    --------
+    >>> stress = hysid.classical.menegotto_pinto([0.0, 1.0, 50.0], 2.0, 396.0, yield_displacement=2.0)
+    >>> bool(np.allclose(stress, [0.0, 200.0, 496.0], atol=1e-2))
+    True
+    """
+    parts = {
+        **_numbers(
+            offset=offset,
+            hardening_stiffness=hardening_stiffness,
+            strength=strength,
+            yield_displacement=yield_displacement,
+            roundness=roundness,
+            loss=loss,
+            pace=pace,
+            isotropic=isotropic,
+        ),
+        "down": None if down is None else _symbols("down", down, ("ratio", "isotropic")),
+    }
+    return _run("menegotto-pinto", parts, x)

@@ -42,7 +42,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
     warm_up, initial_state, training, starts, epochs, population, stall, validation, ridge, decay : optional
     operators, states, thresholds, sign, dead_zones, free_weights : optional
-    logarithmic_thresholds, degradation, differential_form, time_limit, threads : optional
+    logarithmic_thresholds, degradation, asymmetric, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
         Seed of all random numbers; an int is the seed of `hysid.fit`.
@@ -102,6 +102,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         free_weights: bool | None = None,
         logarithmic_thresholds: bool | None = None,
         degradation: bool | None = None,
+        asymmetric: bool | None = None,
         differential_form: bool | None = None,
         time_limit: float | None = None,
         threads: int | None = None,
@@ -137,6 +138,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.free_weights = free_weights
         self.logarithmic_thresholds = logarithmic_thresholds
         self.degradation = degradation
+        self.asymmetric = asymmetric
         self.differential_form = differential_form
         self.time_limit = time_limit
         self.threads = threads

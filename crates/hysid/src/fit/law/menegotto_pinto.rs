@@ -1,0 +1,123 @@
+//! Identification of a Menegotto-Pinto law: yield displacement, roundness and isotropic hardening are found by search,
+//! and for each of their values offset, hardening line and strength by least squares.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::Identify;
+use crate::fit::law::search::{
+    Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::Law;
+use crate::law::menegotto_pinto::{Downwards, LOSS_BOUNDS, MenegottoPinto};
+use crate::law::series::Series;
+use crate::options::classical::ClassicalOptions;
+use crate::stop_check::StopCheck;
+
+/// Elementary operations of a row, roughly.
+const OPERATIONS_A_ROW: usize = 150;
+
+/// Starts unless the user says otherwise: a run takes little time.
+const STARTS: usize = 16;
+
+impl Identify for MenegottoPinto {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The material is virgin at 0.
+        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+        let family = Steels::new(range, options.asymmetric);
+        let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        law.offset = found.weights[0];
+        law.hardening_stiffness = found.weights[1];
+        law.strength = found.weights[2];
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// Steels, in the form of the search.
+struct Steels {
+    range: f64,
+    asymmetric: bool,
+    variables: Vec<Variable>,
+}
+
+impl Steels {
+    fn new(range: f64, asymmetric: bool) -> Self {
+        let isotropic = Variable::linear(-0.1, 0.4);
+        let mut variables = vec![
+            Variable::logarithmic(0.002 * range, range),
+            Variable::logarithmic(0.7, 30.0),
+            Variable::linear(LOSS_BOUNDS.0, 0.97),
+            Variable::logarithmic(0.01, 30.0),
+            isotropic,
+        ];
+        if asymmetric {
+            variables.extend([Variable::logarithmic(0.5, 2.0), isotropic]);
+        }
+        Self { range, asymmetric, variables }
+    }
+
+    /// The law of unit strength.
+    fn law(&self, parameters: &[f64]) -> MenegottoPinto {
+        let &[yield_displacement, roundness, loss, pace, isotropic] =
+            parameters.first_chunk().expect("five parameters of every law");
+        MenegottoPinto {
+            offset: 0.0,
+            hardening_stiffness: 0.0,
+            strength: 1.0,
+            yield_displacement,
+            roundness,
+            loss,
+            pace,
+            isotropic,
+            down: self.asymmetric.then(|| Downwards { ratio: parameters[5], isotropic: parameters[6] }),
+        }
+    }
+}
+
+impl Family for Steels {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &[false; 3]
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let mut state = law.virgin();
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(OPERATIONS_A_ROW) {
+                return;
+            }
+            let q = law.advance(&mut state, sample.x);
+            if !y.is_nan() {
+                columns.push(&[1.0, sample.x, q]);
+            }
+        }
+    }
+
+    /// Steels that yield early and late, with sharp and round bends.
+    fn suggestions(&self) -> Vec<Vec<f64>> {
+        let mut all = Vec::new();
+        for share in [0.02, 0.06, 0.15] {
+            for loss in [0.3, 0.6, 0.9] {
+                let mut steel = vec![share * self.range, 10.0, loss, 1.0, 0.0];
+                if self.asymmetric {
+                    steel.extend([1.0, 0.0]);
+                }
+                all.push(steel);
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,173 @@
+//! Identification of a peak-oriented law: yield displacements, shapes and degradation are found by search, and for
+//! each of their values offset and strengths by least squares.
+
+use crate::data::FEWEST_ROWS;
+use crate::data::record::Dataset;
+use crate::error::Result;
+use crate::fit::law::Identify;
+use crate::fit::law::search::{
+    Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
+};
+use crate::law::Law;
+use crate::law::peak_oriented::{Degradation, PINCH_BOUNDS, PeakOriented, Side};
+use crate::law::series::{Series, work};
+use crate::options::classical::ClassicalOptions;
+use crate::stop_check::StopCheck;
+
+/// Elementary operations of a row, roughly.
+const OPERATIONS_A_ROW: usize = 100;
+
+/// Starts unless the user says otherwise: the law has many parameters, and a run takes little time.
+const STARTS: usize = 16;
+
+impl Identify for PeakOriented {
+    fn identify(
+        data: &Dataset,
+        options: &ClassicalOptions,
+        observer: &mut SearchObserver<'_>,
+        stop: StopCheck<'_>,
+    ) -> Result<Identified<Self>> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+        let (low, high) = data.input_range(0);
+        // The member is virgin at 0.
+        let range = high.max(-low).max(f64::MIN_POSITIVE);
+        let family = Members::new(range, work(&series) < 0.0, options);
+        let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
+        let mut law = family.law(&found.parameters);
+        law.offset = found.weights[0];
+        law.up.strength = found.weights[1];
+        law.spring *= law.up.strength;
+        if let Some(down) = &mut law.down {
+            down.strength = found.weights[2];
+        }
+        Ok(found.identified(law.validated()?))
+    }
+}
+
+/// Members, in the form of the search.
+struct Members {
+    range: f64,
+    asymmetric: bool,
+    degradation: bool,
+    variables: Vec<Variable>,
+    non_negative: Vec<bool>,
+}
+
+/// Searched parameters of the shape: `x+`, `n`, `h`, `u`, `c`, `τ_b`, `φ_b`, `w` and `k x+/F+`.
+const SHAPE: usize = 9;
+
+/// Bounds of `k x+/F+`. A spring that is free by least squares takes the place of the envelope: with its slope far
+/// below 0 and as much hardening the error of the training data is less, and that of larger displacements more.
+const SPRING: (f64, f64) = (-0.05, 0.3);
+
+/// The same for an output that lags behind its input: a spring less a member, whose yield force is negative.
+const SPRING_OF_A_LAG: (f64, f64) = (-20.0, 0.0);
+
+impl Members {
+    /// Members for displacements in this range; `lags` for an output that lags behind its input.
+    fn new(range: f64, lags: bool, options: &ClassicalOptions) -> Self {
+        let (low, high) = if lags { SPRING_OF_A_LAG } else { SPRING };
+        let (asymmetric, degradation) = (options.asymmetric, options.degradation);
+        let mut variables = vec![
+            Variable::logarithmic(0.003 * range, 1.5 * range),
+            Variable::logarithmic(0.7, 12.0),
+            Variable::linear(0.0, 0.6),
+            Variable::linear(0.0, 1.0),
+            Variable::linear(0.0, 10.0),
+            Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
+            Variable::linear(PINCH_BOUNDS.0, PINCH_BOUNDS.1),
+            Variable::logarithmic(0.3, 10.0),
+            Variable::linear(low, high),
+        ];
+        if asymmetric {
+            variables.push(Variable::logarithmic(0.2, 5.0));
+        }
+        if degradation {
+            variables.extend([
+                Variable::logarithmic(0.5, 100.0),
+                Variable::logarithmic(0.7, 30.0),
+                Variable::linear(0.0, 1.0),
+                Variable::logarithmic(1.0, 3000.0),
+                Variable::logarithmic(0.3, 2.0),
+                Variable::linear(0.0, 1.0),
+                Variable::linear(0.0, 2.0),
+                Variable::linear(0.0, 1.0),
+            ]);
+        }
+        let features = if asymmetric { 3 } else { 2 };
+        Self { range, asymmetric, degradation, variables, non_negative: vec![false; features] }
+    }
+
+    /// The law of unit strength.
+    fn law(&self, parameters: &[f64]) -> PeakOriented {
+        let &[x, n, hardening, unloading, curvature, pinch_place, pinch_height, pinch_weight, spring] =
+            parameters.first_chunk::<SHAPE>().expect("the shape is searched");
+        let side = |yield_displacement| Side { strength: 1.0, yield_displacement };
+        let degraded = SHAPE + usize::from(self.asymmetric);
+        let degradation = self
+            .degradation
+            .then(|| Degradation::from_values(std::array::from_fn(|index| parameters[degraded + index])));
+        PeakOriented {
+            offset: 0.0,
+            spring: spring / x,
+            up: side(x),
+            down: self.asymmetric.then(|| side(x * parameters[SHAPE])),
+            n,
+            hardening,
+            unloading,
+            curvature,
+            pinch_place,
+            pinch_height,
+            pinch_weight,
+            degradation,
+        }
+    }
+}
+
+impl Family for Members {
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn non_negative(&self) -> &[bool] {
+        &self.non_negative
+    }
+
+    fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
+        let law = self.law(parameters);
+        let mut state = law.virgin();
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if columns.is_over(OPERATIONS_A_ROW) {
+                return;
+            }
+            let [up, down] = law.advance(&mut state, sample.x);
+            if y.is_nan() {
+                continue;
+            }
+            if self.asymmetric {
+                columns.push(&[1.0, up + law.spring * sample.x, down]);
+            } else {
+                columns.push(&[1.0, up + down + law.spring * sample.x]);
+            }
+        }
+    }
+
+    /// Members that yield early and late, pinched and full.
+    fn suggestions(&self) -> Vec<Vec<f64>> {
+        let mut all = Vec::new();
+        for share in [0.02, 0.05, 0.12, 0.3] {
+            for height in [0.2, 0.5, 0.8] {
+                let mut member = vec![share * self.range, 2.0, 0.03, 0.3, 2.0, 0.5, height, 1.0, 0.0];
+                if self.asymmetric {
+                    member.push(1.0);
+                }
+                if self.degradation {
+                    member.extend([0.6 / share, 1.5, 0.3, 10.0 / share, 1.0, 0.3, 0.2, 0.2]);
+                }
+                all.push(member);
+            }
+        }
+        all
+    }
+}
