@@ -37,14 +37,14 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     let parameters = members.iter().map(|member| member["parameters"].as_u64().unwrap()).sum::<u64>();
     assert_eq!(fit["parameters"].as_u64(), Some(parameters));
     assert_eq!(fit["selection"]["candidates"].as_array().unwrap().len(), 1);
-    assert_eq!(fit["selection"]["folds"].as_array().unwrap().len(), 2);
+    assert_eq!(fit["selection"]["folds"].as_array().unwrap().len(), 3);
 
     let page = bench.text("e.html");
     for words in [
         "The ensemble",
         "ns per sample",
         "whole ensemble",
-        "Folds: 2 parts",
+        "Folds: 3 parts",
         "The prediction band",
         "90 % band",
     ] {
@@ -56,7 +56,7 @@ fn an_ensemble_tells_its_members_and_what_they_cost() {
     assert_narrow(&told.stdout);
     for words in [
         "\nchosen ensemble of 3 networks",
-        "\nwhy    cross-validation error (geometric mean over 2 folds",
+        "\nwhy    cross-validation error (geometric mean over 3 folds",
         "auto with ",
     ] {
         assert!(told.stdout.contains(words), "{words}: {}", told.stdout);

@@ -221,7 +221,7 @@ def test_a_band_widens_with_its_probability_and_holds_what_is_measured(quick_ens
     assert (wide.low <= low).all() and (wide.high >= high).all() and (wide.high > high).any()
     # The members have been trained on these very rows, so about as many of them as promised must be held.
     held = [np.mean((band.low <= y) & (y <= band.high)) for band in (quick_ensemble.predict(x), wide)]
-    assert 0.85 < held[0] < held[1]
+    assert 0.8 < held[0] < held[1]
     twice = quick_ensemble.predict(np.concatenate([x, x]), records=np.repeat(["a", "b"], len(x)))
     assert np.array_equal(twice.low, np.concatenate([low, low]))
     series = quick_ensemble.predict(pandas.Series(x, index=range(7, 607)))

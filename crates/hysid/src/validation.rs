@@ -59,13 +59,17 @@ pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
     cuts(data, most).iter().map(|cut| cut.fold(data)).collect()
 }
 
-/// The folds by which candidates are chosen: those of several records, the forecasts from most of a single one. The
-/// other folds of a single record choose no better and cost as much (docs/accuracy.md).
+/// The folds by which candidates are chosen: those of several records; of a single one the forecasts from most of it
+/// and the block from its middle. The others choose no better and cost as much (docs/accuracy.md).
 pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
     let mut cuts = cuts(data, most);
-    let is_long = |cut: &Cut| matches!(cut, Cut::Forecast { percent, .. } if percent.0 >= MOST_OF_A_RECORD);
-    if cuts.iter().filter(|cut| is_long(cut)).count() > 1 {
-        cuts.retain(is_long);
+    let is_telling = |cut: &Cut| match cut {
+        Cut::Records(_) => true,
+        Cut::Forecast { percent: (from, _), .. } => *from >= MOST_OF_A_RECORD,
+        Cut::Block { percent: (from, _), .. } => *from > 0.0,
+    };
+    if cuts.iter().filter(|cut| is_telling(cut)).count() > 1 {
+        cuts.retain(is_telling);
     }
     cuts.iter().map(|cut| cut.fold(data)).collect()
 }

@@ -19,6 +19,8 @@ use hysid::law::series::{Series, run};
 use hysid::law::{Law, Sample};
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::termination::Termination;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 // ------------------------------------------------------------------------------- paths and laws
 
@@ -233,6 +235,82 @@ fn laws_that_are_integrated_do_not_depend_on_the_sampling() {
         worst[4] = worst[4].max(differences(scaled(&coarse), scaled(&fine), 1.6e6));
     }
     assert!(worst[0] < 1e-12 && worst[1..].iter().all(|worst| *worst < 2e-4), "{worst:?}");
+}
+
+/// theory.md (8.6), (8.8) to (8.11) by Euler's method of second order in steps of a thousandth of the yield
+/// displacement.
+fn degraded_by_small_steps(law: &BoucWen, path: &[f64]) -> Vec<f64> {
+    let d = law.degradation.unwrap();
+    let slope = |z: f64, e: f64, direction: f64| {
+        let (a, nu, eta) = ((1.0 - d.delta_a * e).max(0.0), 1.0 + d.delta_nu * e, 1.0 + d.delta_eta * e);
+        let zeta_1 = d.zeta_s * (1.0 - (-d.p * e).exp());
+        let zeta_2 = (d.psi_0 + d.delta_psi * e) * (d.lambda + zeta_1);
+        let distance = (z * direction - d.q * nu.powf(-1.0 / law.n)) / zeta_2;
+        let h = 1.0 - zeta_1 * (-distance * distance).exp();
+        let share = 1.0 - law.b + law.b * (z * direction).signum();
+        h / eta * (a - nu * z.abs().powf(law.n) * share)
+    };
+    let (mut x, mut z, mut e) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let mut outputs = Vec::new();
+    for &to in path {
+        let by = (to - x) / law.yield_displacement;
+        let direction = by.signum();
+        let steps = (by.abs() / 1e-3).ceil().max(1.0);
+        let h = by / steps;
+        for _ in 0..steps as usize {
+            let (z_middle, e_middle) = (z + 0.5 * h * slope(z, e, direction), e + 0.5 * h * z);
+            (z, e) = (z + h * slope(z_middle, e_middle, direction), e + h * z_middle);
+        }
+        x = to;
+        outputs.push(z);
+    }
+    outputs
+}
+
+#[test]
+fn degradation_is_that_of_small_steps() {
+    let mut generator = Xoshiro256PlusPlus::seed_from_u64(3);
+    let mut worst: Vec<f64> = Vec::new();
+    for _ in 0..200 {
+        let mut log = |low: f64, high: f64| low * (high / low).powf(generator.random::<f64>());
+        let values = [
+            log(1e-5, 1e-3),
+            log(1e-4, 0.1),
+            log(1e-4, 0.1),
+            log(0.1, 0.95),
+            log(0.01, 3.0),
+            log(0.05, 0.5),
+            log(0.1, 1.0),
+            log(1e-4, 0.05),
+            log(0.1, 1.0),
+        ];
+        let [delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda] = values;
+        let law = BoucWen {
+            offset: 0.0,
+            elastic_stiffness: 0.0,
+            hysteretic_stiffness: 1.0,
+            yield_displacement: 1.0,
+            b: log(0.3, 1.2),
+            n: log(1.0, 6.0),
+            degradation: Some(Degradation {
+                delta_a,
+                delta_nu,
+                delta_eta,
+                zeta_s,
+                p,
+                q,
+                psi_0,
+                delta_psi,
+                lambda,
+            }),
+            ..bouc_wen(1.0)
+        };
+        let path = through(&[0.0, 4.0, -9.0, 17.0, -25.0, 30.0, 3.0, 8.0, -40.0], 1);
+        let (fast, slow) = (outputs(&law, &path), degraded_by_small_steps(&law, &path));
+        worst.push(fast.iter().zip(&slow).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max));
+    }
+    worst.sort_by(f64::total_cmp);
+    assert!(worst[100] < 2e-4 && worst[199] < 2e-3, "{:?}", &worst[95..]);
 }
 
 #[test]

@@ -40,6 +40,9 @@ const SATURATED: f64 = 60.0;
 /// From here on `z` does not grow any more, to rounding.
 const YIELDED: f64 = 1.0 - 1e-14;
 
+/// Slope of `z`, as a multiple of `n`, below which the element may follow its yield force.
+const NEARLY_AT_REST: f64 = 0.003;
+
 /// Parts of a single step of the input at most.
 const MOST_PARTS: f64 = 600.0;
 
@@ -159,19 +162,34 @@ impl BoucWen {
         let part = LONGEST_PART / self.quickness(inner).max(narrowness);
         let parts = (travel / part).ceil().clamp(1.0, MOST_PARTS);
         let part = travel / parts;
-        let mut inner = inner;
-        for index in 0..parts as usize {
-            if let Some(degradation) = &self.degradation
-                && degradation.is_at_rest(self.n, inner.z, inner.e)
-            {
-                return degradation.yielding(self.n, inner, by - part * index as f64);
+        match &self.degradation {
+            None => (0..parts as usize).fold(inner, |inner, _| self.part(inner, part)),
+            Some(degradation) => self.degrading_upwards(degradation, inner, part, by),
+        }
+    }
+
+    /// Moves up by `by` in parts, or along the yield force where the element follows it, as it does after [`SATURATED`]
+    /// yield displacements.
+    fn degrading_upwards(&self, degradation: &Degradation, inner: Inner, part: f64, by: f64) -> Inner {
+        let travel = by.min(SATURATED);
+        let (mut inner, mut left) = (inner, travel);
+        while left > 1e-9 * travel {
+            if degradation.is_at_rest(self.n, inner.z, inner.e) {
+                return degradation.yielding(self.n, inner, left + (by - travel));
             }
-            inner = self.part(inner, part);
+            let before = inner.z;
+            inner = self.part(inner, part.min(left));
+            left -= part;
+            let hardly_moves = (inner.z - before).abs() <= NEARLY_AT_REST * self.n * part;
+            while left > 0.0
+                && hardly_moves
+                && inner.z > 0.0
+                && let Some((followed, way)) = degradation.follow(self.n, inner, left)
+            {
+                (inner, left) = (followed, left - way);
+            }
         }
-        if self.degradation.is_some() {
-            inner.e = degradation::limited(inner.e + inner.z * (by - travel));
-        }
-        inner
+        if by > travel { degradation.yielding(self.n, inner, by - travel) } else { inner }
     }
 
     /// The exact solution for `n = 1` without degradation. With `ζ = z/z_u`, `m = 2b - 1` and `s = Δx/z_u`

@@ -121,7 +121,7 @@ def fit(
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
         Maximum ensemble size; 1 gives a single small model. With a named model, the number of random starts
-        that are combined. Default: 32 for auto, otherwise 1.
+        that are combined. Default: 6 for auto, otherwise 1.
     stops : int, optional
         Stop neurons of a network. Default: 10.
     hidden : int, optional

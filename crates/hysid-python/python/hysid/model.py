@@ -268,9 +268,11 @@ class Model:
             return ()
         models = [member["model"] for member in ensemble["members"]]
         found = sorted(_members(ensemble["group"], (), 1.0, 1.0), key=lambda one: one[0])
-        # The outermost group contains all members; below it are the kinds.
+        # The innermost group is the candidate, whose kind the selection tells.
+        candidates = (self.description["training"].get("selection") or {}).get("candidates", [])
+        kinds = {one["name"]: one["kind"] for one in candidates}
         return tuple(
-            Member(path[-1], path[min(1, len(path) - 1)], models[place], inside, outside)
+            Member(path[-1], kinds.get(path[-1], path[-1]), models[place], inside, outside)
             for place, path, inside, outside in found
         )
 

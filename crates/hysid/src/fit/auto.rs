@@ -1,6 +1,6 @@
 //! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
-//! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only the forecasts from most of it.
+//! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
 //! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate,
 //!    deterioration, relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
 //!    those with a weight once more from another start; the prediction of a candidate is the median of its
@@ -14,7 +14,7 @@
 //!
 //! ```text
 //! S = mean over the folds f of ln(rmse_f / σ_f)                                             theory.md (11.5)
-//! w = (e^S / e^{S_best})^{-p},    p = 4, and 8 for data of one loop                         theory.md (11.6)
+//! w = (e^S / e^{S_best})^{-p},    p = 3, and 8 for data of one loop                         theory.md (11.6)
 //! ```
 //!
 //! `S` is the score of a candidate, `rmse_f` its error on fold `f`, `σ_f` the standard deviation of the

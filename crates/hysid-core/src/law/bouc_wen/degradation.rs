@@ -25,6 +25,16 @@ const QUICK: f64 = 4.0;
 /// How near to the yield force that is, as a share of it.
 const AT_REST: f64 = 1e-3;
 
+/// Largest lag of an element behind its yield force, as a share of it, with which it is taken to follow steadily: the
+/// error is the square of the lag.
+const SLOW: f64 = 3e-3;
+
+/// How near to the steady lag that is, as a share of the yield force.
+const STEADY: f64 = 3e-5;
+
+/// Share by which the yield force sinks in one part of the way along it.
+const SUNK: f64 = 0.02;
+
 /// The energy within its limits; it is not negative, whatever `b`.
 pub(super) fn limited(e: f64) -> f64 {
     e.clamp(0.0, LARGEST_ENERGY)
@@ -83,9 +93,13 @@ pub(super) struct Properties {
 impl Properties {
     /// `dz/dx` on the way up, theory.md (8.6); `softening` is `|z/z_u|^n` with its share.
     pub fn slope(&self, z: f64, softening: f64) -> f64 {
+        self.pinching(z) / self.eta * (self.a - self.nu * softening)
+    }
+
+    /// `h`, theory.md (8.10).
+    fn pinching(&self, z: f64) -> f64 {
         let distance = (z - self.centre) / self.zeta_2;
-        let h = 1.0 - self.zeta_1 * (-distance * distance).exp();
-        h / self.eta * (self.a - self.nu * softening)
+        1.0 - self.zeta_1 * (-distance * distance).exp()
     }
 }
 
@@ -130,6 +144,37 @@ impl Degradation {
         let middle = self.ultimate(n, limited(e + 0.5 * by * z));
         let e = limited(e + by * middle);
         Inner { z: self.ultimate(n, e), e }
+    }
+
+    /// `z` of an element that follows its yield force `u` steadily on the way up (theory.md (8.52)), and the way in yield
+    /// displacements on which `u` sinks a little; `None` where it sinks too fast for that.
+    ///
+    /// ```text
+    /// dz/dx ≈ κ (u - z),   κ = h n A/(η u)         (8.6), linearised at u = (A/ν)^{1/n}
+    /// du/dx = -D u z,      D = (δA/A + δν/ν)/n     (8.8), (8.9)
+    /// z = u (1 + D u/κ)    to second order in D u/κ
+    /// ```
+    fn steady(&self, n: f64, e: f64) -> Option<(f64, f64)> {
+        let properties = self.at(n, e);
+        let ultimate = self.ultimate(n, e);
+        let drift = (self.delta_a / properties.a + self.delta_nu / properties.nu) / n;
+        let pull = properties.pinching(ultimate) * n * properties.a / (properties.eta * ultimate);
+        let lag = drift * ultimate / pull;
+        (lag <= SLOW).then(|| (ultimate * (1.0 + lag), SUNK / (drift * ultimate)))
+    }
+
+    /// The element moved up by at most `by` along its yield force, and how far; `None` if it does not follow that
+    /// steadily.
+    pub(super) fn follow(&self, n: f64, Inner { z, e }: Inner, by: f64) -> Option<(Inner, f64)> {
+        let (steady, way) = self.steady(n, e)?;
+        if (z - steady).abs() > STEADY * steady {
+            return None;
+        }
+        let by = by.min(way);
+        let (middle, _) = self.steady(n, limited(e + 0.5 * by * steady))?;
+        let e = limited(e + by * middle);
+        let (z, _) = self.steady(n, e)?;
+        Some((Inner { z: z.min(1.0), e }, by))
     }
 
     /// How much faster the degraded element comes to rest at its yield force than the untouched one.

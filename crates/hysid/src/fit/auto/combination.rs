@@ -14,11 +14,12 @@ use crate::validation::PooledErrors;
 
 /// Power `p` of the weights `(e^S / e^{S_best})^{-p}` among candidates (theory.md (11.6)), and the number of
 /// candidates with a weight.
-const POWER: f64 = 4.0;
+const POWER: f64 = 3.0;
 const MOST_CANDIDATES: usize = 8;
 
-/// Fewest starts of an ensemble, where there are so many: the median of three is robust.
-const FEWEST: usize = 3;
+/// Fewest starts of an ensemble, where there are so many: fewer are as good on held-out data, and worse on other data
+/// that no candidate fits well (docs/accuracy.md).
+const FEWEST: usize = 5;
 
 /// Largest error of fewer starts on held-out data, relative to that of all.
 const WORTH: f64 = 1.01;
