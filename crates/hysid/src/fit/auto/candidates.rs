@@ -69,8 +69,8 @@ const COMPANDING: [f64; 2] = [0.1, 0.02];
 /// Scale of the companding of the rate.
 const RATE_COMPANDING: f64 = 0.1;
 
-/// Penalties that the best networks are tried with too: those of a single fit, and as good as none, for data
-/// without noise.
+/// Penalties that the best networks are tried with too: those of a single fit and, for data without noise, as good as
+/// none.
 const OTHER_PENALTIES: [Regularisation; 2] =
     [Regularisation { ridge: 1e-6, decay: 1e-7 }, Regularisation { ridge: 1e-10, decay: 1e-12 }];
 
@@ -141,14 +141,15 @@ impl Candidate {
         }
     }
 
-    /// The same network with other penalties; none for what is no network.
-    pub fn with_other_penalties(&self) -> Vec<Self> {
+    /// The same network with other penalties, the weakest only for data without noise; none for what is no network.
+    pub fn with_other_penalties(&self, is_without_noise: bool) -> Vec<Self> {
         let FitSpec::Network(options) = &self.request else { return Vec::new() };
         let with = |Regularisation { ridge, decay }| {
             let options = FitOptions { ridge: Some(ridge), decay: Some(decay), ..options.clone() };
             Self { kind: self.kind, request: FitSpec::Network(options) }
         };
-        OTHER_PENALTIES.map(with).into()
+        let count = if is_without_noise { OTHER_PENALTIES.len() } else { 1 };
+        OTHER_PENALTIES[..count].iter().copied().map(with).collect()
     }
 
     /// True for a law whose parameters are searched from several starts in one fit.

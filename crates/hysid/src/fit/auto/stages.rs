@@ -36,6 +36,9 @@ const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
 /// Networks that are tried with other penalties too.
 const REFINED: usize = 2;
 
+/// Error of the best network, as a share of the standard deviation, below which there is hardly any noise.
+const WITHOUT_NOISE: f64 = 0.01;
+
 /// Rows with an output that a law is fitted to in haste, at most.
 const ROWS_IN_HASTE: usize = 600;
 
@@ -168,7 +171,9 @@ impl Stages<'_, '_, '_> {
         let score = |trial: &&Trial| Score::of(&trial.predicted, self.bench.folds, |_| true).sum();
         let mut networks: Vec<&Trial> = self.trials.iter().filter(is_network).collect();
         networks.sort_by(|a, b| score(a).total_cmp(&score(b)));
-        networks.iter().take(REFINED).flat_map(|trial| trial.candidate.with_other_penalties()).collect()
+        let is_without_noise = networks.first().is_some_and(|best| score(best) < 2.0 * WITHOUT_NOISE.ln());
+        let refined = |trial: &&Trial| trial.candidate.with_other_penalties(is_without_noise);
+        networks.iter().take(REFINED).flat_map(refined).collect()
     }
 
     /// The laws that, fitted in haste, come near the best candidate so far.
