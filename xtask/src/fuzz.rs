@@ -10,6 +10,9 @@ use crate::{Usage, cargo, workspace_root};
 /// Seconds for each target unless said otherwise.
 const SECONDS: &str = "60";
 
+/// Seconds for each target among all tests.
+const SECONDS_IN_TESTS: &str = "10";
+
 /// What the compiler adds for libFuzzer: counters of every edge and of comparisons.
 const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
@@ -65,9 +68,11 @@ pub fn run(request: &Request) -> Result<()> {
     cargo(&[&build[..], &[target, seconds, seed]].concat(), &[])
 }
 
-/// A minute of every target with a fixed seed, built as the tests are.
+/// Every target for a short time with a fixed seed, built as the tests are.
 pub fn in_tests() -> Result<()> {
-    cargo(&["run", "--quiet", "--locked", "--package", "hysid-fuzz", "--", "all", SECONDS, "1"], &[])
+    let target =
+        ["run", "--quiet", "--locked", "--package", "hysid-fuzz", "--", "all", SECONDS_IN_TESTS, "1"];
+    cargo(&target, &[])
 }
 
 fn with_coverage(request: &Request) -> Result<()> {

@@ -11,8 +11,8 @@ const HEAD: &str = "\
 # Options of a fit
 
 Each option has one name: `--no-deterioration` of `hysid fit` and `hysid validate` is the keyword `no_deterioration` of
-`hysid.fit`, of `HysteresisRegressor` and of the library's `NamedOptions`. A model that has no use for an option
-ignores it, with a warning. This page is made from the table of options in `crates/hysid-core/src/options/table.rs`.
+`hysid.fit`, of `HysteresisRegressor` and of the library's `NamedOptions`. A model ignores options that it does
+not use, with a warning. This page is generated from the table of options in `crates/hysid-core/src/options/table.rs`.
 ";
 
 fn values(option: &FitOption) -> String {

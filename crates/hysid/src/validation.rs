@@ -1,9 +1,10 @@
 //! Cross-validation: a model is fitted to a part of the data and evaluated on the rest, in free run.
 //!
-//! Of several records, some are held out in turn. Records that are one measurement, given twice or cut out of
-//! a longer one, stay in one fold, since a copy of training data is not unseen. A single record is divided in
-//! time: a model is fitted to its beginning and predicts the following rows, with its memory continued. A
-//! validation also holds out blocks from the beginning and middle, so that every row is held out once at least.
+//! Several records are divided into folds, each held out in turn. Records that are copies or parts of one another
+//! stay in one fold, because a copy of training data does not measure the error on new data. A single record is
+//! divided in time: a model is fitted to its beginning and predicts the following rows, with its memory continued.
+//! In addition, blocks from the beginning and the middle are held out, so that every row is held out at least once.
+//! `auto` uses three of these five folds.
 
 mod pooled;
 mod row_folds;

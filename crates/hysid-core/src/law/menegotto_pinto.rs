@@ -5,7 +5,7 @@
 //! y = c0 + k x + F q,    d = x/x_y                                                   theory.md (8.47)
 //! q = q_r + (q_a - q_r) z/(1 + |z|^R)^{1/R},    z = (d - d_r)/(q_a - q_r)            theory.md (8.48)
 //! R = R_0 {1 - a_1 ξ/(a_2 + ξ)},    ξ = |d_m - (d_r + q_a - q_r)|                    theory.md (8.49)
-//! upwards q_a = S+,  downwards q_a = -ρ S-,    S = max{0.1, 1 + a [(d_max - d_min)/2]^0.8}   theory.md (8.50)
+//! upwards q_a = S,  downwards q_a = -ρ S,    S = max{0.1, 1 + a [(d_max - d_min)/2]^0.8}     theory.md (8.50)
 //! ```
 //!
 //! `x` is the input, a strain or displacement, `y` the output, a stress or force. A branch begins at the turning
@@ -17,11 +17,12 @@
 //! The hardening line of the literature, of slope `b E`, is the spring: `k = b E` and `F = (1 - b) E x_y`. The law is
 //! therefore linear in `k` and `F`.
 //!
-//! **Small loops.** In Steel02 of OpenSees a branch that follows a short unloading begins anew and runs above the
-//! branch that was left. Here it continues along the branch that was left from where it meets it (theory.md (8.51)),
-//! as steel does; so a small reversal, as noise of the input makes it, is forgotten. A branch is forgotten once the
-//! input has gone back past its beginning, so in cycles that grow the law is Steel02. Of loops within loops the
-//! outermost branch of a direction and the seven innermost ones are stored.
+//! **Small loops.** In Steel02 of OpenSees, the branch after a short unloading runs above the branch that was left.
+//! Here, as in steel, the output continues along the earlier branch from where the two meet (theory.md (8.51)), and
+//! the later branch is deleted. Small reversals, such as noise of the input, therefore have no lasting effect. A
+//! branch is also deleted when the input passes its beginning in the opposite direction, so in cycles of growing
+//! amplitude the law is Steel02. Of nested loops, the outermost and the seven innermost branches of each direction
+//! are stored.
 //!
 //! Properties: rate-independent, a closed form between turning points, so that the sampling does not matter.
 //! Source: Menegotto and Pinto (1973); Filippou, Popov and Bertero, report EERC 83/19 (1983).

@@ -14,8 +14,9 @@
 //! `x` is the input, a displacement, `y` the output, a force. On each side `d` counts the displacement in yield
 //! displacements `x_s` and `f ≥ 0` the force in yield forces `F_s`. `d_m` is the largest `d` so far, `(d_r, f_r)`
 //! the last turning point, `d_0` where the force last passed 0, `d_t` the target. `C`, `σ` and `d_t` follow from
-//! [`Degradation`]; without it `C = σ = 1` and `d_t = d_m`. A side that was not loaded before has the target
-//! `d_t = min(1, √|d_0|)`: the yield point, and the envelope itself for a virgin member.
+//! [`Degradation`]; without it `C = σ = 1` and `d_t = d_m`. `d_t` is at least `min(1, √|d_0|)` where `d_0 < 0`: a
+//! side that was not loaded before reloads to its yield point if `d_0 ≤ -1`, and a virgin member follows the
+//! envelope.
 //!
 //! `φ` is the curve of a pinch point `(τ_b, φ_ω)`: below the diagonal the loops are pinched, above it they are
 //! full. `ω` is 0 where reloading is as stiff as unloading, so small displacements and small loops are not

@@ -196,7 +196,7 @@ pub const OPTIONS: [FitOption; 30] = [
     FitOption {
         name: "starts",
         group: Training,
-        meaning: "Random networks, populations or parameters to start from",
+        meaning: "Number of random starts: networks, populations or parameter sets from which the training begins",
         values: Values::Count(1, MOST_STARTS),
         default: "8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for \
                   rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
@@ -207,7 +207,7 @@ pub const OPTIONS: [FitOption; 30] = [
         name: "epochs",
         group: Training,
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
-                  iterations of the sub-gradient method; a hybrid shares them out in halves",
+                  iterations of the sub-gradient method; the hybrid uses half of them for each",
         values: Values::Count(0, MOST_EPOCHS),
         default: "40; 2000 for trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and \
                   neuro-madelung, 45 for duhem-nn",

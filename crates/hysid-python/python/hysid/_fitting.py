@@ -152,12 +152,12 @@ def fit(
         Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the
         sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.
     starts : int, optional
-        Random networks, populations or parameters to start from. Default: 8; 2 for auto; 1 for trainers other
-        than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn,
-        32 for generalized-prandtl-ishlinskii.
+        Number of random starts: networks, populations or parameter sets from which the training begins. Default:
+        8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii
+        and neuro-madelung, 6 for duhem-nn, 32 for generalized-prandtl-ishlinskii.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
-        iterations of the sub-gradient method; a hybrid shares them out in halves. Default: 40; 2000 for
+        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 40; 2000 for
         trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and neuro-madelung, 45
         for duhem-nn.
     population : int, optional

@@ -2,14 +2,14 @@
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
 //! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate,
-//!    deterioration, relaxation and companding. All are fitted to the first folds, the best of each kind to the others, and
-//!    those with a weight once more from another start; the prediction of a candidate is the median of its
-//!    starts. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far
-//!    above the best.
+//!    deterioration, relaxation and companding. Laws with searched parameters are first fitted to few rows, and
+//!    dropped if their errors are far above the best. The other candidates and the remaining laws are fitted to the
+//!    first folds, the best of each kind also to the other folds, and those with a weight once more from a second
+//!    start. The prediction of a candidate is the median of its starts.
 //! 3. *Weights*: the best eight candidates are weighted by their scores and combined by their weighted median.
 //!    Rows inside and outside the trained range have separate scores.
-//! 4. *Members*: the fewest starts whose error on the folds is at most 1 % above that of all, fitted to all
-//!    data: an [`Ensemble`], or one small model.
+//! 4. *Members*: the fewest starts, at least five, whose error on the folds is at most 1 % above that of all
+//!    starts. They are fitted to all data and form an [`Ensemble`], or one small model is distilled from it.
 //! 5. *Prediction band*, calibrated on the folds.
 //!
 //! ```text

@@ -17,7 +17,7 @@ use crate::options::network::{FitOptions, Regularisation};
 use crate::options::variants::variants;
 use crate::options::{FitSpec, ModelName};
 
-/// A kind of candidates, which are combined with each other first.
+/// A kind of candidates. The best of each kind pass the first folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Trained networks.

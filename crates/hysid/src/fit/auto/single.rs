@@ -1,16 +1,16 @@
 //! One small model instead of an ensemble: distilled from the ensemble, or fitted to the data alone. Both are
 //! validated as such: on each fold a model is distilled from the ensemble of that fold.
 //!
-//! The one with the smaller error is chosen, where its distance from the ensemble on paths that were not measured
-//! counts as an error too:
+//! The one with the smaller `E` is chosen, which combines the error on held-out data with the distance from the
+//! ensemble on input paths that were not measured:
 //!
 //! ```text
 //! E = ½ ln(e^{2S} + d²/σ²)                                                  theory.md (11.13)
 //! ```
 //!
 //! `S` is the score on held-out data, `d` the root mean square distance from the ensemble on the inputs of the data
-//! at a half and three quarters of their size, and `σ` the standard deviation of the measured output. A network that
-//! is wild beside the measured paths may still predict all held-out rows well.
+//! at a half and three quarters of their size, and `σ` the standard deviation of the measured output. A network can
+//! predict all held-out rows well and still diverge on other paths.
 
 use rayon::prelude::*;
 
