@@ -38,6 +38,8 @@ pub mod preisach;
 pub mod properties;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
+#[cfg(test)]
+mod test_paths;
 pub mod thresholds;
 pub mod turning_point_stack;
 mod yield_curve;

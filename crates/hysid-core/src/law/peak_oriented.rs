@@ -420,6 +420,7 @@ impl Law for PeakOriented {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::test_paths::{self, assert_within_bound, run};
 
     /// A member with all terms and different sides.
     fn member() -> PeakOriented {
@@ -448,19 +449,9 @@ mod tests {
         }
     }
 
-    fn run(law: &PeakOriented, path: &[f64]) -> Vec<f64> {
-        let mut state = law.virgin();
-        path.iter().map(|&x| law.step(&mut state, Sample { x, rate: 0.0, step: 0.0 })).collect()
-    }
-
     /// Numbers between -1 and 1, the same every time.
     fn numbers(count: usize) -> Vec<f64> {
-        let mut state = 12_345_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-        };
-        (0..count).map(|_| next()).collect()
+        test_paths::numbers(12_345, count)
     }
 
     #[test]
@@ -590,15 +581,7 @@ mod tests {
                 ..member()
             };
             let path: Vec<f64> = numbers(60).iter().map(|v| v * pick(3)).collect();
-            let x = path.iter().fold(Interval(0.0, 0.0), |x, &v| Interval(x.0.min(v), x.1.max(v)));
-            let bound = law.output_bound(x, Interval::point(0.0));
-            for y in run(&law, &path) {
-                let slack = 1e-9 * (bound.1 - bound.0).min(f64::MAX);
-                assert!(
-                    y.is_finite() && y >= bound.0 - slack && y <= bound.1 + slack,
-                    "{law:?}: {y} {bound:?}"
-                );
-            }
+            assert_within_bound(&law, &path);
         }
     }
 

@@ -148,8 +148,8 @@ fn found(
         let places: Vec<usize> = (0..trials.len()).collect();
         Bench { data: &data, folds: &held_out, work }.try_start(&mut trials, &places, 0);
         let tried = trials.iter().filter(|trial| !trial.starts.is_empty());
-        let scores = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).sum());
-        scores.min_by(f64::total_cmp).map(|score| 100.0 * (0.5 * score).exp())
+        let errors = tried.map(|trial| Score::of(&trial.predicted, &held_out, |_| true).mean_percent());
+        errors.min_by(f64::total_cmp)
     };
     let has_past = |record: &Record| !record.lead_in_rows().is_empty();
     let is_changed = begun.iter().any(|fold| fold.train.records().iter().any(has_past));

@@ -75,6 +75,11 @@ impl Score {
         self.inside + self.outside
     }
 
+    /// Both classes alike, as one error in percent of the standard deviation.
+    pub fn mean_percent(self) -> f64 {
+        100.0 * (0.5 * self.sum()).exp()
+    }
+
     /// As errors in percent of the standard deviation.
     pub fn percent(self) -> (f64, f64) {
         (100.0 * self.inside.exp(), 100.0 * self.outside.exp())

@@ -54,47 +54,50 @@ struct Plain {
     error: f64,
 }
 
-/// Paths that nobody measured, and what the ensemble predicts of them.
-struct Unmeasured {
+/// Records, and what the ensemble predicts of them.
+struct Taught {
     records: Vec<Record>,
     predicted: Vec<Vec<f64>>,
-    /// Standard deviation of the measured output.
-    deviation: f64,
 }
 
-impl Unmeasured {
-    fn of(data: &Dataset, ensemble: &Model) -> Result<Self> {
-        let mut records = Vec::new();
-        for share in SHARES {
-            for record in data.records() {
-                records.push(scaled(record, share, origin(data, 0))?);
-            }
-        }
+impl Taught {
+    fn of(records: Vec<Record>, ensemble: &Model) -> Result<Self> {
         let predicted = records.par_iter().map(|record| ensemble.simulate(record)).collect::<Result<_>>()?;
-        let measured: Vec<f64> = data
-            .records()
-            .iter()
-            .flat_map(|record| record.output().iter().copied())
-            .filter(|y| !y.is_nan())
-            .collect();
-        let (_, deviation) = spread(&measured);
-        Ok(Self { records, predicted, deviation: deviation.max(f64::MIN_POSITIVE) })
+        Ok(Self { records, predicted })
     }
 
-    /// A score to which the mean square distance of a model from the ensemble on these paths is added: data cannot
-    /// tell there, and the ensemble is the best that is known.
-    fn with_distance(&self, score: Score, model: &Model) -> Result<f64> {
-        let of_record = |(record, predicted): (&Record, &Vec<f64>)| -> Result<(f64, usize)> {
+    /// Paths that nobody measured, but that the model may meet: those of the data at shares of their size.
+    fn unmeasured(data: &Dataset, ensemble: &Model) -> Result<Self> {
+        let origin = origin(data, 0);
+        let of_share = |share: f64| data.records().iter().map(move |record| scaled(record, share, origin));
+        Self::of(SHARES.into_iter().flat_map(of_share).collect::<Result<_>>()?, ensemble)
+    }
+
+    /// The data and, beside them, these records with what is predicted of them.
+    fn beside(&self, data: &Dataset) -> Result<Dataset> {
+        let mut records = data.records().to_vec();
+        for (record, predicted) in self.records.iter().zip(&self.predicted) {
+            // As many rows as were measured in all, so that what was measured counts as much.
+            let thinning = Thinning::new(predicted.len(), predicted.len().div_ceil(SHARES.len()));
+            let row = |(row, &y): (usize, &f64)| if thinning.keeps(row) { y } else { f64::NAN };
+            records.push(record.clone().with_output(predicted.iter().enumerate().map(row).collect())?);
+        }
+        Dataset::new(data.names().clone(), records)
+    }
+
+    /// Sum over the rows of the squared distance of a model from the ensemble.
+    fn square_distance(&self, model: &Model) -> Result<f64> {
+        let of_record = |(record, predicted): (&Record, &Vec<f64>)| -> Result<f64> {
             let output = model.simulate(record)?;
-            let squares = output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b));
-            Ok((squares.sum(), predicted.len()))
+            Ok(output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b)).sum())
         };
-        let distances: Vec<(f64, usize)> =
+        let squares: Vec<f64> =
             self.records.par_iter().zip(&self.predicted).map(of_record).collect::<Result<_>>()?;
-        let (sum, rows) = distances.iter().fold((0.0, 0), |(sum, rows), (s, r)| (sum + s, rows + r));
-        let square = sum / rows.max(1) as f64 / (self.deviation * self.deviation);
-        let logarithm = |score: f64| ((2.0 * score).exp() + square).ln() / 2.0;
-        Ok(logarithm(score.inside) + logarithm(score.outside))
+        Ok(squares.iter().sum())
+    }
+
+    fn rows(&self) -> usize {
+        self.predicted.iter().map(Vec::len).sum()
     }
 }
 
@@ -120,7 +123,15 @@ impl Makers<'_, '_, '_> {
     /// # Errors
     /// As a free run over the data.
     pub fn single(mut self, ensemble: &Model) -> Result<Option<Single>> {
-        let unmeasured = Unmeasured::of(self.bench.data, ensemble)?;
+        let unmeasured = Taught::unmeasured(self.bench.data, ensemble)?;
+        let deviation = deviation(self.bench.data);
+        // Data cannot tell what a model does on paths that were not measured; the ensemble is the best that is known.
+        let error = |score: Score, model: &Model| -> Result<f64> {
+            let mean_square = unmeasured.square_distance(model)? / unmeasured.rows().max(1) as f64;
+            let square = mean_square / (deviation * deviation);
+            let logarithm = |score: f64| ((2.0 * score).exp() + square).ln() / 2.0;
+            Ok(logarithm(score.inside) + logarithm(score.outside))
+        };
         let mut plain: Vec<Plain> = Vec::new();
         for (place, trial) in self.trials.iter().enumerate() {
             if !trial.is_complete() || trial.candidate.kind == Kind::RandomStops {
@@ -130,13 +141,13 @@ impl Makers<'_, '_, '_> {
             let predicted = plain_predictions(trial);
             let score = Score::of(&predicted, self.bench.folds, |_| true);
             let prior = trial.prior(self.evidence);
-            let error = unmeasured.with_distance(score.with_prior(prior), model)?;
+            let error = error(score.with_prior(prior), model)?;
             plain.push(Plain { place, predicted, score, prior, error });
         }
         plain.sort_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = plain.first() else { return Ok(None) };
         let candidate = &self.trials[best.place].candidate;
-        let distilled = self.distilled(candidate, ensemble)?;
+        let distilled = self.distilled(candidate, ensemble, &unmeasured)?;
         let of_distilled =
             distilled.as_ref().map(|(_, predicted)| Score::of(predicted, self.bench.folds, |_| true));
         let mut how = SingleModel {
@@ -146,7 +157,7 @@ impl Makers<'_, '_, '_> {
             plain_percent: best.score.percent(),
         };
         if let (Some((model, predicted)), Some(of_distilled)) = (distilled, of_distilled)
-            && unmeasured.with_distance(of_distilled.with_prior(best.prior), &model)? <= best.error
+            && error(of_distilled.with_prior(best.prior), &model)? <= best.error
         {
             return Ok(Some(Single { model, predicted, how }));
         }
@@ -165,7 +176,12 @@ impl Makers<'_, '_, '_> {
     }
 
     /// A model distilled from the ensemble, and what those distilled on each fold predict.
-    fn distilled(&self, candidate: &Candidate, ensemble: &Model) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
+    fn distilled(
+        &self,
+        candidate: &Candidate,
+        ensemble: &Model,
+        unmeasured: &Taught,
+    ) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
         let starts = if candidate.is_random() { STARTS } else { 1 };
         let mut predicted = Vec::new();
         for (fold, held_out) in self.bench.folds.iter().enumerate() {
@@ -180,16 +196,26 @@ impl Makers<'_, '_, '_> {
                 training,
                 ensemble.provenance().clone().into(),
             )?;
-            let Some(model) =
-                distilled(&of_fold, candidate, starts.min(STARTS_ON_A_FOLD), training, self.bench.work)?
+            let starts = starts.min(STARTS_ON_A_FOLD);
+            let unmeasured = Taught::unmeasured(training, &of_fold)?;
+            let Some(model) = distilled(&of_fold, candidate, starts, training, &unmeasured, self.bench.work)?
             else {
                 return Ok(None);
             };
             predicted.push(held_out.fold.predicted_by(&model)?);
         }
-        let model = distilled(ensemble, candidate, starts, self.bench.data, self.bench.work)?;
+        let Bench { data, work, .. } = self.bench;
+        let model = distilled(ensemble, candidate, starts, data, unmeasured, work)?;
         Ok(model.map(|model| (model, predicted)))
     }
+}
+
+/// Standard deviation of the measured output, in its unit.
+fn deviation(data: &Dataset) -> f64 {
+    let records = data.records().iter();
+    let measured: Vec<f64> =
+        records.flat_map(|record| record.output().iter().copied()).filter(|y| !y.is_nan()).collect();
+    spread(&measured).1.max(f64::MIN_POSITIVE)
 }
 
 /// What the start with the lowest training error predicts on each fold.
@@ -200,23 +226,6 @@ fn plain_predictions(trial: &Trial) -> Vec<Vec<f64>> {
     };
     let folds = 0..trial.starts.first().map_or(0, Vec::len);
     folds.filter_map(lowest).map(|start: &OnFold| start.predicted.clone()).collect()
-}
-
-/// Data with what the ensemble predicts of smaller paths beside them.
-fn with_predictions(data: &Dataset, ensemble: &Model) -> Result<Dataset> {
-    let mut records = data.records().to_vec();
-    let origin = origin(data, 0);
-    for share in SHARES {
-        for record in data.records() {
-            let scaled = scaled(record, share, origin)?;
-            let predicted = ensemble.simulate(&scaled)?;
-            // As many rows as were measured in all, so that what was measured counts as much.
-            let thinning = Thinning::new(predicted.len(), predicted.len().div_ceil(SHARES.len()));
-            let row = |(row, y): (usize, f64)| if thinning.keeps(row) { y } else { f64::NAN };
-            records.push(scaled.with_output(predicted.into_iter().enumerate().map(row).collect())?);
-        }
-    }
-    Dataset::new(data.names().clone(), records)
 }
 
 /// A record whose first input goes a share of its way from an origin.
@@ -243,18 +252,13 @@ fn distilled(
     candidate: &Candidate,
     starts: usize,
     data: &Dataset,
+    unmeasured: &Taught,
     work: &Work,
 ) -> Result<Option<Model>> {
-    let taught = with_predictions(data, ensemble)?;
-    let predicted: Vec<Vec<f64>> =
-        taught.records().par_iter().map(|record| ensemble.simulate(record)).collect::<Result<_>>()?;
+    let taught = unmeasured.beside(data)?;
+    let measured = Taught::of(data.records().to_vec(), ensemble)?;
     let distance = |model: &Model| -> Result<f64> {
-        let mut sum = 0.0;
-        for (record, predicted) in taught.records().iter().zip(&predicted) {
-            let output = model.simulate(record)?;
-            sum += output.iter().zip(predicted).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-        }
-        Ok(sum)
+        Ok(measured.square_distance(model)? + unmeasured.square_distance(model)?)
     };
     let fitted: Vec<Option<(f64, Model)>> = (0..starts)
         .into_par_iter()

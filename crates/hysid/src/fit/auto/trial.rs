@@ -8,6 +8,7 @@ use crate::data::record::Dataset;
 use crate::fit::auto::candidates::Candidate;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::work::Work;
+use crate::fit::law::search::spread;
 use crate::model::{Excursion, Model, Predictions};
 use crate::validation::Fold;
 
@@ -49,10 +50,8 @@ impl Rows {
                 }
             }
         }
-        let count = measured.len() as f64;
-        let mean = measured.iter().sum::<f64>() / count;
-        let variance = measured.iter().map(|y| (y - mean) * (y - mean)).sum::<f64>() / count;
-        Self { measured, outside, deviation: variance.sqrt().max(f64::MIN_POSITIVE) }
+        let (_, deviation) = spread(&measured);
+        Self { measured, outside, deviation: deviation.max(f64::MIN_POSITIVE) }
     }
 }
 

@@ -31,8 +31,7 @@ pub(super) fn better(quick: Candidate, data: &Dataset, folds: &[Fold], work: &Wo
     let mut trials = [Trial::of(quick.clone()), Trial::of(quick.warmed_up(rows))];
     Bench { data, folds: &folds, work }.try_start(&mut trials, &[0, 1], 0);
     let error = |trial: &Trial| {
-        let score = (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &folds, |_| true))?;
-        Some(100.0 * (0.5 * score.sum()).exp())
+        (!trial.starts.is_empty()).then(|| Score::of(&trial.predicted, &folds, |_| true).mean_percent())
     };
     match (error(&trials[0]), error(&trials[1])) {
         (Some(with), Some(without)) if without < WORTH * with => {

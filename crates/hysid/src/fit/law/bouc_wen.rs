@@ -103,15 +103,8 @@ impl Family for Elements {
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = BoucWenState::default();
-        for (&Sample { x, rate, .. }, y) in series.samples.iter().zip(&series.output) {
-            if columns.is_over(OPERATIONS_A_ROW) {
-                return;
-            }
-            let z = law.yield_displacement * law.advance(&mut state, x);
-            if !y.is_nan() {
-                let row = [1.0, x, z, rate];
-                columns.push(&row[..self.non_negative.len()]);
-            }
-        }
+        columns.run(series, OPERATIONS_A_ROW, |&Sample { x, rate, .. }| {
+            [1.0, x, law.yield_displacement * law.advance(&mut state, x), rate]
+        });
     }
 }

@@ -77,14 +77,9 @@ impl Family for Contacts {
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
-        for (sample, y) in series.samples.iter().zip(&series.output) {
-            if columns.is_over(OPERATIONS_A_ROW) {
-                return;
-            }
+        columns.run(series, OPERATIONS_A_ROW, |sample| {
             let bristles = law.advance(&mut state, *sample);
-            if !y.is_nan() {
-                columns.push(&[1.0, sample.x, bristles.deflection, bristles.rate, sample.rate]);
-            }
-        }
+            [1.0, sample.x, bristles.deflection, bristles.rate, sample.rate]
+        });
     }
 }

@@ -95,15 +95,7 @@ impl Family for Steels {
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
-        for (sample, y) in series.samples.iter().zip(&series.output) {
-            if columns.is_over(OPERATIONS_A_ROW) {
-                return;
-            }
-            let q = law.advance(&mut state, sample.x);
-            if !y.is_nan() {
-                columns.push(&[1.0, sample.x, q]);
-            }
-        }
+        columns.run(series, OPERATIONS_A_ROW, |sample| [1.0, sample.x, law.advance(&mut state, sample.x)]);
     }
 
     /// Steels that yield early and late, with sharp and round bends.

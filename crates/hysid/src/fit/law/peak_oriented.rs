@@ -137,20 +137,13 @@ impl Family for Members {
     fn features(&self, parameters: &[f64], series: &Series, columns: &mut Columns<'_>) {
         let law = self.law(parameters);
         let mut state = law.virgin();
-        for (sample, y) in series.samples.iter().zip(&series.output) {
-            if columns.is_over(OPERATIONS_A_ROW) {
-                return;
-            }
+        columns.run(series, OPERATIONS_A_ROW, |sample| {
             let [up, down] = law.advance(&mut state, sample.x);
-            if y.is_nan() {
-                continue;
+            match self.asymmetric {
+                true => [1.0, up + law.spring * sample.x, down],
+                false => [1.0, up + down + law.spring * sample.x, 0.0],
             }
-            if self.asymmetric {
-                columns.push(&[1.0, up + law.spring * sample.x, down]);
-            } else {
-                columns.push(&[1.0, up + down + law.spring * sample.x]);
-            }
-        }
+        });
     }
 
     /// Members that yield early and late, pinched and full.

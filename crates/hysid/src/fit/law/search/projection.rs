@@ -1,6 +1,8 @@
 //! Weights of features by least squares, some of them not negative: `argmin_c Σ_k (Σ_i c_i φ_i,k - y_k)²`
 //! (theory.md (8.1)).
 
+use crate::law::Sample;
+use crate::law::series::Series;
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::non_negative::Quadratic;
 use crate::stop_check::{Pace, StopCheck};
@@ -21,6 +23,26 @@ pub(crate) struct Columns<'a> {
 impl<'a> Columns<'a> {
     pub fn new(count: usize, rows: usize, stop: StopCheck<'a>) -> Self {
         Self { columns: vec![Vec::with_capacity(rows); count], pace: Pace::new(stop) }
+    }
+
+    /// A free run over a record: `advance` moves a law to each sample and gives the features there, of which as many
+    /// count as there are columns. Rows without an output only drive the memory. Ends early once stopped.
+    pub fn run<const FEATURES: usize>(
+        &mut self,
+        series: &Series,
+        operations_a_row: usize,
+        mut advance: impl FnMut(&Sample) -> [f64; FEATURES],
+    ) {
+        let count = self.columns.len();
+        for (sample, y) in series.samples.iter().zip(&series.output) {
+            if self.is_over(operations_a_row) {
+                return;
+            }
+            let row = advance(sample);
+            if !y.is_nan() {
+                self.push(&row[..count]);
+            }
+        }
     }
 
     /// Counts the operations of one more row; true once stopped, and the columns are of no use then.
