@@ -1,0 +1,291 @@
+//! What an undisturbed run shows of each property, computed directly. The program's verdict plays no part.
+
+use super::branches::{Branch, Branches};
+use super::property::{
+    CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, PROPERTIES, RATE_DEPENDENCE,
+    SATURATION, STATIC_HYSTERESIS, WIPING_OUT,
+};
+
+/// Inputs closer than this share of the range are the same.
+const SAME: f64 = 0.01;
+
+/// Branches shorter than this share of the input's range, or lower than this share of the output's, show no shape.
+const SHORTEST: f64 = 0.05;
+
+/// Places along a branch.
+const PLACES: usize = 40;
+
+/// The index of each property; none where the run has nothing to compare.
+///
+/// Violations: the largest of all comparisons. Orientation: signed over unsigned area. Saturation: slope of the last
+/// tenth over the largest. Static hysteresis: area over box.
+pub type Evidence = [Option<f64>; PROPERTIES.len()];
+
+/// The evidence of a run; `slow` is the same path of the input at a vanishing speed.
+pub fn evidence(run: &Branches, slow: &Branches) -> Evidence {
+    let cycles = cycles(run);
+    let mut evidence = [None; PROPERTIES.len()];
+    evidence[STATIC_HYSTERESIS] = fullness(slow, run.height);
+    evidence[ORIENTATION] = orientation(run);
+    evidence[RATE_DEPENDENCE] = rate_dependence(run);
+    evidence[WIPING_OUT] = wiping_out(run);
+    evidence[CONGRUENCY] = congruency(run);
+    evidence[MASING] = masing(run);
+    evidence[ODD_SYMMETRY] = odd_symmetry(run);
+    evidence[SATURATION] = saturation(run);
+    evidence[DETERIORATION] = deterioration(run, &cycles);
+    evidence[LOOP_CLOSURE] = loop_closure(run, &cycles);
+    evidence
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.reduce(f64::max)
+}
+
+/// Evenly spaced inputs between two, both included.
+fn places(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    (0..=PLACES).map(move |place| from + (to - from) * place as f64 / PLACES as f64)
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Signed area (clockwise) and unsigned area between a branch and the next, and the width that both share.
+fn opening(run: &Branches, there: &Branch, back: &Branch) -> Option<(f64, f64, f64)> {
+    let ((a, b), (c, d)) = (there.span(), back.span());
+    let (low, high) = (a.max(c), b.min(d));
+    let sign = if there.rises() { 1.0 } else { -1.0 };
+    let apart: Vec<f64> = places(low, high)
+        .map(|x| Some(sign * (run.at(there, x)? - run.at(back, x)?)))
+        .collect::<Option<_>>()?;
+    let step = (high - low) / apart.len() as f64;
+    Some((apart.iter().sum::<f64>() * step, apart.iter().map(|v| v.abs()).sum::<f64>() * step, high - low))
+}
+
+fn openings(run: &Branches) -> Vec<(f64, f64, f64)> {
+    run.branches.windows(2).filter_map(|pair| opening(run, &pair[0], &pair[1])).collect()
+}
+
+/// Mean area of the widest loops over their width and the range of the output at the measured speed.
+fn fullness(slow: &Branches, height: f64) -> Option<f64> {
+    let openings = openings(slow);
+    let widest = largest(openings.iter().map(|o| o.2))?;
+    let wide: Vec<f64> =
+        openings.iter().filter(|o| o.2 > 0.7 * widest).map(|o| o.1 / (o.2 * height)).collect();
+    Some(wide.iter().sum::<f64>() / wide.len() as f64)
+}
+
+fn orientation(run: &Branches) -> Option<f64> {
+    let openings = openings(run);
+    let widest = largest(openings.iter().map(|o| o.2))?;
+    let open = || openings.iter().filter(|o| o.2 > 0.3 * widest && o.1 > 0.003 * o.2 * run.height);
+    let area: f64 = open().map(|o| o.1).sum();
+    (area > 0.0).then(|| open().map(|o| o.0).sum::<f64>() / area)
+}
+
+/// Largest difference between the fastest and the slowest branch of equal ends, over the range of the output.
+fn rate_dependence(run: &Branches) -> Option<f64> {
+    let speed = |branch: &Branch| branch.travel() / branch.steps() as f64;
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * run.width;
+    let long: Vec<&Branch> = run.branches.iter().filter(|b| b.travel() >= 0.1 * run.width).collect();
+    largest(long.iter().filter_map(|first| {
+        let group = || {
+            let alike = |b: &&&Branch| {
+                let outer = (b.outer.iter().rev().nth(1), first.outer.iter().rev().nth(1));
+                let outer = match outer {
+                    (Some(a), Some(b)) => same(*a, *b),
+                    (None, None) => true,
+                    _ => false,
+                };
+                same(b.from, first.from) && same(b.to, first.to) && outer
+            };
+            long.iter().filter(alike)
+        };
+        let slow = group().min_by(|a, b| speed(a).total_cmp(&speed(b)))?;
+        let fast = group().max_by(|a, b| speed(a).total_cmp(&speed(b)))?;
+        if speed(fast) < 2.0 * speed(slow) {
+            return None;
+        }
+        let differences: Vec<f64> =
+            places(first.from, first.to).filter_map(|x| Some(run.at(fast, x)? - run.at(slow, x)?)).collect();
+        Some(root_mean_square(&differences) / run.height)
+    }))
+}
+
+/// Largest gap where the input returns to a turning point, over the range of the output.
+fn wiping_out(run: &Branches) -> Option<f64> {
+    let gaps = run.branches.iter().flat_map(|branch| {
+        let long = |x: f64| (x - branch.from).abs() >= SHORTEST * run.width;
+        let returns = branch.returns.iter().filter(move |(x, _)| long(*x));
+        returns.filter_map(|&(x, step)| {
+            let (low, high) = branch.span();
+            Some((run.at(branch, x.clamp(low, high))? - run.outputs[step]).abs() / run.height)
+        })
+    });
+    largest(gaps)
+}
+
+/// Largest difference in shape of two branches of equal beginning and direction and different past, over their height.
+fn congruency(run: &Branches) -> Option<f64> {
+    let known: Vec<&Branch> =
+        run.branches.iter().filter(|b| b.own_end().is_some() && b.travel() >= SHORTEST * run.width).collect();
+    let pairs = known.iter().enumerate().flat_map(|(k, a)| known[k + 1..].iter().map(move |b| (*a, *b)));
+    largest(pairs.filter_map(|(a, b)| {
+        let same = a.rises() == b.rises() && (a.from - b.from).abs() <= 0.2 * SAME * run.width;
+        if !same || !other_past(run, a, b) {
+            return None;
+        }
+        let end = if a.rises() { a.own_end()?.min(b.own_end()?) } else { a.own_end()?.max(b.own_end()?) };
+        let begin = if a.rises() { a.from.max(b.from) } else { a.from.min(b.from) };
+        let along = if a.rises() { end - begin } else { begin - end };
+        if along < SHORTEST * run.width {
+            return None;
+        }
+        let (start_a, start_b) = (run.at(a, begin)?, run.at(b, begin)?);
+        let shapes: Vec<(f64, f64)> = places(begin, end)
+            .map(|x| Some((run.at(a, x)? - start_a, run.at(b, x)? - start_b)))
+            .collect::<Option<_>>()?;
+        let height = height(shapes.iter().map(|s| s.0)).max(height(shapes.iter().map(|s| s.1)));
+        let apart: Vec<f64> = shapes.iter().map(|(a, b)| a - b).collect();
+        (height >= SHORTEST * run.height).then(|| root_mean_square(&apart) / height)
+    }))
+}
+
+fn height(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    let (low, high) = super::disturbances::range(&values);
+    high - low
+}
+
+/// True if one of the two turning points around the branches differs.
+fn other_past(run: &Branches, a: &Branch, b: &Branch) -> bool {
+    let outer = |branch: &Branch, depth: usize| branch.outer.iter().rev().nth(depth).copied();
+    (1..=2).any(|depth| match (outer(a, depth), outer(b, depth)) {
+        (Some(a), Some(b)) => (a - b).abs() > SHORTEST * run.width,
+        (None, None) => false,
+        _ => true,
+    })
+}
+
+/// Largest difference of a branch from the longest, both from their turning points on, over the height of the shorter.
+fn masing(run: &Branches) -> Option<f64> {
+    let length = |branch: &Branch| branch.own_end().map(|end| (end - branch.from).abs());
+    let mut own: Vec<(f64, &Branch)> = run
+        .branches
+        .iter()
+        .filter_map(|b| Some((length(b)?, b)))
+        .filter(|(length, _)| *length >= SHORTEST * run.width)
+        .collect();
+    own.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (longest, others) = own.split_first()?;
+    let grown = |branch: &Branch, way: f64| {
+        let sign = if branch.rises() { 1.0 } else { -1.0 };
+        let there = run.at(branch, branch.from + sign * way)?;
+        Some(sign * (there - run.outputs[branch.first]))
+    };
+    largest(others.iter().filter(|(length, _)| *length < 0.9 * longest.0).filter_map(|(length, branch)| {
+        let shapes: Vec<(f64, f64)> = places(0.0, 0.999 * length)
+            .map(|way| Some((grown(longest.1, way)?, grown(branch, way)?)))
+            .collect::<Option<_>>()?;
+        let height = largest(shapes.iter().map(|s| s.1.abs()))?;
+        let apart: Vec<f64> = shapes.iter().map(|(a, b)| a - b).collect();
+        (height >= SHORTEST * run.height).then(|| root_mean_square(&apart) / height)
+    }))
+}
+
+/// Largest difference of a branch over the whole range from the mean of its neighbours, turned, over the range of the
+/// output.
+fn odd_symmetry(run: &Branches) -> Option<f64> {
+    let half = 0.5 * run.width;
+    let whole = |branch: &Branch| branch.travel() >= 0.98 * run.width;
+    largest(run.branches.windows(3).filter(|three| three.iter().all(whole)).filter_map(|three| {
+        let sums: Vec<f64> = places(-0.97 * half, 0.97 * half)
+            .map(|x| {
+                let turned = 0.5 * (run.at(&three[0], -x)? + run.at(&three[2], -x)?);
+                Some(run.at(&three[1], x)? + turned)
+            })
+            .collect::<Option<_>>()?;
+        let mean = sums.iter().sum::<f64>() / sums.len() as f64;
+        let differences: Vec<f64> = sums.iter().map(|sum| sum - mean).collect();
+        Some(root_mean_square(&differences) / run.height)
+    }))
+}
+
+/// Slope of the last tenth over the largest of a tenth, mean of the branches to either end, the smaller of both ends.
+fn saturation(run: &Branches) -> Option<f64> {
+    let (low, high) = super::disturbances::range(run.inputs);
+    let end = |rising: bool| {
+        let edge = if rising { high } else { low };
+        let reaches = |b: &&Branch| {
+            b.rises() == rising && (b.to - edge).abs() <= SAME * run.width && b.travel() >= 0.6 * run.width
+        };
+        let ratio = |branch: &Branch| {
+            let at =
+                |part: usize| run.at(branch, branch.from + (branch.to - branch.from) * part as f64 / 10.0);
+            let heights: Vec<f64> = (0..=10).map(at).collect::<Option<_>>()?;
+            let rises: Vec<f64> = heights.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+            let high = (heights[10] - heights[0]).abs() >= 0.3 * run.height;
+            high.then(|| rises[9] / rises.iter().copied().fold(0.0, f64::max))
+        };
+        let ratios: Vec<f64> = run.branches.iter().filter(reaches).filter_map(ratio).collect();
+        (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64)
+    };
+    [end(true), end(false)].into_iter().flatten().reduce(f64::min)
+}
+
+/// Branches there and back that begin and end at the same input, in groups of the same ends, enclosing turning points
+/// and speed; at least two in a group.
+fn cycles(run: &Branches) -> Vec<Vec<usize>> {
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * run.width;
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut index = 0;
+    while index + 1 < run.branches.len() {
+        let (there, back) = (&run.branches[index], &run.branches[index + 1]);
+        if (back.to - there.from).abs() > 0.02 * there.travel().max(back.travel()) {
+            index += 1;
+            continue;
+        }
+        let known = groups.iter_mut().find(|group| {
+            let other = &run.branches[group[0]];
+            let (a, b) = (other.steps() as f64, there.steps() as f64);
+            same(other.from, there.from)
+                && same(other.to, there.to)
+                && a.max(b) <= 1.25 * a.min(b)
+                && !other_past(run, other, there)
+        });
+        match known {
+            Some(group) => group.push(index),
+            None => groups.push(vec![index]),
+        }
+        index += 2;
+    }
+    groups.retain(|group| group.len() >= 2);
+    groups
+}
+
+/// The loss of energy that half of the repeated loops reach, from the first to the last of a kind.
+fn deterioration(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
+    let energy = |&index: &usize| {
+        opening(run, &run.branches[index], &run.branches[index + 1]).map_or(0.0, |opening| opening.0.abs())
+    };
+    let most = largest(groups.iter().filter_map(|group| group.first()).map(energy))?;
+    let losses = groups.iter().filter(|group| energy(&group[0]) >= 0.01 * most).flat_map(|group| {
+        let loss = 1.0 - energy(&group[group.len() - 1]) / energy(&group[0]);
+        std::iter::repeat_n(loss, group.len())
+    });
+    let mut losses: Vec<f64> = losses.collect();
+    losses.sort_by(f64::total_cmp);
+    (losses.len() >= 3).then(|| losses[(losses.len() - 1) / 2])
+}
+
+/// Largest gap after a period that follows an equal one, over the range of the output.
+fn loop_closure(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
+    let later = groups.iter().flat_map(|group| group.windows(2)).filter(|pair| pair[1] == pair[0] + 2);
+    largest(later.filter_map(|pair| {
+        let index = pair[1];
+        let (there, back) = (&run.branches[index], &run.branches[index + 1]);
+        let exact = (back.to - there.from).abs() <= 0.002 * run.width;
+        exact.then(|| (run.outputs[back.last] - run.outputs[there.first]).abs() / run.height)
+    }))
+}

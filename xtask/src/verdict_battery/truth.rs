@@ -1,0 +1,89 @@
+//! The answers that count for a record.
+//!
+//! The answer is that of the law, however the record is disturbed: the user asks about the specimen. A drift of the
+//! amplifier opens loops that the specimen closes, and a delay of the sensor makes a record, not a specimen, depend on
+//! the speed. Some entries do not count:
+//!
+//! - The law has no clear answer.
+//! - The law violates the property, and the undisturbed record compares what the property says to be equal, but the
+//!   difference is below [`CLEARLY`] times the effect that matters: either answer is right then, or both are close. So
+//!   a Bouc-Wen law counts as one without return points only where its gaps matter.
+//! - The slope at the end, the direction of the loops or their area at rest is close to the limit on this path.
+//! - The law neither wears nor depends on the rate, but its first loops shrink or move while it settles: the record
+//!   shows what wear or an asymmetry would show.
+//! - A law that depends on the rate was recorded without time: a verdict on loops at rest then assumes that the record
+//!   was slow, and says so.
+//! - The specimen was made to wear during the record: the law knows nothing of that wear, and its size is that of the
+//!   effect that matters.
+//!
+//! A record with nothing to compare has no violation to show. The law's answer counts then: `yes` on a law without
+//! wear after a single loop would be a guess, and so would `no` on a law with wear. `not testable` is never wrong.
+
+use super::disturbances::Disturbance;
+use super::evidence::Evidence;
+use super::paths::Path;
+use super::property::{
+    Answers, CONGRUENCY, DETERIORATION, LOOP_CLOSURE, MASING, ODD_SYMMETRY, ORIENTATION, RATE_DEPENDENCE,
+    SATURATION, STATIC_HYSTERESIS, WIPING_OUT,
+};
+
+/// A violation counts from this multiple of the effect that matters on.
+const CLEARLY: f64 = 2.0;
+
+/// The effects that docs/diagnosis.md calls relevant: differences above them matter.
+const EFFECTS: [(usize, f64); 7] = [
+    (RATE_DEPENDENCE, 0.01),
+    (WIPING_OUT, 0.01),
+    (CONGRUENCY, 0.05),
+    (MASING, 0.05),
+    (ODD_SYMMETRY, 0.02),
+    (DETERIORATION, 0.05),
+    (LOOP_CLOSURE, 0.01),
+];
+
+/// Loops that fill less than this share of their box are none, if it is half of it; those that fill twice as much are.
+const FULL: f64 = 0.02;
+
+/// Loops are passed in one direction from this share of their area on: twice the limit.
+const ONE_DIRECTION: f64 = 0.6;
+
+/// A slope at the end below half of this share of the largest is saturated; above twice, it is not.
+const SATURATED: f64 = 0.1;
+
+/// The answers that count.
+pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Disturbance) -> Answers {
+    let depends_on_rate = law[RATE_DEPENDENCE] == Some(true);
+    let mut truth = law;
+    for (property, effect) in EFFECTS {
+        let violated = matches!(property, RATE_DEPENDENCE | DETERIORATION);
+        if let Some(index) = evidence[property]
+            && law[property] == Some(violated)
+            && index < CLEARLY * effect
+        {
+            truth[property] = None;
+        }
+    }
+    let agrees =
+        |property: usize, yes: &dyn Fn(f64) -> bool, no: &dyn Fn(f64) -> bool| match evidence[property] {
+            Some(index) => law[property].filter(|answer| if *answer { yes(index) } else { no(index) }),
+            None => law[property],
+        };
+    truth[STATIC_HYSTERESIS] = agrees(STATIC_HYSTERESIS, &|i| i > CLEARLY * FULL, &|i| i < FULL / CLEARLY);
+    truth[ORIENTATION] = agrees(ORIENTATION, &|i| i > ONE_DIRECTION, &|i| i < -ONE_DIRECTION);
+    truth[SATURATION] = agrees(SATURATION, &|i| i < SATURATED / CLEARLY, &|i| i > CLEARLY * SATURATED);
+    if depends_on_rate && !path.timed {
+        truth[STATIC_HYSTERESIS] = None;
+    }
+    let effect = |property: usize| {
+        EFFECTS.iter().find(|(name, _)| *name == property).map_or(0.0, |(_, effect)| *effect)
+    };
+    let moves = |property: usize| evidence[property].is_some_and(|index| index > effect(property) / CLEARLY);
+    if law[ODD_SYMMETRY] == Some(true) && !depends_on_rate && moves(ODD_SYMMETRY) {
+        truth[ODD_SYMMETRY] = None;
+    }
+    let settles = law[DETERIORATION] == Some(false) && !depends_on_rate && moves(DETERIORATION);
+    if settles || disturbance.wears() {
+        truth[DETERIORATION] = None;
+    }
+    truth
+}
