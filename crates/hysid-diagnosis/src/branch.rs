@@ -4,8 +4,9 @@ mod opening;
 
 use std::ops::Range;
 
-use super::noise;
-use super::smoothing::{Place, Points, Smoothed, choose_window, smooth_where_straight};
+use super::noise::{self, Noise, resolution};
+use super::significance;
+use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::data::turning_points::turning_points;
@@ -23,6 +24,12 @@ const LOWEST: f64 = 0.05;
 
 /// Branches lower than so many deviations of the noise have none either.
 const LOWEST_IN_NOISE: f64 = 10.0;
+
+/// An input whose noise is below this share of its range does not jitter.
+const JITTERS: f64 = 2e-4;
+
+/// Points on either side of one over which its slope is taken.
+const BESIDE: usize = 3;
 
 /// Turning points beneath a branch that are kept with it.
 const KEPT: usize = 4;
@@ -95,6 +102,8 @@ struct CurvePoint {
     y: f64,
     deviation: f64,
     bend: f64,
+    /// Deviation of `x`.
+    input_deviation: f64,
 }
 
 /// A value read from a curve.
@@ -173,10 +182,10 @@ pub(crate) struct BranchSet<'a> {
     pub input: (f64, f64),
     /// Smallest and largest output.
     pub output: (f64, f64),
-    /// Deviation of the noise of the input.
-    pub input_noise: f64,
-    /// Deviation of the noise of the output.
-    pub output_noise: f64,
+    /// Noise of the input.
+    pub input_noise: Noise,
+    /// Noise of the output.
+    pub output_noise: Noise,
     /// Reversals of the input below this are no turning points.
     pub smallest_reversal: f64,
     /// Rows that are taken together to read a curve.
@@ -193,24 +202,33 @@ impl<'a> BranchSet<'a> {
         let input = data.input_range(0);
         let width = input.1 - input.0;
         let inputs = data.records().iter().map(|record| record.inputs()[0].as_slice());
-        let input_noise = noise::deviation(inputs);
+        let roughness = noise::roughness(inputs);
         let rows = data.rows().max(2);
         // Jitter of all rows together hardly ever jumps further.
-        let jitter = 2.0 * input_noise * noise::critical_value(rows);
+        let jitter = 2.0 * roughness * significance::critical_value(rows);
         let smallest_reversal = (options.smallest_reversal * width).max(jitter);
-        let reached = REACHED * width + 2.0 * input_noise;
+        let reached = REACHED * width + 2.0 * roughness;
         let mut branches = Vec::new();
         for (number, record) in data.records().iter().enumerate() {
             follow(number, record, smallest_reversal, reached, &mut branches);
         }
+        let of_branch = |branch: &Branch| &data.records()[branch.record].inputs()[0][branch.rows.clone()];
+        let input_noise = Noise::of(branches.iter().map(of_branch));
         let output_noise = output_noise(data, &branches);
-        let points: Vec<Points> = branches.iter().map(|branch| of_rows(data, branch, output_noise)).collect();
+        let reading = Reader {
+            data,
+            by_rows: input_noise.deviation() > JITTERS * width,
+            resolutions: resolutions(data),
+            input_noise: &input_noise,
+            output_noise: &output_noise,
+        };
+        let points: Vec<Points> = branches.iter().map(|branch| reading.points(branch)).collect();
         let window = if options.smoothing { choose_window(&points) } else { 1 };
         for (branch, points) in branches.iter_mut().zip(points) {
-            branch.curve = curve(&points, window);
+            branch.curve = reading.curve(&points, window);
         }
         let output = data.output_range();
-        let openings = openings(&branches, output_noise);
+        let openings = openings(&branches, &output_noise);
         Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches, openings }
     }
 
@@ -242,12 +260,12 @@ impl<'a> BranchSet<'a> {
 
     /// Branches lower than this have no shape to compare, in the unit of the output.
     pub fn lowest_shape(&self) -> f64 {
-        (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise)
+        (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise.deviation())
     }
 
     /// Inputs closer than this are the same.
     pub fn same_input(&self) -> f64 {
-        0.01 * self.width() + 2.0 * self.input_noise
+        0.01 * self.width() + 2.0 * self.input_noise.deviation()
     }
 }
 
@@ -300,48 +318,108 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
     }
 }
 
-/// Points of a branch in the order of time, averaged in blocks where there are very many.
-fn of_rows(data: &Dataset, branch: &Branch, noise: f64) -> Points {
-    let record = &data.records()[branch.record];
-    let columns = [&record.inputs()[0], record.output()].map(|column| &column[branch.rows.clone()]);
-    let block = (branch.rows.len() / MOST_POINTS).max(1);
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let blocks = |column: usize| columns[column].chunks(block).map(mean);
-    // The output is smooth in time, whatever the input does; without time stamps the input stands for it.
-    let stations: Vec<f64> = match record.time() {
-        Some(time) => time[branch.rows.clone()].chunks(block).map(mean).collect(),
-        None => blocks(0).collect(),
-    };
-    let rows = stations.into_iter().zip(blocks(0).zip(blocks(1)));
-    let mut places: Vec<Place> =
-        rows.filter(|(_, (_, y))| !y.is_nan()).map(|(station, (x, y))| Place { station, x, y }).collect();
-    if places.len() < 4 {
-        places.clear();
-    }
-    places.sort_by(|a, b| a.station.total_cmp(&b.station));
-    Points { places, deviation: noise / (block as f64).sqrt() }
+/// Steps in which the first input and the output are told.
+fn resolutions(data: &Dataset) -> (f64, f64) {
+    let records = || data.records().iter();
+    let input = resolution(records().flat_map(|record| &record.inputs()[0]));
+    let output = resolution(records().flat_map(|record| record.output()));
+    (input, output)
 }
 
-fn output_noise(data: &Dataset, branches: &[Branch]) -> f64 {
+/// How branches are read from the rows of a data set.
+struct Reader<'r> {
+    data: &'r Dataset,
+    /// True if the input jitters so much that it tells less of the order of rows without time than their numbers do.
+    by_rows: bool,
+    resolutions: (f64, f64),
+    input_noise: &'r Noise,
+    output_noise: &'r Noise,
+}
+
+impl Reader<'_> {
+    /// Points of a branch in the order of time, averaged in blocks where there are very many.
+    fn points(&self, branch: &Branch) -> Points {
+        let record = &self.data.records()[branch.record];
+        let columns = [&record.inputs()[0], record.output()].map(|column| &column[branch.rows.clone()]);
+        let block = (branch.rows.len() / MOST_POINTS).max(1);
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let blocks = |column: usize| columns[column].chunks(block).map(mean);
+        // The output is smooth in time, whatever the input does; without time stamps the input stands for it.
+        let stations: Vec<f64> = match record.time() {
+            Some(time) => time[branch.rows.clone()].chunks(block).map(mean).collect(),
+            None if self.by_rows => (0..columns[0].len().div_ceil(block)).map(|row| row as f64).collect(),
+            None => blocks(0).collect(),
+        };
+        let rows = stations.into_iter().zip(blocks(0).zip(blocks(1)));
+        let mut places: Vec<Place> =
+            rows.filter(|(_, (_, y))| !y.is_nan()).map(|(station, (x, y))| Place { station, x, y }).collect();
+        if places.len() < 4 {
+            places.clear();
+        }
+        places.sort_by(|a, b| a.station.total_cmp(&b.station));
+        Points {
+            places,
+            input_noise: self.input_noise.in_blocks(block),
+            output_noise: self.output_noise.in_blocks(block),
+        }
+    }
+
+    /// The output over the input along a branch, with what its noise and that of the input leave.
+    fn curve(&self, points: &Points, window: usize) -> Curve {
+        let smoothed = smooth_where_straight(points, window);
+        let place = |(place, value): (&Place, &Smoothed)| self.curve_point(points, place, value);
+        let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let deviations: Vec<(f64, f64)> =
+            (0..points.len()).map(|at| self.through_the_slope(&points, at)).collect();
+        for (point, (deviation, bend)) in points.iter_mut().zip(deviations) {
+            point.deviation = point.deviation.hypot(deviation);
+            point.bend += bend + 0.5 * self.resolutions.1;
+        }
+        Curve { points }
+    }
+
+    /// A point without what the input's noise adds.
+    fn curve_point(&self, points: &Points, place: &Place, value: &Smoothed) -> CurvePoint {
+        let jitters = self.by_rows;
+        if points.output_noise.is_white() && !jitters {
+            let deviation = value.deviation * points.output_noise.deviation();
+            let input_deviation = points.input_noise.deviation();
+            return CurvePoint { x: place.x, y: value.y, deviation, bend: value.bend, input_deviation };
+        }
+        let rows = &points.places[value.rows.clone()];
+        let parabola = Parabola::over(rows, place.station);
+        let weights: Vec<f64> = rows.iter().map(|row| parabola.weight(row)).collect();
+        let x = rows.iter().zip(&weights).map(|(row, weight)| row.x * weight).sum();
+        CurvePoint {
+            x: if jitters { x } else { place.x },
+            y: value.y,
+            deviation: points.output_noise.of_sum(&weights),
+            bend: value.bend,
+            input_deviation: if jitters {
+                points.input_noise.of_sum(&weights)
+            } else {
+                points.input_noise.deviation()
+            },
+        }
+    }
+
+    /// Deviation and error of an output because of the noise and the steps of the input.
+    fn through_the_slope(&self, points: &[CurvePoint], at: usize) -> (f64, f64) {
+        let (first, last) = (at.saturating_sub(BESIDE), (at + BESIDE).min(points.len() - 1));
+        let (way, rise) = (points[last].x - points[first].x, points[last].y - points[first].y);
+        let slope = if way > 0.0 { (rise / way).abs() } else { 0.0 };
+        (slope * points[at].input_deviation, 0.5 * slope * self.resolutions.0)
+    }
+}
+
+fn output_noise(data: &Dataset, branches: &[Branch]) -> Noise {
     let scored = |branch: &Branch| {
         let output = &data.records()[branch.record].output()[branch.rows.clone()];
         !output.iter().any(|y| y.is_nan())
     };
     let runs = branches.iter().filter(|branch| scored(branch));
-    noise::deviation(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
-}
-
-fn curve(points: &Points, window: usize) -> Curve {
-    let smoothed = smooth_where_straight(points, window);
-    let place = |(place, value): (&Place, &Smoothed)| CurvePoint {
-        x: place.x,
-        y: value.y,
-        deviation: value.deviation * points.deviation,
-        bend: value.bend,
-    };
-    let mut points: Vec<CurvePoint> = points.places.iter().zip(&smoothed).map(place).collect();
-    points.sort_by(|a, b| a.x.total_cmp(&b.x));
-    Curve { points }
+    Noise::of(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
 }
 
 /// Branches whose speeds differ by no more than this factor are of the same speed.
@@ -379,7 +457,7 @@ impl BranchSet<'_> {
         let time = &record.time()?[branch.rows.clone()];
         let x = &record.inputs()[0][branch.rows.clone()];
         let sign = if branch.rises() { 1.0 } else { -1.0 };
-        let reach = NEAR * self.width() + 2.0 * self.input_noise;
+        let reach = NEAR * self.width() + 2.0 * self.input_noise.deviation();
         let first = x.partition_point(|x| sign * x < sign * place - reach);
         let last = x.partition_point(|x| sign * x <= sign * place + reach);
         let first = first.saturating_sub(1).min(x.len().saturating_sub(3));

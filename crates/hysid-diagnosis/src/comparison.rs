@@ -1,6 +1,6 @@
 //! Many comparisons, one verdict: what is larger than the noise, and large enough to matter.
 
-use super::noise;
+use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
 /// A limit so many times the effect that matters leaves a property undecided.
@@ -41,7 +41,7 @@ pub(crate) struct Judgement {
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
-    let (critical, doubtful) = (noise::critical_value(count), noise::doubtful_value(count));
+    let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
     let beyond = |c: &Comparison, deviations: f64| (effect + 2.0 * c.bend).max(deviations * c.deviation);
     let limit = |c: &Comparison| beyond(c, critical);
     let excess = |c: &Comparison| c.index / limit(c);
@@ -51,7 +51,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     let mut limits: Vec<f64> = comparisons.iter().map(limit).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
-    } else if noise::median(&mut limits) > BLIND * effect
+    } else if significance::median(&mut limits) > BLIND * effect
         || comparisons.iter().any(|c| c.index > beyond(c, doubtful))
     {
         Verdict::NotTestable
@@ -61,7 +61,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     Some(Judgement {
         verdict,
         index: deciding.index,
-        noise: deciding.deviation * noise::typical_largest(count),
+        noise: deciding.deviation * significance::typical_largest(count),
         threshold: limit(deciding),
         count,
         order,

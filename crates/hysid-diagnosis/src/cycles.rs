@@ -80,7 +80,7 @@ pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
 fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
     let (out, back) = (&survey.branches[index], &survey.branches[index + 1]);
     let swing = out.travel().max(back.travel());
-    let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise;
+    let closed = (back.to - out.from).abs() <= CLOSED * swing + 2.0 * survey.input_noise.deviation();
     if out.record != back.record || !closed {
         return None;
     }
@@ -95,7 +95,7 @@ fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
     let n = x.len();
     let step = |row: usize| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n]);
     let energy: f64 = (0..n).map(|row| y[row] * step(row)).sum();
-    let squares: f64 = (0..n).map(|row| step(row).powi(2)).sum();
+    let steps: Vec<f64> = (0..n).map(step).collect();
     let range = |values: &[f64]| {
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
     };
@@ -112,7 +112,7 @@ fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
         output,
         energy,
         area: survey.openings[place].area,
-        energy_deviation: survey.output_noise * squares.sqrt(),
+        energy_deviation: survey.output_noise.of_sum(&steps),
         width: apart_along_input(middle).unwrap_or(0.0),
         secant_stiffness: (tip - 0.5 * (first + last)) / (out.to - out.from),
         coercive_input: apart_along_input(0.0).map(|apart| 0.5 * apart),

@@ -4,7 +4,7 @@
 
 use super::branch::BranchSet;
 use super::cycles::repeated;
-use super::noise;
+use super::significance;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
 use hysid_core::significant::Significant;
 
@@ -43,7 +43,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         let statement = format!("{count} loops are repeated between the same inputs; {FEWEST} are needed");
         return Finding::not_testable(Property::Deterioration, statement, EXPERIMENT);
     }
-    let critical = noise::critical_value(trends.len());
+    let critical = significance::critical_value(trends.len());
     let excess = |trend: &Trend| trend.loss / EFFECT.max(critical * trend.deviation);
     let strongest = trends.iter().max_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are trends");
     // One kind of loops may shrink by chance or while it settles; most must.
@@ -75,7 +75,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         verdict,
         index: Some(strongest.loss),
         threshold: Some(limit),
-        noise: Some(strongest.deviation * noise::typical_largest(trends.len())),
+        noise: Some(strongest.deviation * significance::typical_largest(trends.len())),
         comparisons: trends.len(),
         statement,
         experiment: (verdict == Verdict::NotTestable).then(|| EXPERIMENT.into()),
@@ -115,7 +115,7 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
             falls -= if change.abs() > 0.0 { change.signum() } else { 0.0 };
         }
     }
-    let slope = noise::median(&mut slopes);
+    let slope = significance::median(&mut slopes);
     let scale = energy(first);
     let deviation = first.energy_deviation.hypot(cycles[n - 1].energy_deviation) / scale;
     let size = n as f64;

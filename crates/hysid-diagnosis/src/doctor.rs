@@ -1,6 +1,7 @@
 //! The data doctor: what in the data would mislead whoever fits a model to them, and what helps. Each complaint
 //! is a test of its own; silence means that nothing was found, not that there is nothing.
 
+mod artifacts;
 mod clipping;
 mod closure;
 mod columns;
@@ -14,6 +15,7 @@ mod start;
 
 use serde::Serialize;
 
+use super::artifact::Explanation;
 use super::branch::BranchSet;
 use super::{Cycle, Delay, DiagnosisOptions, FEWEST_ROWS, Finding, Piece};
 use hysid_core::data::record::{Dataset, Record};
@@ -116,11 +118,12 @@ pub(crate) fn examine(
     cycles: &[Cycle],
     findings: &[Finding],
     delay: Option<&Delay>,
+    explanations: &[Explanation],
 ) -> Vec<DataIssue> {
     let found = [
         marks::complaints(survey.data),
-        lag::complaints(survey, delay),
-        drift::complaints(survey, cycles),
+        artifacts::added(survey, lag::complaints(survey, delay), explanations, DataIssueKind::Lag),
+        artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
         creep::complaints(survey),
         clipping::complaints(survey),
         repetition::complaints(survey),
@@ -154,6 +157,11 @@ pub fn before_a_fit(data: &Dataset) -> Result<Vec<DataIssue>> {
         return Ok(found);
     }
     Ok(clipping::complaints(&BranchSet::new(data, &DiagnosisOptions::default())))
+}
+
+/// The data without the outputs that an instrument clipped; `None` where there are none.
+pub(crate) fn without_clipped(survey: &BranchSet) -> Option<Dataset> {
+    clipping::blanked(survey)
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input

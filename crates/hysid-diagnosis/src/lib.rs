@@ -15,6 +15,7 @@
 //! ```
 
 mod advice;
+mod artifact;
 mod branch;
 mod comparison;
 mod congruency;
@@ -30,6 +31,7 @@ mod odd_symmetry;
 mod orientation;
 mod rate_dependence;
 mod saturation;
+mod significance;
 mod smoothing;
 mod static_hysteresis;
 mod wiping_out;
@@ -213,31 +215,43 @@ impl Diagnosis {
     /// Data that nothing can be said about: a constant input or output, hardly any rows.
     pub fn of(data: &Dataset, options: &DiagnosisOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let survey = BranchSet::new(data, options);
-        let cycles = cycles::cycles(&survey);
-        let (rate, delay) = rate_dependence::test(&survey);
+        let measured = BranchSet::new(data, options);
+        // What a clipped channel shows is not the output of the specimen.
+        let unclipped = doctor::without_clipped(&measured);
+        let survey = unclipped.as_ref().map(|data| BranchSet::new(data, options));
+        let survey = survey.as_ref().unwrap_or(&measured);
+        let cycles = cycles::cycles(survey);
+        let (rate, delay) = rate_dependence::test(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
-        let properties = vec![
-            static_hysteresis::test(&survey, || doctor::longest_lag(&survey)),
-            orientation::test(&survey),
+        let mut properties = vec![
+            static_hysteresis::test(survey, rate.verdict, || doctor::longest_lag(survey)),
+            orientation::test(survey),
             rate,
-            wiping_out::test(&survey, equal_speed),
-            congruency::test(&survey, equal_speed),
-            masing::test(&survey, equal_speed),
-            odd_symmetry::test(&survey),
-            saturation::test(&survey),
-            deterioration::test(&survey, &cycles),
-            loop_closure::test(&survey, &cycles),
+            wiping_out::test(survey, equal_speed),
+            congruency::test(survey, equal_speed),
+            masing::test(survey, equal_speed),
+            odd_symmetry::test(survey, equal_speed),
+            saturation::test(survey),
+            deterioration::test(survey, &cycles),
+            loop_closure::test(survey, &cycles),
         ];
+        let explanations =
+            artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
+                Property::WipingOut => wiping_out::test(corrected, equal_speed),
+                Property::Congruency => congruency::test(corrected, equal_speed),
+                Property::Masing => masing::test(corrected, equal_speed),
+                Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
+                _ => loop_closure::test(corrected, &cycles::cycles(corrected)),
+            });
         let turning_rows = survey.turning_rows();
         Ok(Self {
-            doctor: doctor::examine(&survey, &cycles, &properties, delay.as_ref()),
+            doctor: doctor::examine(&measured, &cycles, &properties, delay.as_ref(), &explanations),
             advice: advice::advise(&properties, delay.as_ref()),
             properties,
             delay,
-            output_noise: survey.output_noise,
-            input_noise: survey.input_noise,
+            output_noise: survey.output_noise.deviation(),
+            input_noise: survey.input_noise.deviation(),
             turning_points: turning_rows.iter().map(Vec::len).sum(),
             turning_rows,
             smallest_reversal: survey.smallest_reversal,

@@ -1,102 +1,171 @@
-//! How much a measured column jumps from row to row beyond what its course explains.
+//! Noise of a measured channel: how large it is, and how far the noise of one row is that of the next.
+//!
+//! It is a sum of parts: white noise, noise whose correlation decays with the distance of rows (filtered, amplifier and
+//! 1/f noise), and periodic noise (hum). The deviation of a mean, of a smoothed value or of an energy follows from
+//! all of them, theory.md (10.1).
 
-/// Median of the magnitude of a standard normal number.
-const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+mod differences;
+mod resolution;
 
-/// More differences than these tell the noise no better.
-const MOST: usize = 200_000;
+pub(crate) use differences::roughness;
+pub(crate) use resolution::resolution;
 
-/// Differences that are tried, each as coefficients: the course of the values is less in the higher ones, and
-/// corners of it are in fewer of the lower ones.
-const DIFFERENCES: [&[f64]; 3] =
-    [&[1.0, -2.0, 1.0], &[1.0, -3.0, 3.0, -1.0], &[1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]];
+/// How the noise of a part depends on that of the rows before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Correlation {
+    /// Not at all.
+    White,
+    /// By this factor from row to row.
+    Decaying(f64),
+    /// By a sine that turns by this angle from row to row.
+    Periodic(f64),
+}
 
-/// Standard deviation of white noise on values in a row, theory.md (10.1): from the median magnitude of
-/// differences of several orders, whichever gives least (the course of the values adds to each). In the unit
-/// of the values; 0 for fewer than 8 of them. Runs of rows are kept apart: no difference is taken across
-/// their ends.
-pub fn deviation<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
-    let rows: usize = runs.clone().map(<[f64]>::len).sum();
-    if rows < 8 {
-        return 0.0;
+impl Correlation {
+    /// Correlation of two rows at this distance.
+    fn at(self, distance: f64) -> f64 {
+        match self {
+            Self::White => f64::from(distance == 0.0),
+            Self::Decaying(factor) => factor.powf(distance),
+            Self::Periodic(angle) => (angle * distance).cos(),
+        }
     }
-    let stride = rows.div_ceil(MOST);
-    let of = |coefficients: &&[f64]| {
-        let difference =
-            |window: &[f64]| window.iter().zip(*coefficients).map(|(v, c)| v * c).sum::<f64>().abs();
-        let windows = runs.clone().flat_map(|run| run.windows(coefficients.len()).step_by(stride));
-        let mut differences: Vec<f64> = windows.map(difference).collect();
-        let norm = coefficients.iter().map(|c| c * c).sum::<f64>().sqrt();
-        median(&mut differences) / (MEDIAN_OF_NORMAL * norm)
-    };
-    let deviation = DIFFERENCES.iter().map(of).filter(|d| d.is_finite()).fold(f64::INFINITY, f64::min);
-    if deviation.is_finite() { deviation } else { 0.0 }
-}
 
-/// Median, of the upper two where there is no middle one; NaN for no value.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return f64::NAN;
+    /// Variance of a weighted sum of successive rows of variance 1.
+    fn of_sum(self, weights: &[f64]) -> f64 {
+        match self {
+            Self::White => weights.iter().map(|w| w * w).sum(),
+            Self::Decaying(factor) => {
+                let (mut before, mut sum) = (0.0, 0.0);
+                for w in weights {
+                    sum += w * (w + 2.0 * before);
+                    before = factor * (before + w);
+                }
+                sum.max(0.0)
+            }
+            Self::Periodic(angle) => {
+                let (sine, cosine) = angle.sin_cos();
+                // Σ w_k e^{ikθ}, by Horner from the last row on.
+                let turn =
+                    |(re, im): (f64, f64), w: &f64| (w + re * cosine - im * sine, re * sine + im * cosine);
+                let (re, im) = weights.iter().rev().fold((0.0, 0.0), turn);
+                re * re + im * im
+            }
+        }
     }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Largest magnitude that `count` independent standard normal numbers exceed with a chance of 1 in 100,000
-/// all together (Bonferroni).
-pub fn critical_value(count: usize) -> f64 {
-    upper_quantile(5e-6 / count.max(1) as f64)
+/// Noise of a channel.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Noise {
+    /// The variance of each part.
+    parts: Vec<(Correlation, f64)>,
+    /// Deviation of the noise if it were white, as neighbouring rows show it.
+    roughness: f64,
 }
 
-/// The same with a chance of 1 in 500: what is below is what noise does.
-pub fn doubtful_value(count: usize) -> f64 {
-    upper_quantile(1e-3 / count.max(1) as f64)
-}
+impl Noise {
+    /// White noise.
+    #[cfg(test)]
+    pub fn white(deviation: f64) -> Self {
+        let part = (Correlation::White, deviation * deviation);
+        Self { parts: if deviation > 0.0 { vec![part] } else { Vec::new() }, roughness: deviation }
+    }
 
-/// Magnitude that the largest of `count` independent standard normal numbers has, typically.
-pub fn typical_largest(count: usize) -> f64 {
-    upper_quantile(0.25 / count.max(1) as f64)
-}
+    /// The noise of a channel, from its values in runs of rows on which the course is smooth: between two turning
+    /// points. No difference is taken across their ends.
+    pub fn of<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Self {
+        differences::noise(runs)
+    }
 
-/// Value that a standard normal number exceeds with probability `p`, to three digits: rational
-/// approximation of Hastings (Abramowitz and Stegun 26.2.23).
-pub(crate) fn upper_quantile(p: f64) -> f64 {
-    let t = (-2.0 * p.ln()).sqrt();
-    let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
-    let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
-    t - above / below
+    /// Standard deviation of a value.
+    pub fn deviation(&self) -> f64 {
+        self.parts.iter().map(|part| part.1).sum::<f64>().sqrt()
+    }
+
+    /// Standard deviation of white noise that neighbouring rows would differ by as much.
+    pub fn roughness(&self) -> f64 {
+        self.roughness
+    }
+
+    /// True if rows are independent.
+    pub fn is_white(&self) -> bool {
+        self.parts.iter().all(|part| part.0 == Correlation::White)
+    }
+
+    /// Standard deviation of a weighted sum of successive rows.
+    pub fn of_sum(&self, weights: &[f64]) -> f64 {
+        self.parts
+            .iter()
+            .map(|(correlation, variance)| variance * correlation.of_sum(weights))
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Standard deviation of the mean of so many successive rows.
+    pub fn of_mean(&self, rows: usize) -> f64 {
+        let rows = rows.max(1);
+        self.of_sum(&vec![(rows as f64).recip(); rows])
+    }
+
+    /// The noise of the means of blocks of so many rows.
+    pub fn in_blocks(&self, rows: usize) -> Self {
+        if rows <= 1 {
+            return self.clone();
+        }
+        let mean = vec![(rows as f64).recip(); rows];
+        let part = |&(correlation, variance): &(Correlation, f64)| {
+            let own = correlation.of_sum(&mean);
+            let blocks = match correlation {
+                Correlation::White => Correlation::White,
+                Correlation::Periodic(angle) => Correlation::Periodic(angle * rows as f64),
+                Correlation::Decaying(factor) => {
+                    // What a block shares with the next: the variance of both together says it.
+                    let both = correlation.of_sum(&vec![(rows as f64).recip(); 2 * rows]);
+                    Correlation::Decaying((0.5 * both / own - 1.0).clamp(0.0, factor))
+                }
+            };
+            (blocks, variance * own)
+        };
+        Self {
+            parts: self.parts.iter().map(part).collect(),
+            roughness: self.roughness / (rows as f64).sqrt(),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{Rng, RngExt, SeedableRng};
+    use approx::assert_relative_eq;
 
-    /// A standard normal number, by Box and Muller.
-    fn normal(generator: &mut impl Rng) -> f64 {
-        let (u, v): (f64, f64) = (generator.random(), generator.random());
-        (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+    #[test]
+    fn the_deviation_of_a_sum_is_that_of_its_covariances() {
+        let weights = [0.3, -1.0, 0.2, 0.7, 0.05];
+        for correlation in [Correlation::White, Correlation::Decaying(0.8), Correlation::Periodic(0.7)] {
+            let pairs = (0..5).flat_map(|i: i32| (0..5).map(move |j: i32| (i, j)));
+            let expected: f64 = pairs
+                .map(|(i, j)| {
+                    weights[i as usize] * weights[j as usize] * correlation.at(f64::from((i - j).abs()))
+                })
+                .sum();
+            assert_relative_eq!(correlation.of_sum(&weights), expected, epsilon = 1e-12);
+        }
     }
 
     #[test]
-    fn noise_on_a_curve_is_found_within_its_sampling_error() {
-        let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
-        let values: Vec<f64> =
-            (0..4000).map(|k| (0.01 * k as f64).sin() + 0.02 * normal(&mut generator)).collect();
-        assert!((deviation(std::iter::once(values.as_slice())) / 0.02 - 1.0).abs() < 0.05);
+    fn the_mean_of_blocks_has_the_noise_of_the_mean_of_their_rows() {
+        let noise = Noise {
+            parts: vec![(Correlation::White, 1.0), (Correlation::Decaying(0.9), 2.0)],
+            roughness: 1.2,
+        };
+        assert_relative_eq!(noise.in_blocks(5).of_mean(4), noise.of_mean(20), max_relative = 0.05);
+        assert_relative_eq!(noise.in_blocks(5).deviation(), noise.of_mean(5), max_relative = 1e-12);
     }
 
     #[test]
-    fn a_smooth_curve_has_hardly_any() {
-        let values: Vec<f64> = (0..4000).map(|k| (0.01 * k as f64).sin()).collect();
-        assert!(deviation(std::iter::once(values.as_slice())) < 1e-6);
-        assert_eq!(deviation([[1.0, 2.0].as_slice()].into_iter()), 0.0);
-    }
-
-    #[test]
-    fn quantiles_are_those_of_the_tables() {
-        assert!((upper_quantile(0.025) - 1.95996).abs() < 5e-4);
-        assert!((upper_quantile(1e-6) - 4.75342).abs() < 5e-4);
-        assert!((critical_value(1) - 4.4172).abs() < 5e-4);
+    fn the_mean_of_white_noise_falls_with_the_root_of_its_rows() {
+        assert_relative_eq!(Noise::white(0.3).of_mean(9), 0.1, max_relative = 1e-12);
+        assert_eq!(Noise::default().of_mean(9), 0.0);
     }
 }

@@ -25,11 +25,13 @@ const PLACES: usize = 80;
 const EXPERIMENT: &str = "run a few equal loops over the whole range of the input, equally far to both sides";
 
 /// Tests for odd symmetry.
-pub(crate) fn test(survey: &BranchSet) -> Finding {
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let middle = 0.5 * (survey.input.0 + survey.input.1);
     let centre = if middle.abs() <= ABOUT_ZERO * survey.width() { 0.0 } else { middle };
     let half = (survey.input.1 - centre).min(centre - survey.input.0);
-    let pairs = pairs(survey, centre, half);
+    let mut pairs = pairs(survey, centre, half);
+    // Where the speed matters, so does that of the branch before: the memory may fade.
+    pairs.retain(|pair| !equal_speed || pair.iter().all(|branch| survey.similar_speed(branch, pair[0])));
     let step = pairs.len().div_ceil(MOST).max(1);
     let comparisons: Vec<Comparison> =
         pairs.into_iter().step_by(step).filter_map(|pair| compare(survey, centre, half, pair)).collect();

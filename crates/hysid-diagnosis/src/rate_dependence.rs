@@ -33,6 +33,12 @@ const CLEAR: f64 = 2.0;
 /// A delay that explains a difference leaves less than this share of it.
 const EXPLAINED: f64 = 0.4;
 
+/// A delay that leaves less than this share explains all of it; a rate-dependent law often looks like one.
+const ALL: f64 = 0.15;
+
+/// Branches of one speed whose mean square difference is so many times that of their noise change with time.
+const NOT_NOISE: f64 = 2.0;
+
 /// Branches shorter than this share of the input's range.
 const SHORTEST: f64 = 0.1;
 
@@ -60,6 +66,36 @@ impl Speeds<'_> {
         mean(&self.fast) / mean(&self.slow)
     }
 
+    /// By how much the output changes between the two sets if it goes on changing as it does within them, from branch
+    /// to branch: wear, drift, or a specimen that settles. Root mean square along the way, without the noise.
+    fn wear(&self, survey: &BranchSet) -> f64 {
+        let number = |branch: &Branch| {
+            survey.branches.partition_point(|b| (b.record, b.rows.start) < (branch.record, branch.rows.start))
+                as f64
+        };
+        let middle =
+            |set: &[&Branch]| set.iter().map(|branch| number(branch)).sum::<f64>() / set.len() as f64;
+        let apart = (middle(&self.fast) - middle(&self.slow)).abs();
+        let of_set = |set: &[&Branch]| -> Option<f64> {
+            let (latest, earliest) = (set.first()?, set.last()?);
+            let times = apart / (number(latest) - number(earliest)).max(1.0);
+            let (mut changes, mut noise, mut places) = (0.0, 0.0, 0.0);
+            for x in self.places() {
+                let (late, early) = (latest.curve.at(x)?, earliest.curve.at(x)?);
+                changes += (late.y - early.y).powi(2);
+                noise += late.deviation.powi(2) + early.deviation.powi(2);
+                places += 1.0;
+            }
+            let clear = changes > NOT_NOISE * noise;
+            Some(if clear { times * ((changes - noise) / places).sqrt() } else { 0.0 })
+        };
+        [&self.slow, &self.fast]
+            .into_iter()
+            .filter(|set| set.len() > 1)
+            .filter_map(|set| of_set(set))
+            .fold(0.0, f64::max)
+    }
+
     /// Inputs along the way.
     pub fn places(&self) -> impl Iterator<Item = f64> + use<'_> {
         (1..PLACES).map(|place| self.from + (self.to - self.from) * place as f64 / PLACES as f64)
@@ -83,11 +119,22 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     // The comparisons say whether the outputs agree.
     let agree = judgement.verdict;
     let delay = if agree == Verdict::No { delay::between_speeds(survey, &courses) } else { None };
+    // An output that leads its input is not late: it follows the speed.
     let agrees = |delay: &Delay| {
-        delay.remains <= EFFECT.max(0.7 * judgement.noise) && delay.remains < EXPLAINED * judgement.index
+        delay.time > 0.0
+            && delay.remains <= EFFECT.max(0.7 * judgement.noise)
+            && delay.remains < EXPLAINED * judgement.index
     };
     let explained = delay.filter(agrees);
+    let all_explained =
+        |delay: &Delay| delay.remains < ALL.max(0.7 * judgement.noise / judgement.index) * judgement.index;
     let statement = match (agree, explained) {
+        (Verdict::No, Some(delay)) if !all_explained(&delay) => format!(
+            "outputs differ by {percent:.1} % of their range at {ratio:.1} times the speed, and by {:.2} % when shifted \
+             by {:.4} in time: a delay, or a law that depends on the rate",
+            100.0 * delay.remains,
+            delay.time
+        ),
         (Verdict::No, Some(delay)) => format!(
             "outputs differ by {percent:.1} % of their range at {ratio:.1} times the speed, and agree within {:.2} % when \
              shifted by {:.4} in time: a delay, not a rate-dependent law",
@@ -106,6 +153,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
         (Verdict::NotTestable, _) => "the noise is too large to detect differences that matter".into(),
     };
     judgement.verdict = match (agree, explained) {
+        (Verdict::No, Some(delay)) if !all_explained(&delay) => Verdict::NotTestable,
         (Verdict::No, Some(_)) => Verdict::No,
         (Verdict::No, None) => Verdict::Yes,
         (Verdict::Yes, _) if ratio >= FAR_APART => Verdict::No,
@@ -190,10 +238,11 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     let height = survey.height();
     let apart = (square / places).sqrt();
     let own = (own[0].max(own[1]) / places).sqrt();
+    let wear = speeds.wear(survey);
     Some(Comparison {
         index: apart / height,
         deviation: (variance / places).sqrt() / height,
-        bend: (0.5 * CLEAR * own).max((bend / places).sqrt()) / height,
+        bend: (0.5 * CLEAR * own).max((bend / places).sqrt()).max(wear) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
     })

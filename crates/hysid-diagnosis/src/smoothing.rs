@@ -3,7 +3,10 @@
 //! How many rows may be taken together without bending the course is found from the data: as many as
 //! leave no more behind than the noise.
 
-use super::noise;
+use std::ops::Range;
+
+use super::noise::Noise;
+use super::significance;
 
 /// Rows taken together, the candidates; 1 leaves the data as they are.
 const WINDOWS: [usize; 7] = [1, 7, 11, 17, 25, 39, 65];
@@ -26,14 +29,17 @@ const AGREE: f64 = 2.0;
 /// Branches that the window is chosen from.
 const JUDGED: usize = 60;
 
-/// A value and how far it may be off for noise of deviation 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A row on the parabola through its neighbours.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Smoothed {
+    /// The output there.
     pub y: f64,
-    /// Deviation of `y` where the rows' noise has deviation 1.
+    /// Deviation of `y` for white noise of deviation 1.
     pub deviation: f64,
     /// How far a window half as long is off, beyond its noise.
     pub bend: f64,
+    /// The neighbours.
+    pub rows: Range<usize>,
 }
 
 /// A row of a branch.
@@ -47,11 +53,12 @@ pub(crate) struct Place {
     pub y: f64,
 }
 
-/// The rows of a branch, in the order of their stations, and the deviation of their noise.
+/// The rows of a branch, in the order of their stations, and their noise.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     pub places: Vec<Place>,
-    pub deviation: f64,
+    pub input_noise: Noise,
+    pub output_noise: Noise,
 }
 
 /// Each row on the parabola of least squares over the stations of the `window` nearest rows; a window at an
@@ -60,12 +67,20 @@ pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
     // An odd number of rows.
     let window = window.min((places.len() as f64 * LONGEST) as usize / 2 * 2 + 1);
     if window < SHORTEST {
-        return places.iter().map(|place| Smoothed { y: place.y, deviation: 1.0, bend: 0.0 }).collect();
+        let alone = |(row, place): (usize, &Place)| Smoothed {
+            y: place.y,
+            deviation: 1.0,
+            bend: 0.0,
+            rows: row..row + 1,
+        };
+        return places.iter().enumerate().map(alone).collect();
     }
     (0..places.len())
         .map(|row| {
             let first = row.saturating_sub(window / 2).min(places.len() - window);
-            parabola_at(&places[first..first + window], &places[row])
+            let rows = first..first + window;
+            let (y, deviation) = parabola_at(&places[rows.clone()], &places[row]);
+            Smoothed { y, deviation, bend: 0.0, rows }
         })
         .collect()
 }
@@ -75,65 +90,89 @@ pub(crate) fn smooth(places: &[Place], window: usize) -> Vec<Smoothed> {
 pub(crate) fn smooth_where_straight(points: &Points, window: usize) -> Vec<Smoothed> {
     let lengths = [window / 4, window / 2, window].map(|length| length / 2 * 2 + 1);
     let [mut chosen, half, whole] = lengths.map(|length| smooth(&points.places, length));
-    let agree = |a: &Smoothed, b: &Smoothed| (a.y - b.y).abs() <= AGREE * points.deviation * a.deviation;
+    // What is taken for white noise is smoothed out, no more: coloured noise stays, and is allowed for.
+    let noise = points.output_noise.roughness();
+    let agree = |a: &Smoothed, b: &Smoothed| (a.y - b.y).abs() <= AGREE * noise * a.deviation;
     for (row, chosen) in chosen.iter_mut().enumerate() {
         for longer in [&half[row], &whole[row]] {
             if !agree(chosen, longer) {
                 break;
             }
-            let apart = (longer.y - chosen.y).abs() - 0.5 * points.deviation * chosen.deviation;
-            *chosen = Smoothed { bend: apart.max(0.0), ..*longer };
+            let apart = (longer.y - chosen.y).abs() - 0.5 * noise * chosen.deviation;
+            *chosen = Smoothed { bend: apart.max(0.0), ..longer.clone() };
         }
     }
     chosen
 }
 
-/// Value of the parabola of least squares at a row; the mean where the stations have no extent.
-fn parabola_at(places: &[Place], at: &Place) -> Smoothed {
-    let n = places.len() as f64;
-    let extent = places[places.len() - 1].station - places[0].station;
-    if extent <= 1e-12 * at.station.abs() || extent == 0.0 {
-        let mean = places.iter().map(|place| place.y).sum::<f64>() / n;
-        return Smoothed { y: mean, deviation: n.sqrt().recip(), bend: 0.0 };
+/// Value of the parabola of least squares at a row, and its deviation for white noise of deviation 1.
+fn parabola_at(places: &[Place], at: &Place) -> (f64, f64) {
+    let parabola = Parabola::over(places, at.station);
+    let above: f64 = places.iter().map(|place| parabola.weight(place) * (place.y - at.y)).sum();
+    (at.y + above, parabola.deviation)
+}
+
+/// How the rows around a station add up to the value there of the parabola of least squares through them.
+pub(crate) struct Parabola {
+    station: f64,
+    /// Stations within this distance are the same.
+    same: f64,
+    scale: f64,
+    /// The weight of a row at the scaled distance `u` is `c_0 + c_1 u + c_2 u²`; `None` where two stations or one do not
+    /// determine a parabola: then the rows at the station itself have equal weights.
+    coefficients: Option<[f64; 3]>,
+    equal: f64,
+    deviation: f64,
+}
+
+impl Parabola {
+    pub fn over(places: &[Place], station: f64) -> Self {
+        let n = places.len() as f64;
+        let same = 1e-12 * station.abs();
+        let extent = places[places.len() - 1].station - places[0].station;
+        let scale = extent.recip();
+        let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
+        for place in places {
+            let u = (place.station - station) * scale;
+            let square = u * u;
+            s1 += u;
+            s2 += square;
+            s3 += square * u;
+            s4 += square * square;
+        }
+        // First row of the inverse of the normal matrix, by cofactors.
+        let cofactors = [s2 * s4 - s3 * s3, s2 * s3 - s1 * s4, s1 * s3 - s2 * s2];
+        let determinant = n * cofactors[0] + s1 * cofactors[1] + s2 * cofactors[2];
+        if extent > same && determinant > 1e-9 * n * s2 * s4 {
+            let coefficients = cofactors.map(|c| c / determinant);
+            let deviation = coefficients[0].max(0.0).sqrt();
+            return Self { station, same, scale, coefficients: Some(coefficients), equal: 0.0, deviation };
+        }
+        let here =
+            places.iter().filter(|place| (place.station - station).abs() <= same).count().max(1) as f64;
+        Self { station, same, scale, coefficients: None, equal: here.recip(), deviation: here.sqrt().recip() }
     }
-    let scale = extent.recip();
-    let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
-    let (mut t0, mut t1, mut t2) = (0.0, 0.0, 0.0);
-    for place in places {
-        let u = (place.station - at.station) * scale;
-        let v = place.y - at.y;
-        let square = u * u;
-        s1 += u;
-        s2 += square;
-        s3 += square * u;
-        s4 += square * square;
-        t0 += v;
-        t1 += v * u;
-        t2 += v * square;
-    }
-    // First row of the inverse of the normal matrix, by cofactors.
-    let c0 = s2 * s4 - s3 * s3;
-    let c1 = s2 * s3 - s1 * s4;
-    let c2 = s1 * s3 - s2 * s2;
-    let determinant = n * c0 + s1 * c1 + s2 * c2;
-    if determinant <= 1e-9 * n * s2 * s4 {
-        // Two stations: a mean of what stands at this one.
-        let here: Vec<f64> =
-            places.iter().filter(|place| place.station == at.station).map(|place| place.y).collect();
-        let n = here.len().max(1) as f64;
-        return Smoothed { y: here.iter().sum::<f64>() / n, deviation: n.sqrt().recip(), bend: 0.0 };
-    }
-    Smoothed {
-        y: at.y + (c0 * t0 + c1 * t1 + c2 * t2) / determinant,
-        deviation: (c0 / determinant).max(0.0).sqrt(),
-        bend: 0.0,
+
+    /// The share of a row in the value.
+    pub fn weight(&self, place: &Place) -> f64 {
+        let distance = place.station - self.station;
+        match self.coefficients {
+            Some([c0, c1, c2]) => {
+                let u = distance * self.scale;
+                c0 + u * (c1 + u * c2)
+            }
+            None if distance.abs() <= self.same => self.equal,
+            None => 0.0,
+        }
     }
 }
 
 /// The longest window that leaves no more than the noise behind.
 pub(crate) fn choose_window(branches: &[Points]) -> usize {
-    let judged: Vec<&Points> =
-        branches.iter().filter(|branch| branch.places.len() >= 7 && branch.deviation > 0.0).collect();
+    let judged: Vec<&Points> = branches
+        .iter()
+        .filter(|branch| branch.places.len() >= 7 && branch.output_noise.roughness() > 0.0)
+        .collect();
     if judged.is_empty() {
         return 1;
     }
@@ -141,7 +180,8 @@ pub(crate) fn choose_window(branches: &[Points]) -> usize {
     let leaves_only_noise = |window: &&usize| {
         let (mut remainder, mut expected) = (0.0, 0.0);
         let mut parts = Vec::new();
-        for Points { places, deviation } in &judged {
+        for Points { places, output_noise, .. } in &judged {
+            let variance = output_noise.roughness().powi(2);
             let smoothed = smooth(places, **window);
             let tenth = places.len().div_ceil(10);
             for (rows, values) in places.chunks(tenth).zip(smoothed.chunks(tenth)) {
@@ -149,9 +189,9 @@ pub(crate) fn choose_window(branches: &[Points]) -> usize {
                 let left: f64 = pairs().map(|(place, value)| (place.y - value.y).powi(2)).sum();
                 let free: f64 = pairs().map(|(_, value)| 1.0 - value.deviation.powi(2)).sum();
                 remainder += left;
-                expected += free * deviation * deviation;
+                expected += free * variance;
                 if free > 2.0 {
-                    parts.push(left / (free * deviation * deviation));
+                    parts.push(left / (free * variance));
                 }
             }
         }
@@ -162,7 +202,7 @@ pub(crate) fn choose_window(branches: &[Points]) -> usize {
         };
         // A tenth with few rows has much or little by chance.
         let rows = judged.iter().map(|points| points.places.len() / 10).min().unwrap_or(1).max(1) as f64;
-        let by_chance = 1.0 + noise::upper_quantile(0.1) * (2.0 / rows).sqrt();
+        let by_chance = 1.0 + significance::upper_quantile(0.1) * (2.0 / rows).sqrt();
         remainder <= ACCEPTED * expected && part <= ACCEPTED_IN_A_PART.max(1.3 * by_chance)
     };
     WINDOWS[1..].iter().rev().find(leaves_only_noise).copied().unwrap_or(1)

@@ -1,6 +1,7 @@
 //! How far a branch and the one after it stand open, whether or not they close a loop.
 
 use crate::branch::{Branch, BranchSet};
+use crate::noise::Noise;
 use crate::{PictureCurve, Piece};
 
 /// Places along the inputs that both branches go through, at most.
@@ -44,12 +45,12 @@ impl Opening {
 }
 
 /// The openings between all branches that follow each other, in their order.
-pub(crate) fn openings(branches: &[Branch], output_noise: f64) -> Vec<Opening> {
+pub(crate) fn openings(branches: &[Branch], output_noise: &Noise) -> Vec<Opening> {
     (1..branches.len()).filter_map(|next| opening(branches, next - 1, output_noise)).collect()
 }
 
 /// The opening between a branch and the next.
-fn opening(branches: &[Branch], branch: usize, output_noise: f64) -> Option<Opening> {
+fn opening(branches: &[Branch], branch: usize, output_noise: &Noise) -> Option<Opening> {
     let (out, back) = (&branches[branch], &branches[branch + 1]);
     if out.record != back.record || out.curve.is_empty() || back.curve.is_empty() {
         return None;
@@ -68,12 +69,12 @@ fn opening(branches: &[Branch], branch: usize, output_noise: f64) -> Option<Open
         low = low.min(a).min(b);
         high = high.max(a).max(b);
     }
-    let rows = out.rows.len().min(back.rows.len()) as f64;
+    let rows = out.rows.len().min(back.rows.len());
     Some(Opening {
         branch,
         signed: signed * step,
         area: area * step,
-        deviation: output_noise * (to - from) * (2.0 / rows).sqrt(),
+        deviation: output_noise.of_mean(rows) * (to - from) * 2.0_f64.sqrt(),
         swing: to - from,
         height: high - low,
         speed: out.speed.zip(back.speed).map(|(a, b)| 0.5 * (a + b)),

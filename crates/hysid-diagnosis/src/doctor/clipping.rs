@@ -2,6 +2,8 @@
 //! law is smooth, and leaves its extreme as soon as the input turns; a clipped channel repeats one value exactly, on
 //! both sides of the turning point, and comes to it abruptly.
 
+use std::ops::Range;
+
 use super::{DataIssue, DataIssueKind, Severity, Units, piece};
 use crate::Piece;
 use crate::branch::BranchSet;
@@ -21,6 +23,9 @@ const RESOLUTIONS: f64 = 20.0;
 
 /// Rows over which that slope is taken.
 const BEFORE: usize = 4;
+
+/// Runs that are shown.
+const SHOWN: usize = 3;
 
 /// An output that goes there and back while the input stands, as a share of its range.
 const EXCURSION: f64 = 0.02;
@@ -42,9 +47,16 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let mut found = Vec::new();
     for of_output in [true, false] {
         for sign in [1.0, -1.0] {
-            let Some((rows, value, count)) = clipped(survey, of_output, sign) else {
+            let Some(Clipped { runs, value }) = clipped(survey, of_output, sign) else {
                 continue;
             };
+            let count: usize = runs.iter().map(|run| run.rows.len()).sum();
+            let records = survey.data.records();
+            let rows: Vec<Piece> = runs
+                .iter()
+                .take(SHOWN)
+                .map(|run| piece(&records[run.record], run.rows.start, run.rows.end - 1))
+                .collect();
             let (kind, name, other, shown) = match of_output {
                 true => (DataIssueKind::OutputClipped, "output", "input", units.output(value)),
                 false => (DataIssueKind::InputClipped, "input", "output", units.input(value)),
@@ -63,14 +75,42 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     found
 }
 
-/// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped, the value, and the
-/// number of rows.
-fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<(Vec<Piece>, f64, usize)> {
+/// The data without the outputs that are clipped; `None` where none are.
+pub(super) fn blanked(survey: &BranchSet) -> Option<Dataset> {
+    let found: Vec<Clipped> =
+        [1.0, -1.0].into_iter().filter_map(|sign| clipped(survey, true, sign)).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let is_clipped = |number: usize, row: usize| {
+        found
+            .iter()
+            .flat_map(|of_end| &of_end.runs)
+            .any(|run| run.record == number && run.rows.contains(&row))
+    };
+    let records = survey.data.records().iter().enumerate();
+    let records = records.map(|(number, record)| record.clone().scored_where(|row| !is_clipped(number, row)));
+    Dataset::new(survey.data.names().clone(), records.collect()).ok()
+}
+
+/// Rows of a record at the end of what was measured.
+struct Run {
+    record: usize,
+    rows: Range<usize>,
+}
+
+/// What is clipped at one end of a channel.
+struct Clipped {
+    runs: Vec<Run>,
+    value: f64,
+}
+
+/// Runs of rows at the largest value of a channel (or the smallest, for sign -1) that are clipped.
+fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<Clipped> {
     let range = if of_output { survey.output } else { survey.input };
     let extreme = if sign > 0.0 { range.1 } else { range.0 };
     let resolution = if of_output { resolution(survey) } else { 0.0 };
-    let mut pieces = Vec::new();
-    let mut count = 0;
+    let mut runs = Vec::new();
     for (number, record) in survey.data.records().iter().enumerate() {
         let (x, y) = (&record.inputs()[0], record.output());
         let column = if of_output { y } else { x };
@@ -84,14 +124,12 @@ fn clipped(survey: &BranchSet, of_output: bool, sign: f64) -> Option<(Vec<Piece>
                     false => there_and_back(survey, y, (row, last)),
                 };
             if is_clipped {
-                pieces.push(piece(&survey.data.records()[number], row, last));
-                count += length;
+                runs.push(Run { record: number, rows: row..last + 1 });
             }
             row += length.max(1);
         }
     }
-    pieces.truncate(3);
-    (count > 0).then_some((pieces, extreme, count))
+    (!runs.is_empty()).then_some(Clipped { runs, value: extreme })
 }
 
 /// The smallest difference of two outputs.
@@ -131,6 +169,6 @@ fn output_is_clipped(
 /// True if the output goes somewhere and comes back, which no creep does.
 fn there_and_back(survey: &BranchSet, y: &[f64], (first, last): (usize, usize)) -> bool {
     let ends = (y[first].min(y[last]), y[first].max(y[last]));
-    let limit = EXCURSION * survey.height() + 5.0 * survey.output_noise;
+    let limit = EXCURSION * survey.height() + 5.0 * survey.output_noise.deviation();
     y[first..=last].iter().any(|value| *value > ends.1 + limit || *value < ends.0 - limit)
 }

@@ -2,7 +2,7 @@
 
 use super::{DataIssue, DataIssueKind, Severity};
 use crate::branch::{Branch, BranchSet};
-use crate::noise;
+use crate::significance;
 
 /// Share of the way of the input on which the output goes the other way.
 const THROUGHOUT: f64 = 0.95;
@@ -61,7 +61,7 @@ fn swapped(survey: &BranchSet) -> Option<DataIssue> {
                 departure(column, branch)
             })
             .collect();
-        (left.len() >= 4).then(|| noise::median(&mut left))
+        (left.len() >= 4).then(|| significance::median(&mut left))
     };
     let (input, output) = (plain(false)?, plain(true)?);
     (output < COMMAND && input > ANSWER).then(|| {

@@ -30,7 +30,7 @@ struct Hold {
 
 pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let mut holds: Vec<Hold> = Vec::new();
-    let still = (STILL * survey.width()).max(2.5 * survey.input_noise);
+    let still = (STILL * survey.width()).max(2.5 * survey.input_noise.deviation());
     for (number, record) in survey.data.records().iter().enumerate() {
         let x = &record.inputs()[0];
         let mut first = 0;
@@ -85,13 +85,13 @@ fn creeping(survey: &BranchSet, record: usize, rows: (usize, usize)) -> Option<H
     let (x, y) = (quarters(&data.inputs()[0]), quarters(data.output()));
     let movement = y[3] - y[0];
     let of_mean = 4.0 * (8.0 / count as f64).sqrt();
-    let input_moves = (x[3] - x[0]).abs() + of_mean * survey.input_noise;
+    let input_moves = (x[3] - x[0]).abs() + of_mean * survey.input_noise.deviation();
     let explained = STEEPEST * input_moves / survey.width() * survey.height();
-    let least = (EFFECT * survey.height()).max(of_mean * survey.output_noise).max(explained);
+    let least = (EFFECT * survey.height()).max(of_mean * survey.output_noise.deviation()).max(explained);
     let steps = [y[1] - y[0], y[2] - y[1], y[3] - y[2]];
     let goes_on = steps.iter().all(|step| {
         let share = step / movement;
-        share > -0.5 * of_mean * survey.output_noise / movement.abs() && share <= GOES_ON
+        share > -0.5 * of_mean * survey.output_noise.deviation() / movement.abs() && share <= GOES_ON
     });
     (movement.abs() > least && goes_on).then_some(Hold { record, rows, movement })
 }

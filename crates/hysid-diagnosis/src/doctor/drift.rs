@@ -4,7 +4,7 @@
 use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::branch::BranchSet;
 use crate::cycles::repeated;
-use crate::noise;
+use crate::significance;
 use crate::{Cycle, Piece};
 
 /// A drift that matters, over all cycles of a kind: share of the range of the output.
@@ -33,7 +33,7 @@ pub(super) fn complaints(survey: &BranchSet, cycles: &[Cycle]) -> Vec<DataIssue>
     let groups = repeated(survey, cycles);
     let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(group)).collect();
     // A tip is an extreme of many rows: its noise is a fraction of theirs.
-    let limit = (EFFECT * survey.height()).max(3.0 * survey.output_noise);
+    let limit = (EFFECT * survey.height()).max(3.0 * survey.output_noise.deviation());
     let drifting = |trend: &&Trend| trend.drift.abs() > limit;
     let count = |trend: &Trend| trend.cycles.len();
     let Some(longest) = trends.iter().filter(drifting).max_by_key(|trend| count(trend)) else {
@@ -90,5 +90,5 @@ fn movement(values: &[f64]) -> Option<f64> {
     let (size, pairs) = (n as f64, slopes.len() as f64);
     let deviation = (size * (size - 1.0) * (2.0 * size + 5.0) / 18.0).sqrt();
     let steady = rises.abs() == pairs || rises.abs() > STEADY * deviation;
-    Some(if steady { noise::median(&mut slopes) * (size - 1.0) } else { 0.0 })
+    Some(if steady { significance::median(&mut slopes) * (size - 1.0) } else { 0.0 })
 }

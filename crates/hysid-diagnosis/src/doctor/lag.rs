@@ -302,7 +302,8 @@ fn at_one_speed(survey: &BranchSet, turns: &[Turn]) -> Option<Lag> {
     let (mut lag, share) = found.get(chosen)?.clone();
     let other = found.get(beside).map_or(lag.time, |(other, _)| other.time);
     lag.deviation = lag.deviation.hypot(0.5 * (lag.time - other));
-    lag.margin = Turns::new(&turns, share, (lag.time, lag.time)).margin(lag.time, survey.output_noise);
+    lag.margin =
+        Turns::new(&turns, share, (lag.time, lag.time)).margin(lag.time, survey.output_noise.roughness());
     Some(lag)
 }
 

@@ -2,7 +2,7 @@
 
 use super::{DataIssue, DataIssueKind, Severity, Units, piece};
 use crate::branch::BranchSet;
-use crate::noise;
+use crate::significance;
 
 /// Share of rows that repeat the row before, where it matters.
 const REPEATED: f64 = 0.05;
@@ -139,7 +139,7 @@ fn coarse_resolution(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
         return None;
     }
     let gaps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let step = noise::median(&mut gaps.clone());
+    let step = significance::median(&mut gaps.clone());
     let off_the_grid = |gap: &&f64| (*gap / step - (*gap / step).round()).abs() > 0.02 || **gap < 0.5 * step;
     if gaps.iter().any(|gap| off_the_grid(&gap)) || step < COARSE * range {
         return None;

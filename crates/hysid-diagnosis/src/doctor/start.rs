@@ -46,7 +46,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
         .collect();
     let low = readings.iter().map(|(_, y)| *y).fold(f64::INFINITY, f64::min);
     let high = readings.iter().map(|(_, y)| *y).fold(f64::NEG_INFINITY, f64::max);
-    let margin = OUTSIDE * survey.height() + 4.0 * survey.output_noise;
+    let margin = OUTSIDE * survey.height() + 4.0 * survey.output_noise.deviation();
     if readings.len() >= 2 && (y > high + margin || y < low - margin) {
         return complaint(
             DataIssueKind::NotVirgin,
@@ -77,7 +77,7 @@ fn beginning(survey: &BranchSet, number: usize) -> Option<DataIssue> {
         (!of_way.is_empty()).then(|| of_way.iter().sum::<f64>() / of_way.len() as f64)
     };
     let (up, down) = (mean(true)?, mean(false)?);
-    let open = (up - down).abs() > OPEN * survey.height() + 4.0 * survey.output_noise;
+    let open = (up - down).abs() > OPEN * survey.height() + 4.0 * survey.output_noise.deviation();
     let side = (y - up).abs().min((y - down).abs()) / (up - down).abs();
     if both_ways && open && side < SIDE {
         return complaint(

@@ -39,7 +39,7 @@ pub(crate) fn between_speeds(survey: &BranchSet, courses: &[Speeds]) -> Option<D
     let time = lowest(&|delay| squares(delay).sum(), 0.0, LONGEST * shortest, TRIED);
     let worst = squares(time).fold(0.0, f64::max);
     // Rows are taken with their noise, which no delay takes away.
-    let remains = (worst - survey.output_noise.powi(2)).max(0.0).sqrt();
+    let remains = (worst - survey.output_noise.deviation().powi(2)).max(0.0).sqrt();
     Some(Delay { time, remains: remains / survey.height() })
 }
 

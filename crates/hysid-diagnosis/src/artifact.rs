@@ -1,0 +1,158 @@
+//! Artifacts of a measurement that look like a property of the specimen: an output that comes a little late, or that
+//! drifts. A "no" that either of them explains is withheld, theory.md (10.25).
+
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::significant::Significant;
+
+use super::branch::BranchSet;
+use super::{DiagnosisOptions, Finding, Property, Verdict};
+
+/// Properties that artifacts make "no".
+const AFFECTED: [Property; 5] = [
+    Property::WipingOut,
+    Property::Congruency,
+    Property::Masing,
+    Property::OddSymmetry,
+    Property::LoopClosure,
+];
+
+/// Rows by which the output is taken earlier or later.
+const LAGS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+
+/// Drifts of the output over a record, as shares of its range.
+const DRIFTS: [f64; 10] = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.06, 0.08];
+
+/// A lag of so many rows is at most this share of the rows of a typical branch.
+const LONGEST_LAG: f64 = 0.1;
+
+/// Something in the measurement that is not the specimen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Artifact {
+    /// The output comes so many rows after the input; before it, if negative.
+    Lag(f64),
+    /// The output moves steadily by this share of its range over each record.
+    Drift(f64),
+}
+
+/// An artifact, and the properties that the record would have without it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Explanation {
+    pub artifact: Artifact,
+    pub properties: Vec<Property>,
+}
+
+impl Artifact {
+    /// Those that are tried, the smallest first.
+    fn candidates(survey: &BranchSet) -> Vec<Self> {
+        let mut rows: Vec<usize> = survey.branches.iter().map(|branch| branch.rows.len()).collect();
+        rows.sort_unstable();
+        let typical = rows.get(rows.len() / 2).copied().unwrap_or(0) as f64;
+        let lags = LAGS.into_iter().filter(|lag| *lag <= LONGEST_LAG * typical);
+        let both_ways = |size: f64| [size, -size];
+        let lags = lags.flat_map(both_ways).map(Self::Lag);
+        lags.chain(DRIFTS.into_iter().flat_map(both_ways).map(Self::Drift)).collect()
+    }
+
+    /// The data as they would be without it; `None` where a record cannot be corrected.
+    fn removed_from(self, data: &Dataset, height: f64) -> Option<Dataset> {
+        let corrected = |record: &Record| match self {
+            Self::Lag(rows) => later_inputs(record, rows),
+            Self::Drift(share) => {
+                let count = record.len() as f64;
+                let moved = |(row, y): (usize, &f64)| y - share * height * row as f64 / count;
+                record.clone().with_output(record.output().iter().enumerate().map(moved).collect()).ok()
+            }
+        };
+        let records: Option<Vec<Record>> = data.records().iter().map(corrected).collect();
+        Dataset::new(data.names().clone(), records?).ok()
+    }
+
+    /// In words.
+    pub fn in_words(self, data: &Dataset) -> String {
+        match self {
+            Self::Lag(rows) => {
+                let time = data.records()[0]
+                    .time()
+                    .and_then(|time| Some((time.last()? - time.first()?) / (time.len() - 1) as f64));
+                let shown = match time {
+                    Some(step) => format!("{:.2}", Significant(step * rows.abs())),
+                    None => format!("{} rows", rows.abs()),
+                };
+                format!("a delay of the {} of {shown}", if rows > 0.0 { "output" } else { "input" })
+            }
+            Self::Drift(share) => {
+                format!("a drift of the output of {:.1} % of its range over a record", 100.0 * share.abs())
+            }
+        }
+    }
+}
+
+/// The record with its outputs as many rows earlier: the inputs are taken later, because they are the smoother ones.
+fn later_inputs(record: &Record, rows: f64) -> Option<Record> {
+    let count = record.len();
+    let shifted = |column: &[f64]| -> Vec<f64> {
+        let at = |row: usize| {
+            let place = (row as f64 - rows).clamp(0.0, (count - 1) as f64);
+            let below = (place as usize).min(count.saturating_sub(2));
+            let share = place - below as f64;
+            column[below] + share * (column.get(below + 1).unwrap_or(&column[below]) - column[below])
+        };
+        (0..count).map(at).collect()
+    };
+    // Rows whose input would lie before the beginning or after the end say nothing.
+    let lost = rows.abs().ceil() as usize;
+    let kept = |row: usize| if rows > 0.0 { row >= lost } else { row + lost < count };
+    let output = record.output().iter().enumerate().map(|(row, y)| if kept(row) { *y } else { f64::NAN });
+    let inputs = record.inputs().iter().map(|column| shifted(column)).collect();
+    let moved = Record::new(record.name(), inputs, output.collect()).ok()?;
+    match record.time() {
+        Some(time) => moved.with_time(time.to_vec()).ok(),
+        None => Some(moved),
+    }
+}
+
+/// Withholds each "no" that an artifact explains, and says which. `test` gives the findings on the properties of a data
+/// set.
+pub(crate) fn withhold(
+    survey: &BranchSet,
+    options: &DiagnosisOptions,
+    findings: &mut [Finding],
+    test: impl Fn(&BranchSet, Property) -> Finding,
+) -> Vec<Explanation> {
+    let mut open: Vec<Property> = findings
+        .iter()
+        .filter(|finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property))
+        .map(|finding| finding.property)
+        .collect();
+    let mut explanations: Vec<Explanation> = Vec::new();
+    for artifact in Artifact::candidates(survey) {
+        if open.is_empty() {
+            break;
+        }
+        let Some(data) = artifact.removed_from(survey.data, survey.height()) else {
+            continue;
+        };
+        let corrected = BranchSet::new(&data, options);
+        let properties: Vec<Property> = open
+            .iter()
+            .copied()
+            .filter(|&property| test(&corrected, property).verdict == Verdict::Yes)
+            .collect();
+        open.retain(|property| !properties.contains(property));
+        if !properties.is_empty() {
+            explanations.push(Explanation { artifact, properties });
+        }
+    }
+    for explanation in &explanations {
+        let words = explanation.artifact.in_words(survey.data);
+        for finding in
+            findings.iter_mut().filter(|finding| explanation.properties.contains(&finding.property))
+        {
+            finding.verdict = Verdict::NotTestable;
+            finding.statement = format!("{}, which {words} would explain", finding.statement);
+            finding.experiment =
+                Some("remove the artifact, or show that there is none, and diagnose again".into());
+        }
+    }
+    explanations
+}

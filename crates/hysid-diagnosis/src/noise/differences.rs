@@ -1,0 +1,293 @@
+//! Noise from differences of a channel at several orders and distances, theory.md (10.1). The course of the values adds
+//! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, hum with its
+//! period: the shares of all follow from how the differences grow.
+
+use std::f64::consts::TAU;
+
+use super::{Correlation, Noise};
+use crate::significance::median;
+
+/// Median of the magnitude of a standard normal number.
+const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+
+/// More differences than these tell the noise no better.
+const MOST: usize = 100_000;
+
+/// Orders of the differences: the course of the values is less in the higher ones, and corners of it are in fewer of the
+/// lower ones.
+const ORDERS: [usize; 4] = [2, 3, 4, 6];
+
+/// Distances of the rows of a difference.
+const DISTANCES: [usize; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
+
+/// A difference spans at most this share of a run.
+const SPAN: f64 = 0.125;
+
+/// Correlations from row to row that are tried, where they decay within a share of a run.
+const DECAYS: [f64; 6] = [0.6, 0.8, 0.9, 0.95, 0.98, 0.99];
+const DECAYED: f64 = 1.0 / 6.0;
+
+/// Periods of hum: from the shortest on by this factor, up to a share of a run.
+const SHORTEST_PERIOD: f64 = 4.0;
+const NEXT_PERIOD: f64 = 1.15;
+const LONGEST_PERIOD: f64 = 0.2;
+
+/// Rounds in which the shares of the parts are found.
+const ROUNDS: usize = 2000;
+
+/// Root mean square of the relative errors that white noise is allowed, times the square root of the number of rows:
+/// three times the relative deviation of a variance that is taken from a median.
+const SAMPLING: f64 = 7.0;
+
+/// Power of the distance with which differences grow on a line with many kinks.
+const KINKS: i32 = 3;
+
+/// Parts below this share of the variance are left out.
+const SMALLEST: f64 = 1e-3;
+
+/// The variance of a normalised difference.
+struct Difference {
+    order: usize,
+    distance: usize,
+    variance: f64,
+}
+
+/// Fewest values that tell anything about their noise.
+const FEWEST: usize = 8;
+
+/// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
+pub(crate) fn roughness<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+    let rows: usize = runs.clone().map(<[f64]>::len).sum();
+    if rows < FEWEST { 0.0 } else { least_of_neighbours(&differences(runs, rows, 0)) }
+}
+
+/// The course of the values adds to the differences of all orders: the least tells most of the noise.
+fn least_of_neighbours(differences: &[Difference]) -> f64 {
+    let neighbours = differences.iter().filter(|difference| difference.distance == 1);
+    let least = neighbours.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least.sqrt() } else { 0.0 }
+}
+
+/// The noise of a channel; none for hardly any values.
+pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise {
+    let rows: usize = runs.clone().map(<[f64]>::len).sum();
+    if rows < FEWEST {
+        return Noise::default();
+    }
+    let length = typical_length(runs.clone(), rows);
+    let differences = differences(runs, rows, length);
+    let roughness = least_of_neighbours(&differences);
+    if roughness == 0.0 {
+        return Noise::default();
+    }
+    // White noise is believed as long as it explains the differences to within their sampling error.
+    let white = vec![Correlation::White];
+    let (mut shares, misfit) = shares(&differences, &white);
+    let mut correlations = white;
+    if misfit > SAMPLING / (rows as f64).sqrt() {
+        correlations = self::correlations(length);
+        shares = self::shares(&differences, &correlations).0;
+    }
+    let total: f64 = shares.iter().sum();
+    let parts: Vec<_> =
+        correlations.into_iter().zip(shares).filter(|part| part.1 > SMALLEST * total).collect();
+    Noise { parts, roughness }
+}
+
+/// Half of all rows are in runs at least so long.
+fn typical_length<'a>(runs: impl Iterator<Item = &'a [f64]>, rows: usize) -> usize {
+    let mut lengths: Vec<usize> = runs.map(<[f64]>::len).collect();
+    lengths.sort_unstable_by(|a, b| b.cmp(a));
+    let mut before = 0;
+    let passes_half = |length: &&usize| {
+        before += **length;
+        2 * before >= rows
+    };
+    lengths.iter().find(passes_half).copied().unwrap_or(0)
+}
+
+/// Correlations that runs of a length can show.
+fn correlations(length: usize) -> Vec<Correlation> {
+    let length = length as f64;
+    let longest_decay = (DECAYED * length).max(3.0);
+    let decays = DECAYS.iter().copied().filter(|factor| (1.0 - factor).recip() <= longest_decay);
+    let periods = std::iter::successors(Some(SHORTEST_PERIOD), |period| Some(period * NEXT_PERIOD))
+        .take_while(|period| *period <= LONGEST_PERIOD * length);
+    let mut correlations = vec![Correlation::White];
+    correlations.extend(decays.map(Correlation::Decaying));
+    correlations.extend(periods.map(|period| Correlation::Periodic(TAU / period)));
+    correlations
+}
+
+/// Coefficients of a difference, of unit length.
+fn coefficients(order: usize) -> Vec<f64> {
+    let mut binomial = vec![1.0];
+    for _ in 0..order {
+        let shifted = std::iter::once(0.0).chain(binomial.iter().copied());
+        let padded = binomial.iter().copied().chain(std::iter::once(0.0));
+        binomial = padded.zip(shifted).map(|(a, b)| a - b).collect();
+    }
+    let norm = binomial.iter().map(|c| c * c).sum::<f64>().sqrt();
+    binomial.iter().map(|c| c / norm).collect()
+}
+
+fn differences<'a>(
+    runs: impl Iterator<Item = &'a [f64]> + Clone,
+    rows: usize,
+    length: usize,
+) -> Vec<Difference> {
+    let stride = rows.div_ceil(MOST);
+    let longest = SPAN * length as f64;
+    let pairs = ORDERS.iter().flat_map(|&order| DISTANCES.map(|distance| (order, distance)));
+    let measured = pairs.filter(|(order, distance)| *distance == 1 || (order * distance) as f64 <= longest);
+    let variance = |(order, distance): (usize, usize)| {
+        let coefficients = coefficients(order);
+        let span = order * distance;
+        let at = |run: &[f64], row: usize| {
+            coefficients.iter().enumerate().map(|(k, c)| c * run[row + k * distance]).sum::<f64>().abs()
+        };
+        let mut sizes: Vec<f64> = Vec::with_capacity(rows / stride);
+        for run in runs.clone() {
+            sizes.extend((0..run.len().saturating_sub(span)).step_by(stride).map(|row| at(run, row)));
+        }
+        let deviation = median(&mut sizes) / MEDIAN_OF_NORMAL;
+        deviation.is_finite().then_some(Difference { order, distance, variance: deviation * deviation })
+    };
+    measured.filter_map(variance).collect()
+}
+
+/// Variances of noise of each correlation that add up to the differences, together with a course of the values that
+/// adds to those of order `p` and distance `d` by multiples of `d^{2p}` and, for its kinks, of `d^3`: least squares of the relative errors with
+/// shares that are not negative, by multiplicative updates (Lee and Seung 1999). With the root mean square of the
+/// relative errors that are left.
+fn shares(differences: &[Difference], correlations: &[Correlation]) -> (Vec<f64>, f64) {
+    let relative = |of: &dyn Fn(&Difference) -> f64| -> Vec<f64> {
+        differences.iter().map(|d| of(d) / floor(d, differences)).collect()
+    };
+    let of_noise = correlations.iter().map(|&correlation| relative(&|d| in_difference(correlation, d)));
+    let courses = ORDERS.iter().flat_map(|&order| [(order, KINKS), (order, 2 * order as i32)]);
+    let of_course = courses.map(|(order, power)| {
+        relative(&|d| if d.order == order { course(d, power, differences) } else { 0.0 })
+    });
+    let columns: Vec<Vec<f64>> = of_noise.chain(of_course).collect();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let scales: Vec<f64> = columns.iter().map(|column| product(column, column).sqrt()).collect();
+    let used: Vec<usize> = (0..columns.len()).filter(|&k| scales[k] > 0.0).collect();
+    let entry = |i: usize, j: usize| product(&columns[i], &columns[j]) / (scales[i] * scales[j]);
+    let gram: Vec<Vec<f64>> = used.iter().map(|&i| used.iter().map(|&j| entry(i, j)).collect()).collect();
+    let right: Vec<f64> =
+        used.iter().map(|&k| (columns[k].iter().sum::<f64>() / scales[k]).max(0.0)).collect();
+    let mut weights = vec![(used.len() as f64).recip(); used.len()];
+    for _ in 0..ROUNDS {
+        let products: Vec<f64> = gram.iter().map(|row| product(row, &weights)).collect();
+        for ((weight, right), product) in weights.iter_mut().zip(&right).zip(&products) {
+            *weight *= right / product.max(f64::MIN_POSITIVE);
+        }
+    }
+    let mut shares = vec![0.0; columns.len()];
+    used.iter().zip(&weights).for_each(|(&k, weight)| shares[k] = weight / scales[k]);
+    let error = |row: usize| {
+        1.0 - columns.iter().zip(&shares).map(|(column, share)| share * column[row]).sum::<f64>()
+    };
+    let squares: f64 = (0..differences.len()).map(|row| error(row).powi(2)).sum();
+    shares.truncate(correlations.len());
+    (shares, (squares / differences.len() as f64).sqrt())
+}
+
+/// What a difference is measured by: itself, but not less than rounding.
+fn floor(difference: &Difference, all: &[Difference]) -> f64 {
+    const ROUNDING: f64 = 1e-24;
+    let largest = all.iter().map(|d| d.variance).fold(0.0, f64::max);
+    difference.variance.max(ROUNDING * largest).max(f64::MIN_POSITIVE)
+}
+
+/// Variance of a difference of noise of variance 1.
+fn in_difference(correlation: Correlation, difference: &Difference) -> f64 {
+    let coefficients = coefficients(difference.order);
+    let pairs = coefficients
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| coefficients.iter().enumerate().map(move |(j, b)| (i.abs_diff(j), a * b)));
+    let sum: f64 =
+        pairs.map(|(apart, product)| product * correlation.at((apart * difference.distance) as f64)).sum();
+    sum.max(0.0)
+}
+
+/// A course of the values that is as large as the largest difference of its order, and grows with a power of the
+/// distance.
+fn course(difference: &Difference, power: i32, all: &[Difference]) -> f64 {
+    let alike = || all.iter().filter(|d| d.order == difference.order);
+    let furthest = alike().map(|d| d.distance).max().unwrap_or(1) as f64;
+    let largest = alike().map(|d| d.variance).fold(0.0, f64::max);
+    (difference.distance as f64 / furthest).powi(power) * largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, RngExt, SeedableRng};
+
+    /// A standard normal number, by Box and Muller.
+    fn normal(generator: &mut impl Rng) -> f64 {
+        let (u, v): (f64, f64) = (generator.random(), generator.random());
+        (-2.0 * (1.0 - u).ln()).sqrt() * (TAU * v).cos()
+    }
+
+    const BRANCHES: usize = 12;
+    const ROWS: usize = 200;
+
+    /// Branches of a play under a triangle, with what is added to each row.
+    fn branches(mut added: impl FnMut(usize) -> f64) -> Vec<Vec<f64>> {
+        let branch = |number: usize| {
+            let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let course = |k: usize| sign * (k as f64 / ROWS as f64 - 0.2).max(0.0).powf(1.3);
+            (0..ROWS).map(|k| course(k) + added(number * ROWS + k)).collect()
+        };
+        (0..BRANCHES).map(branch).collect()
+    }
+
+    fn noise_of(branches: &[Vec<f64>]) -> Noise {
+        Noise::of(branches.iter().map(Vec::as_slice))
+    }
+
+    #[test]
+    fn white_noise_is_found_within_its_sampling_error() {
+        let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(1);
+        let noise = noise_of(&branches(|_| 0.01 * normal(&mut generator)));
+        assert!((noise.deviation() / 0.01 - 1.0).abs() < 0.1, "{noise:?}");
+        // A mean of many rows shows whether it was taken for white.
+        assert!(noise.of_mean(25) < 1.6 * 0.01 / 5.0, "{noise:?}");
+    }
+
+    #[test]
+    fn coloured_noise_is_found_within_a_third_and_its_mean_falls_slowly() {
+        for seed in 1..6 {
+            let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+            let mut value = 0.0;
+            let noise = noise_of(&branches(|_| {
+                value = 0.9 * value + 0.01 * (1.0_f64 - 0.81).sqrt() * normal(&mut generator);
+                value
+            }));
+            let ratio = noise.deviation() / 0.01;
+            assert!((0.67..1.5).contains(&ratio), "{ratio}");
+            // The mean of 25 rows of this noise has 0.62 of its deviation.
+            assert!((0.4..1.0).contains(&(noise.of_mean(25) / 0.01)), "{noise:?}");
+        }
+    }
+
+    #[test]
+    fn hum_is_found_within_a_factor_of_1_6() {
+        for period in [9.3, 13.7, 25.0] {
+            let noise = noise_of(&branches(|row| 0.01 * (TAU * row as f64 / period).sin()));
+            let ratio = noise.deviation() / (0.01 / 2.0_f64.sqrt());
+            // A sine has another median magnitude than a normal number: 1.48 times too much.
+            assert!((0.67..1.6).contains(&ratio), "period {period}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn smooth_branches_have_hardly_any() {
+        assert!(noise_of(&branches(|_| 0.0)).deviation() < 1e-4);
+        assert_eq!(Noise::of([[1.0, 2.0].as_slice()].into_iter()), Noise::default());
+    }
+}
