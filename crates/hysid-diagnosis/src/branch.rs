@@ -4,6 +4,7 @@ mod opening;
 
 use std::ops::Range;
 
+use super::cycles::slow_noise;
 use super::noise::{self, Noise, resolution};
 use super::significance;
 use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
@@ -194,6 +195,8 @@ pub(crate) struct BranchSet<'a> {
     pub branches: Vec<Branch>,
     /// How far each stands open to the next of its record, in their order.
     pub openings: Vec<Opening>,
+    /// Deviation by which the output moves from cycle to cycle.
+    pub slow_noise: f64,
 }
 
 impl<'a> BranchSet<'a> {
@@ -229,7 +232,20 @@ impl<'a> BranchSet<'a> {
         }
         let output = data.output_range();
         let openings = openings(&branches, &output_noise);
-        Self { data, input, output, input_noise, output_noise, smallest_reversal, window, branches, openings }
+        let mut set = Self {
+            data,
+            input,
+            output,
+            input_noise,
+            output_noise,
+            smallest_reversal,
+            window,
+            branches,
+            openings,
+            slow_noise: 0.0,
+        };
+        set.slow_noise = slow_noise(&set);
+        set
     }
 
     /// Range of the output.
@@ -261,6 +277,16 @@ impl<'a> BranchSet<'a> {
     /// Branches lower than this have no shape to compare, in the unit of the output.
     pub fn lowest_shape(&self) -> f64 {
         (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise.deviation())
+    }
+
+    /// Mean time between rows; 0 without time.
+    pub fn time_step(&self) -> f64 {
+        let records = self.data.records().iter();
+        let spans = records.filter_map(|record| Some((record.time()?, record.len().max(2) - 1)));
+        let (time, steps) = spans.fold((0.0, 0), |(time, steps), (column, count)| {
+            (time + column[column.len() - 1] - column[0], steps + count)
+        });
+        if steps == 0 { 0.0 } else { time / steps as f64 }
     }
 
     /// Inputs closer than this are the same.

@@ -3,8 +3,11 @@
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
-/// A limit so many times the effect that matters leaves a property undecided.
-const BLIND: f64 = 8.0;
+/// A property holds if no difference can be larger than so many times the effect that matters.
+const BOUND: f64 = 2.5;
+
+/// Deviations by which a difference may be larger than it was found.
+const UP_TO: f64 = 1.64;
 
 /// A difference that a property says is nought.
 #[derive(Debug, Clone)]
@@ -42,18 +45,16 @@ pub(crate) struct Judgement {
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
-    let beyond = |c: &Comparison, deviations: f64| (effect + 2.0 * c.bend).max(deviations * c.deviation);
-    let limit = |c: &Comparison| beyond(c, critical);
+    let limit = |c: &Comparison| (effect + 2.0 * c.bend).max(critical * c.deviation);
     let excess = |c: &Comparison| c.index / limit(c);
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
     let deciding = &comparisons[*order.first()?];
-    let mut limits: Vec<f64> = comparisons.iter().map(limit).collect();
+    let is_doubtful = |c: &Comparison| c.index > effect.max(doubtful * c.deviation);
+    let mut bounds: Vec<f64> = comparisons.iter().map(|c| c.index + UP_TO * c.deviation + c.bend).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
-    } else if significance::median(&mut limits) > BLIND * effect
-        || comparisons.iter().any(|c| c.index > beyond(c, doubtful))
-    {
+    } else if comparisons.iter().any(is_doubtful) || significance::median(&mut bounds) > BOUND * effect {
         Verdict::NotTestable
     } else {
         Verdict::Yes

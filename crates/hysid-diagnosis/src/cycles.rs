@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::Piece;
 use super::branch::{Branch, BranchSet};
+use super::significance::{self, MEDIAN_OF_NORMAL};
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 const CLOSED: f64 = 0.02;
@@ -160,4 +161,34 @@ pub(crate) fn repeated<'c>(survey: &BranchSet, cycles: &'c [Cycle]) -> Vec<Vec<&
     }
     groups.retain(|group| group.len() >= 2);
     groups
+}
+
+/// Fewest differences between successive tips that tell how they scatter.
+const FEWEST_TIPS: usize = 6;
+
+/// The scatter of few tips may be so many times as large.
+const UNSURE: f64 = 1.5;
+
+/// Deviation by which the output at the tips of repeated cycles moves from one to the next, beyond a steady trend and
+/// the noise of the tips themselves: noise and drift slower than a branch. 0 where cycles are not repeated often enough.
+pub(crate) fn slow_noise(survey: &BranchSet) -> f64 {
+    let cycles = cycles(survey);
+    let mut scatter = Vec::new();
+    let mut variances = Vec::new();
+    for group in repeated(survey, &cycles) {
+        let out = |cycle: &Cycle| &survey.branches[cycle.branches.0];
+        for tip in [|branch: &Branch| branch.from, |branch: &Branch| branch.to] {
+            let readings: Vec<_> = group[1..].iter().filter_map(|c| out(c).curve.at(tip(out(c)))).collect();
+            let mut moves: Vec<f64> = readings.windows(2).map(|pair| pair[1].y - pair[0].y).collect();
+            let trend = significance::median(&mut moves);
+            scatter.extend(moves.iter().map(|by| (by - trend).abs()));
+            variances.extend(readings.windows(2).map(|p| p[0].deviation.powi(2) + p[1].deviation.powi(2)));
+        }
+    }
+    if scatter.len() < FEWEST_TIPS {
+        return 0.0;
+    }
+    let found = significance::median(&mut scatter) / MEDIAN_OF_NORMAL;
+    let expected = significance::median(&mut variances);
+    UNSURE * (found * found - expected).max(0.0).sqrt()
 }

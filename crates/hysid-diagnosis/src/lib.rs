@@ -234,7 +234,7 @@ impl Diagnosis {
             odd_symmetry::test(survey, equal_speed),
             saturation::test(survey),
             deterioration::test(survey, &cycles),
-            loop_closure::test(survey, &cycles),
+            loop_closure::test(survey, &cycles, equal_speed),
         ];
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
@@ -242,7 +242,7 @@ impl Diagnosis {
                 Property::Congruency => congruency::test(corrected, equal_speed),
                 Property::Masing => masing::test(corrected, equal_speed),
                 Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
-                _ => loop_closure::test(corrected, &cycles::cycles(corrected)),
+                _ => loop_closure::test(corrected, &cycles::cycles(corrected), equal_speed),
             });
         let turning_rows = survey.turning_rows();
         Ok(Self {

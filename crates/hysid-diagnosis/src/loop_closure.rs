@@ -17,10 +17,11 @@ const MOST: usize = 400;
 const EXPERIMENT: &str = "repeat a loop three times or more";
 
 /// Tests for closed loops.
-pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
+pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle], equal_speed: bool) -> Finding {
     let groups = repeated(survey, cycles);
-    // The first period still remembers what was before.
-    let later: Vec<&Cycle> = groups.iter().flat_map(|group| group[1..].iter().copied()).collect();
+    // The first period still remembers what was before; where the speed matters, so may the second.
+    let before = if equal_speed { 2 } else { 1 };
+    let later: Vec<&Cycle> = groups.iter().flat_map(|group| settled(survey, group, before)).collect();
     let step = later.len().div_ceil(MOST).max(1);
     let comparisons: Vec<Comparison> =
         later.into_iter().step_by(step).filter_map(|cycle| gap(survey, cycle)).collect();
@@ -34,6 +35,17 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
         Verdict::NotTestable => "the noise is too large to detect gaps that matter".into(),
     };
     survey.finding(Property::LoopClosure, &judgement, &comparisons, statement, EXPERIMENT)
+}
+
+/// The cycles of a group that so many of their kind precede without a pause, at the same speed.
+fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'c Cycle> {
+    let follows = |pair: &[&Cycle]| {
+        let (last, next) = (pair[0].branches, pair[1].branches);
+        let speeds = [(last.0, next.0), (last.1, next.1)];
+        next.0 == last.1 + 1
+            && speeds.iter().all(|&(a, b)| survey.similar_speed(&survey.branches[a], &survey.branches[b]))
+    };
+    group.windows(before + 1).filter(|run| run.windows(2).all(follows)).map(|run| run[before]).collect()
 }
 
 /// The gap between a branch and the next that begins at the same turning point: both are then at the same speed.
@@ -57,7 +69,7 @@ fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
     let height = survey.height();
     Some(Comparison {
         index: (last.y - first.y).abs() / height,
-        deviation: first.deviation.hypot(last.deviation) / height,
+        deviation: first.deviation.hypot(last.deviation).hypot(survey.slow_noise) / height,
         bend: (first.bend + last.bend + own) / height,
         pieces: vec![cycle.piece()],
         curves: vec![survey.curve("there", out), survey.curve("back", back)],

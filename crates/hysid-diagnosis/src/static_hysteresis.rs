@@ -1,6 +1,8 @@
 //! Static hysteresis: is there a loop however slowly the input goes? Index: area of the loops over their box,
 //! carried on to speed 0 where there are several speeds, theory.md (10.12).
 
+mod viscous;
+
 use super::branch::BranchSet;
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, significance};
@@ -77,7 +79,17 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     let threshold = FULL + significance::critical_value(1) * noise;
     let percent = 100.0 * index;
     let known = rate != Verdict::Yes || growth_is_known(&large);
-    let (verdict, statement) = if area < threshold && threshold > 2.0 * FULL && area > FULL {
+    let looks_static = area >= threshold && (next.is_none() || index >= REMAINS * area && known);
+    let viscous = looks_static && survey.data.has_time() && viscous::may_be_viscous(survey);
+    let (verdict, statement) = if viscous {
+        (
+            Verdict::NotTestable,
+            format!(
+                "loops fill {percent:.0} % of their bounding box, and a spring with a dashpot, whose loops vanish at \
+                 speed 0, explains them"
+            ),
+        )
+    } else if area < threshold && threshold > 2.0 * FULL && area > FULL {
         (Verdict::NotTestable, "the noise is too large to detect loops that matter".to_string())
     } else if area < threshold {
         (

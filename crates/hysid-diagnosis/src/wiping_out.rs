@@ -68,7 +68,7 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
     let rows = |branch: &Branch| survey.piece(branch);
     Some(Comparison {
         index: (second.y - before).abs() / height,
-        deviation: deviation.hypot(second.deviation) / height,
+        deviation: deviation.hypot(second.deviation).hypot(survey.slow_noise) / height,
         bend: (first.bend + second.bend) / height,
         pieces: vec![rows(arriving), rows(back)],
         curves: vec![

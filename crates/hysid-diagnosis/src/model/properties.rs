@@ -177,5 +177,5 @@ fn closure(probe: &Probe) -> Result<Finding> {
     }
     let data = data(vec![probe.run_slowly("repeated loops", &probe.path(&turning).x)?])?;
     let survey = survey(&data);
-    Ok(loop_closure::test(&survey, &cycles(&survey)))
+    Ok(loop_closure::test(&survey, &cycles(&survey), false))
 }

@@ -5,10 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::{Correlation, Noise};
-use crate::significance::median;
-
-/// Median of the magnitude of a standard normal number.
-const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+use crate::significance::{MEDIAN_OF_NORMAL, median};
 
 /// More differences than these tell the noise no better.
 const MOST: usize = 100_000;
@@ -25,7 +22,11 @@ const SPAN: f64 = 0.125;
 
 /// Correlations from row to row that are tried, where they decay within a share of a run.
 const DECAYS: [f64; 6] = [0.6, 0.8, 0.9, 0.95, 0.98, 0.99];
-const DECAYED: f64 = 1.0 / 6.0;
+const DECAYED: f64 = 0.25;
+
+/// Where the slowest has this share of the variance, it may be so many times as large on the whole.
+const SLOW: f64 = 0.2;
+const BEYOND: f64 = 4.0;
 
 /// Periods of hum: from the shortest on by this factor, up to a share of a run.
 const SHORTEST_PERIOD: f64 = 4.0;
@@ -87,6 +88,11 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     if misfit > SAMPLING / (rows as f64).sqrt() {
         correlations = self::correlations(length);
         shares = self::shares(&differences, &correlations).0;
+    }
+    // How slow the slowest noise is, and how large on the whole, a branch does not show: larger than it seems.
+    let slowest = correlations.iter().rposition(|c| matches!(c, Correlation::Decaying(_)));
+    if let Some(slowest) = slowest.filter(|&slowest| shares[slowest] > SLOW * shares.iter().sum::<f64>()) {
+        shares[slowest] *= BEYOND;
     }
     let total: f64 = shares.iter().sum();
     let parts: Vec<_> =

@@ -1,0 +1,118 @@
+//! Whether loops may be those of a spring with dashpots: a curve of the input, its rate and one relaxation of it, all
+//! linear in the memory. Such a law has no loop at rest, and at one speed its loops look like any other.
+
+use hysid_core::data::record::Record;
+use hysid_core::linear_algebra::Symmetric;
+use hysid_core::stop_check::StopCheck;
+
+use crate::branch::BranchSet;
+
+/// Relaxation times that are tried, from the mean time step to half of the longest record.
+const TIMES: i32 = 32;
+
+/// Columns without memory: 1, x, x², x³.
+const CURVE: usize = 4;
+
+/// All of them: with the rate and the relaxed input.
+const COLUMNS: usize = CURVE + 2;
+
+/// Remainders below this share of what a curve of the input leaves are explained.
+const EXPLAINED: f64 = 0.05;
+
+/// Remainders are noise up to so many times its deviation.
+const NOISE: f64 = 1.3;
+
+/// Records with more rows are not looked at beyond them.
+const MOST_ROWS: usize = 100_000;
+
+/// True if a law without static hysteresis leaves no more of the output than noise, or a small share of the loops.
+pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
+    let records: Vec<&Record> = survey.data.records().iter().collect();
+    let longest =
+        records.iter().filter_map(|r| Some(r.time()?[r.len() - 1] - r.time()?[0])).fold(0.0, f64::max);
+    let step = survey.time_step();
+    if step <= 0.0 || longest <= 2.0 * step {
+        return false;
+    }
+    let factor = (0.5 * longest / step).powf(f64::from(TIMES - 1).recip());
+    let products = |time: f64| {
+        let mut products = Products::new();
+        records.iter().for_each(|record| products.add(survey, record, time));
+        products
+    };
+    let first = products(step);
+    let without_memory = first.remainder(CURVE);
+    let least =
+        (0..TIMES).map(|k| products(step * factor.powi(k)).remainder(COLUMNS)).fold(f64::INFINITY, f64::min);
+    let noise = NOISE * survey.output_noise.deviation() / survey.height();
+    least.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(noise)
+}
+
+/// Products of all columns and the output, and the number of rows.
+struct Products {
+    sums: [[f64; COLUMNS + 1]; COLUMNS + 1],
+    rows: f64,
+}
+
+impl Products {
+    fn new() -> Self {
+        Self { sums: [[0.0; COLUMNS + 1]; COLUMNS + 1], rows: 0.0 }
+    }
+
+    /// Adds the rows of a record whose input relaxes in a time.
+    fn add(&mut self, survey: &BranchSet, record: &Record, time: f64) {
+        let Some(stamps) = record.time() else {
+            return;
+        };
+        let (x, y) = (&record.inputs()[0], record.output());
+        let scale = 2.0 / survey.width();
+        let middle = 0.5 * (survey.input.0 + survey.input.1);
+        let speed = survey.width() / (stamps[stamps.len() - 1] - stamps[0]) * stamps.len() as f64;
+        let mut relaxed = x[0];
+        for row in 0..x.len().min(MOST_ROWS) {
+            if row > 0 {
+                let (step, change) = (stamps[row] - stamps[row - 1], x[row] - x[row - 1]);
+                // Exact for an input that is linear between rows.
+                let kept = (-step / time).exp();
+                relaxed = kept * relaxed + x[row] - kept * x[row - 1] - change * (1.0 - kept) * time / step;
+            }
+            if y[row].is_nan() {
+                continue;
+            }
+            let (before, after) = (row.saturating_sub(1), (row + 1).min(x.len() - 1));
+            let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;
+            let u = scale * (x[row] - middle);
+            let columns = [
+                1.0,
+                u,
+                u * u,
+                u * u * u,
+                rate,
+                scale * (relaxed - middle),
+                (y[row] - survey.output.0) / survey.height(),
+            ];
+            for (sums, a) in self.sums.iter_mut().zip(columns) {
+                sums.iter_mut().zip(columns).for_each(|(sum, b)| *sum += a * b);
+            }
+            self.rows += 1.0;
+        }
+    }
+
+    /// Mean square of the output, as a share of its range, that the first so many columns leave.
+    fn remainder(&self, columns: usize) -> f64 {
+        /// Keeps columns apart that say nearly the same.
+        const RIDGE: f64 = 1e-12;
+        let matrix = Symmetric::from_fn(columns, |i, j| {
+            self.sums[i][j] + if i == j { RIDGE * self.sums[i][i] + f64::MIN_POSITIVE } else { 0.0 }
+        });
+        let right: Vec<f64> = (0..columns).map(|i| self.sums[i][COLUMNS]).collect();
+        let total = self.sums[COLUMNS][COLUMNS];
+        let Some(factor) = matrix.cholesky(StopCheck::never()) else {
+            return total / self.rows;
+        };
+        let mut weights = right.clone();
+        factor.solve(&mut weights);
+        let explained: f64 = weights.iter().zip(&right).map(|(w, b)| w * b).sum();
+        (total - explained).max(0.0) / self.rows
+    }
+}
