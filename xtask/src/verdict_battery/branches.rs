@@ -66,7 +66,9 @@ impl<'r> Branches<'r> {
     /// The output where a branch passes an input; none where it does not.
     pub fn at(&self, branch: &Branch, x: f64) -> Option<f64> {
         let (low, high) = branch.span();
-        if x < low || x > high {
+        // Computed places may lie beyond the ends by a rounding error.
+        let rounding = 1e-9 * self.width;
+        if x < low - rounding || x > high + rounding {
             return None;
         }
         let inputs = &self.inputs[branch.first..=branch.last];

@@ -264,17 +264,25 @@ fn cycles(run: &Branches) -> Vec<Vec<usize>> {
     groups
 }
 
+/// Loops that fill less than this share of the box of the run have no energy to lose.
+const LOOPLESS: f64 = 0.003;
+
 /// The loss of energy that half of the repeated loops reach, from the first to the last of a kind.
 fn deterioration(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
-    let energy = |&index: &usize| {
-        opening(run, &run.branches[index], &run.branches[index + 1]).map_or(0.0, |opening| opening.0.abs())
+    // Loops that cross themselves have an area, but hardly an energy.
+    let energy = |index: usize| {
+        let (signed, area, width) = opening(run, &run.branches[index], &run.branches[index + 1])?;
+        let energy = if signed.abs() < 0.3 * area { area } else { signed.abs() };
+        (area > LOOPLESS * width * run.height).then_some(energy)
     };
-    let most = largest(groups.iter().filter_map(|group| group.first()).map(energy))?;
-    let losses = groups.iter().filter(|group| energy(&group[0]) >= 0.01 * most).flat_map(|group| {
-        let loss = 1.0 - energy(&group[group.len() - 1]) / energy(&group[0]);
-        std::iter::repeat_n(loss, group.len())
+    let ends = groups.iter().filter_map(|group| {
+        let (first, last) = (energy(group[0])?, energy(group[group.len() - 1])?);
+        Some((first, 1.0 - last / first, group.len()))
     });
-    let mut losses: Vec<f64> = losses.collect();
+    let ends: Vec<(f64, f64, usize)> = ends.collect();
+    let most = largest(ends.iter().map(|end| end.0))?;
+    let large = ends.iter().filter(|end| end.0 >= 0.01 * most);
+    let mut losses: Vec<f64> = large.flat_map(|end| std::iter::repeat_n(end.1, end.2)).collect();
     losses.sort_by(f64::total_cmp);
     (losses.len() >= 3).then(|| losses[(losses.len() - 1) / 2])
 }

@@ -173,7 +173,7 @@ pub fn laws() -> Vec<Law> {
         ),
         law(
             "bouc-wen-wide",
-            "y y n  n n n  y n  n -",
+            "y y n  n n n  y -  n -",
             "as Bouc-Wen with a long transition: large gaps",
             bouc_wen::<2>,
         ),
@@ -211,7 +211,7 @@ pub fn laws() -> Vec<Law> {
         ),
         law(
             "jiles-atherton",
-            "y n n  n n n  y y  n -",
+            "y n n  n n n  y -  n -",
             "the branch depends on field and magnetization alone; its gaps matter on some paths only",
             jiles_atherton,
         ),

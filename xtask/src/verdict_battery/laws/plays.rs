@@ -178,7 +178,7 @@ pub fn laws() -> Vec<Law> {
             answers: "y - n  y n n  n n  n y",
             why: "an even function of plays: its two wings are passed in opposite directions, the memory is that of the plays",
             specimen: || {
-                Box::new(Superposition { plays: plays(6, 0.3, 0.3), of_input: |x| x, of_output: |p| p * p })
+                Box::new(Superposition { plays: plays(6, 0.5, 0.3), of_input: |x| x, of_output: |p| p * p })
             },
         },
     ]
