@@ -115,6 +115,16 @@ fn nested(shape: Shape) -> Course {
     Course::at_speed(shape, &NESTED, 1.0)
 }
 
+/// Three minor loops, each run twice on the way up and twice on the way down of the largest one.
+const MINOR_LOOPS: [f64; 29] = [
+    1.0, -1.0, -0.1, -0.5, -0.1, -0.5, 0.2, -0.4, 0.2, -0.4, 0.6, 0.0, 0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.6,
+    -0.4, 0.2, -0.4, 0.2, -0.5, -0.1, -0.5, -0.1, -1.0, 1.0,
+];
+
+fn minor_loops() -> Course {
+    Course::at_speed(Shape::Triangle, &MINOR_LOOPS, 1.0)
+}
+
 fn first_order_reversals() -> Course {
     let turns: Vec<f64> = (1..=10).flat_map(|k| [1.0, 1.0 - 0.2 * f64::from(k)]).chain([1.0]).collect();
     Course::at_speed(Shape::Triangle, &turns, 1.0)
@@ -192,6 +202,7 @@ pub fn all() -> Vec<Path> {
         path("repeated", true, 97, repeated),
         path("nested", true, 151, || nested(Shape::Triangle)),
         path("nested-untimed", false, 120, || nested(Shape::Sine)),
+        path("minor-loops", true, 163, minor_loops),
         path("first-order-reversals", true, 101, first_order_reversals),
         path("reversals-sine", true, 61, reversals_of_one_duration),
         path("reversals-triangle", true, 107, reversals_of_one_speed),

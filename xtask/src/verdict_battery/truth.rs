@@ -135,6 +135,16 @@ mod tests {
                 assert_eq!(counts, answer.is_some(), "{}: {}", law.name, PROPERTIES[property]);
             }
             for (property, effect) in EFFECTS {
+                let violated = matches!(property, RATE_DEPENDENCE | DETERIORATION);
+                if law.answers()[property] == Some(violated) {
+                    let clear = |e: &Evidence| e[property].is_some_and(|index| index >= CLEARLY * effect);
+                    assert!(
+                        survey.iter().any(|(_, e, _)| clear(e)),
+                        "{}: {}",
+                        law.name,
+                        PROPERTIES[property]
+                    );
+                }
                 let exact = law.answers()[RATE_DEPENDENCE] == Some(false)
                     && matches!(property, WIPING_OUT | CONGRUENCY | MASING | LOOP_CLOSURE)
                     && law.answers()[property] == Some(true);

@@ -80,7 +80,7 @@ fn bouc_wen<const HARD: usize>() -> Box<dyn Specimen> {
 /// 107 (1981) 1069.
 fn degrading() -> Box<dyn Specimen> {
     let law = |_: f64, z: f64, way: f64, energy: f64| {
-        SOFTENING.slope(z, way, 1.0 + 0.25 * energy) / (1.0 + 0.1 * energy)
+        SOFTENING.slope(z, way, 1.0 + 0.5 * energy) / (1.0 + 0.1 * energy)
     };
     Box::new(Along::law(law, |x, z| 0.1 * x + z))
 }
