@@ -30,7 +30,6 @@ use anyhow::{Context, Result, anyhow};
 use crate::cases::origin;
 use crate::{Interrupted, files, program};
 use answer::Findings;
-use branches::Branches;
 use chance::Chance;
 use disturbances::{Disturbance, Run};
 use evidence::evidence;
@@ -162,9 +161,9 @@ impl Battery {
         let mut verdicts = Vec::new();
         for disturbance in self.disturbances.iter().filter(|one| one.applies_to(path)) {
             let first = disturbance.first_step(&run);
-            let [whole, slow] =
-                [&run.outputs, &at_rest].map(|outputs| Branches::of(&run.inputs[first..], &outputs[first..]));
-            let answers = truth(law.answers(), &evidence(&whole, &slow), path, disturbance);
+            let evidence =
+                evidence(&run.inputs[first..], &run.outputs[first..], &at_rest[first..], path.timed);
+            let answers = truth(law.answers(), &evidence, path, disturbance);
             let name = format!("{}.{}.{}", law.name, path.name, disturbance.name);
             let record = disturbance.record(&run, &mut Chance::of(self.seed, &name));
             let file = self.records.join(format!("{name}.csv"));

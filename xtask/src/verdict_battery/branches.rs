@@ -1,5 +1,8 @@
 //! The undisturbed run as branches between turning points, with the turning points that enclose each of them.
 
+use super::disturbances::range;
+use super::paths::SUBSTEPS;
+
 /// Reversals below this share of the input's range are none.
 const SMALLEST: f64 = 0.02;
 
@@ -47,6 +50,8 @@ pub struct Branches<'r> {
     pub inputs: &'r [f64],
     pub outputs: &'r [f64],
     pub branches: Vec<Branch>,
+    /// Whether the record has time stamps.
+    pub timed: bool,
     /// Range of the input.
     pub width: f64,
     /// Range of the output.
@@ -54,19 +59,43 @@ pub struct Branches<'r> {
 }
 
 impl<'r> Branches<'r> {
-    pub fn of(inputs: &'r [f64], outputs: &'r [f64]) -> Self {
+    pub fn of(inputs: &'r [f64], outputs: &'r [f64], timed: bool) -> Self {
         let extent = |values: &[f64]| {
-            let (low, high) = super::disturbances::range(values);
+            let (low, high) = range(values);
             high - low
         };
         let (width, height) = (extent(inputs), extent(outputs));
-        Self { inputs, outputs, branches: cut(inputs, SMALLEST * width), width, height }
+        Self { inputs, outputs, branches: cut(inputs, SMALLEST * width), timed, width, height }
     }
 
     /// The output where a branch passes an input; none where it does not.
     pub fn at(&self, branch: &Branch, x: f64) -> Option<f64> {
+        let (step, share) = self.place(branch, x)?;
+        Some(self.outputs[step] + share * (self.outputs[step + 1] - self.outputs[step]))
+    }
+
+    /// True if two branches pass two inputs at the same speed, to a factor of 1.25, or time is unknown. A difference
+    /// between branches of different speed may be one of memory or of rate.
+    pub fn one_speed(&self, (a, x_a): (&Branch, f64), (b, x_b): (&Branch, f64)) -> bool {
+        let speed = |branch: &Branch, x| {
+            let (step, _) = self.place(branch, x)?;
+            // Over two rows: the last step to a turning point is a part of one.
+            let (first, last) =
+                (step.saturating_sub(SUBSTEPS).max(branch.first), (step + SUBSTEPS).min(branch.last));
+            Some((self.inputs[last] - self.inputs[first]).abs() / (last - first) as f64)
+        };
+        match (speed(a, x_a), speed(b, x_b)) {
+            (Some(a), Some(b)) if self.timed => a.max(b) <= 1.25 * a.min(b),
+            _ => true,
+        }
+    }
+
+    /// The step before a branch passes an input, and the share of the next step.
+    fn place(&self, branch: &Branch, x: f64) -> Option<(usize, f64)> {
         let (low, high) = branch.span();
-        if x < low || x > high {
+        // Computed places may lie beyond the ends by a rounding error.
+        let rounding = 1e-9 * self.width;
+        if x < low - rounding || x > high + rounding {
             return None;
         }
         let inputs = &self.inputs[branch.first..=branch.last];
@@ -74,8 +103,7 @@ impl<'r> Branches<'r> {
         let above = inputs.partition_point(|&v| sign * v < sign * x).clamp(1, inputs.len() - 1);
         let (a, b) = (inputs[above - 1], inputs[above]);
         let share = if a == b { 0.0 } else { ((x - a) / (b - a)).clamp(0.0, 1.0) };
-        let y = &self.outputs[branch.first..=branch.last];
-        Some(y[above - 1] + share * (y[above] - y[above - 1]))
+        Some((branch.first + above - 1, share))
     }
 }
 

@@ -241,3 +241,112 @@ fn middle_of_second_branch(inputs: &[f64]) -> usize {
     let turns: Vec<usize> = turns.map(|(step, _)| step + 1).take(2).collect();
     turns.iter().sum::<usize>() / turns.len().max(1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{laws, paths};
+    use super::*;
+
+    fn path(name: &str) -> Path {
+        paths::all().into_iter().find(|path| path.name == name).expect("the path is there")
+    }
+
+    fn run(path: &Path) -> Run<'_> {
+        let law = laws::all().into_iter().find(|law| law.name == "pi-stops").expect("the law is there");
+        let inputs = path.inputs();
+        let outputs = law.run(&inputs, path.row_seconds() / SUBSTEPS as f64);
+        Run { path, inputs, outputs }
+    }
+
+    fn measured(name: &str, run: &Run, seed: u64) -> Record {
+        let one = all().into_iter().find(|one| one.name == name).expect("the disturbance is there");
+        one.record(run, &mut Chance::of(seed, name))
+    }
+
+    fn deviation(values: &[f64]) -> f64 {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+    }
+
+    fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+        a.iter().zip(b).map(|(a, b)| a - b).collect()
+    }
+
+    #[test]
+    fn disturbances_have_their_sizes() {
+        let path = path("three-speeds");
+        let run = run(&path);
+        let clean = measured("none", &run, 1);
+        let (low, high) = range(&clean.output);
+        let height = high - low;
+        let noise = |name| {
+            let record = measured(name, &run, 1);
+            difference(&record.output, &clean.output).iter().map(|e| e / height).collect::<Vec<f64>>()
+        };
+        // Deviations; where noise has a memory, few of its values are independent.
+        for (name, size, tolerance) in [
+            ("white-0.3", 0.003, 0.05),
+            ("white-1", 0.01, 0.05),
+            ("ar-0.9-1", 0.01, 0.15),
+            ("ar-0.98-0.5", 0.005, 0.3),
+            ("pink-0.5", 0.005, 0.3),
+            ("both-0.3", 0.003, 0.05),
+            ("hum-0.5", 0.005 / 2.0_f64.sqrt(), 0.01),
+            ("8-bits", 1.1 / 256.0 / 12.0_f64.sqrt(), 0.1),
+            ("12-bits", 1.1 / 4096.0 / 12.0_f64.sqrt(), 0.1),
+        ] {
+            let found = deviation(&noise(name));
+            assert!((found / size - 1.0).abs() < tolerance, "{name}: {found} for {size}");
+        }
+        // Spans.
+        for (name, size) in [("drift-4", 0.04), ("drift-walk-4", 0.04)] {
+            let (low, high) = range(&noise(name));
+            assert!((high - low - size).abs() < 1e-9, "{name}: {low} {high}");
+        }
+        let (low, high) = range(&measured("clipped-90", &run, 1).output);
+        assert!(((high - low) / height - 0.9).abs() < 1e-9);
+        let spikes = noise("10-spikes").iter().filter(|e| e.abs() > 0.09).count();
+        assert!((9..=10).contains(&spikes), "{spikes} spikes");
+        let input = difference(&measured("both-0.3", &run, 1).input, &clean.input);
+        assert!((deviation(&input) / 0.006 - 1.0).abs() < 0.05);
+        let worn = measured("wear-5", &run, 1);
+        let last = clean.output.len() - 1;
+        assert!((worn.output[last] / clean.output[last] - 0.95).abs() < 1e-9);
+    }
+
+    #[test]
+    fn delays_are_as_long_as_they_say() {
+        let path = path("repeated");
+        let run = run(&path);
+        let clean = measured("none", &run, 1);
+        assert_eq!(clean.output[101], measured("early-1-row", &run, 1).output[100]);
+        let late = measured("late-1.5-rows", &run, 1).output;
+        let half_way = run.outputs[100 * SUBSTEPS + SUBSTEPS / 2];
+        assert_eq!(late[102], half_way);
+    }
+
+    #[test]
+    fn coarse_records_have_twelve_rows_a_branch_and_others_begin_within_a_loop() {
+        let path = path("repeated");
+        let run = run(&path);
+        let rows = measured("coarse-12", &run, 1).output.len() as f64;
+        // 16 branches over the range.
+        assert!((rows / 16.0 - 12.0).abs() < 0.3, "{rows} rows");
+        let later = measured("mid-loop", &run, 1);
+        assert!(later.input[0].abs() < 0.2 && later.input[1] < later.input[0], "{:?}", &later.input[..2]);
+        let jitter = measured("time-jitter", &run, 1).time.expect("it has time");
+        assert!(jitter.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_record() {
+        let path = path("decaying");
+        let run = run(&path);
+        for one in all().iter().filter(|one| one.applies_to(&path)) {
+            let record = measured(one.name, &run, 1);
+            assert_eq!(record, measured(one.name, &run, 1), "{}", one.name);
+            assert_eq!(record.csv().lines().count(), record.output.len() + 1);
+        }
+        assert_ne!(measured("white-1", &run, 1), measured("white-1", &run, 2));
+    }
+}

@@ -15,14 +15,19 @@ const SHORTEST: f64 = 0.05;
 /// Places along a branch.
 const PLACES: usize = 40;
 
+/// Shares of a course where speeds are compared.
+const SPEED_AT: [f64; 4] = [0.05, 0.3, 0.6, 0.95];
+
 /// The index of each property; none where the run has nothing to compare.
 ///
 /// Violations: the largest of all comparisons. Orientation: signed over unsigned area. Saturation: slope of the last
 /// tenth over the largest. Static hysteresis: area over box.
 pub type Evidence = [Option<f64>; PROPERTIES.len()];
 
-/// The evidence of a run; `slow` is the same path of the input at a vanishing speed.
-pub fn evidence(run: &Branches, slow: &Branches) -> Evidence {
+/// The evidence of a run from its inputs and outputs; `at_rest` are the outputs at a vanishing speed.
+pub fn evidence(inputs: &[f64], outputs: &[f64], at_rest: &[f64], timed: bool) -> Evidence {
+    let [run, slow] = [outputs, at_rest].map(|outputs| Branches::of(inputs, outputs, timed));
+    let (run, slow) = (&run, &slow);
     let cycles = cycles(run);
     let mut evidence = [None; PROPERTIES.len()];
     evidence[STATIC_HYSTERESIS] = fullness(slow, run.height);
@@ -84,7 +89,8 @@ fn orientation(run: &Branches) -> Option<f64> {
     (area > 0.0).then(|| open().map(|o| o.0).sum::<f64>() / area)
 }
 
-/// Largest difference between the fastest and the slowest branch of equal ends, over the range of the output.
+/// Largest difference between the fastest and the slowest branch of equal ends, over the range of the output. What a
+/// constant delay explains is no difference: a record cannot tell the two apart.
 fn rate_dependence(run: &Branches) -> Option<f64> {
     let speed = |branch: &Branch| branch.travel() / branch.steps() as f64;
     let same = |a: f64, b: f64| (a - b).abs() <= SAME * run.width;
@@ -107,10 +113,25 @@ fn rate_dependence(run: &Branches) -> Option<f64> {
         if speed(fast) < 2.0 * speed(slow) {
             return None;
         }
-        let differences: Vec<f64> =
-            places(first.from, first.to).filter_map(|x| Some(run.at(fast, x)? - run.at(slow, x)?)).collect();
-        Some(root_mean_square(&differences) / run.height)
+        let longest = fast.steps() as isize / 4;
+        let delays = (-longest..=longest).step_by((longest as usize / 40).max(1));
+        delays
+            .filter_map(|delay| late(run, fast, slow, delay))
+            .reduce(f64::min)
+            .map(|least| least / run.height)
     }))
+}
+
+/// Difference of a branch from another where its output is late by so many steps.
+fn late(run: &Branches, branch: &Branch, other: &Branch, delay: isize) -> Option<f64> {
+    let steps = (branch.first..=branch.last).step_by((branch.steps() / PLACES).max(1));
+    let differences: Vec<f64> = steps
+        .filter_map(|step| {
+            let output = run.outputs.get(step.checked_add_signed(delay)?)?;
+            Some(output - run.at(other, run.inputs[step])?)
+        })
+        .collect();
+    (differences.len() > PLACES / 2).then(|| root_mean_square(&differences))
 }
 
 /// Largest gap where the input returns to a turning point, over the range of the output.
@@ -120,7 +141,10 @@ fn wiping_out(run: &Branches) -> Option<f64> {
         let returns = branch.returns.iter().filter(move |(x, _)| long(*x));
         returns.filter_map(|&(x, step)| {
             let (low, high) = branch.span();
-            Some((run.at(branch, x.clamp(low, high))? - run.outputs[step]).abs() / run.height)
+            let back = x.clamp(low, high);
+            let arrived = run.branches.iter().find(|other| other.last == step)?;
+            let gap = (run.at(branch, back)? - run.outputs[step]).abs() / run.height;
+            run.one_speed((branch, back), (arrived, x)).then_some(gap)
         })
     });
     largest(gaps)
@@ -140,6 +164,10 @@ fn congruency(run: &Branches) -> Option<f64> {
         let begin = if a.rises() { a.from.max(b.from) } else { a.from.min(b.from) };
         let along = if a.rises() { end - begin } else { begin - end };
         if along < SHORTEST * run.width {
+            return None;
+        }
+        let course = SPEED_AT.map(|share| begin + share * (end - begin));
+        if !course.iter().all(|&x| run.one_speed((a, x), (b, x))) {
             return None;
         }
         let (start_a, start_b) = (run.at(a, begin)?, run.at(b, begin)?);
@@ -179,12 +207,20 @@ fn masing(run: &Branches) -> Option<f64> {
         .collect();
     own.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (longest, others) = own.split_first()?;
+    let after = |branch: &Branch, way: f64| branch.from + (branch.to - branch.from).signum() * way;
     let grown = |branch: &Branch, way: f64| {
-        let sign = if branch.rises() { 1.0 } else { -1.0 };
-        let there = run.at(branch, branch.from + sign * way)?;
+        let sign = (branch.to - branch.from).signum();
+        let there = run.at(branch, after(branch, way))?;
         Some(sign * (there - run.outputs[branch.first]))
     };
     largest(others.iter().filter(|(length, _)| *length < 0.9 * longest.0).filter_map(|(length, branch)| {
+        let one_speed = |share: &f64| {
+            let place = |branch| after(branch, share * length);
+            run.one_speed((longest.1, place(longest.1)), (*branch, place(*branch)))
+        };
+        if !SPEED_AT.iter().all(one_speed) {
+            return None;
+        }
         let shapes: Vec<(f64, f64)> = places(0.0, 0.999 * length)
             .map(|way| Some((grown(longest.1, way)?, grown(branch, way)?)))
             .collect::<Option<_>>()?;
@@ -264,19 +300,26 @@ fn cycles(run: &Branches) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The loss of energy that half of the repeated loops reach, from the first to the last of a kind.
+/// Loops that fill less than this share of the box of the run have no energy to lose.
+const LOOPLESS: f64 = 0.003;
+
+/// The largest loss of energy of a kind of repeated loops, from the first to the last; of three loops at least.
 fn deterioration(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
-    let energy = |&index: &usize| {
-        opening(run, &run.branches[index], &run.branches[index + 1]).map_or(0.0, |opening| opening.0.abs())
+    // Loops that cross themselves have an area, but hardly an energy.
+    let energy = |index: usize| {
+        let (signed, area, width) = opening(run, &run.branches[index], &run.branches[index + 1])?;
+        let energy = if signed.abs() < 0.3 * area { area } else { signed.abs() };
+        (area > LOOPLESS * width * run.height).then_some(energy)
     };
-    let most = largest(groups.iter().filter_map(|group| group.first()).map(energy))?;
-    let losses = groups.iter().filter(|group| energy(&group[0]) >= 0.01 * most).flat_map(|group| {
-        let loss = 1.0 - energy(&group[group.len() - 1]) / energy(&group[0]);
-        std::iter::repeat_n(loss, group.len())
+    let ends = groups.iter().filter_map(|group| {
+        let (first, last) = (energy(group[0])?, energy(group[group.len() - 1])?);
+        Some((first, 1.0 - last / first, group.len()))
     });
-    let mut losses: Vec<f64> = losses.collect();
-    losses.sort_by(f64::total_cmp);
-    (losses.len() >= 3).then(|| losses[(losses.len() - 1) / 2])
+    let ends: Vec<(f64, f64, usize)> = ends.collect();
+    let most = largest(ends.iter().map(|end| end.0))?;
+    let large = || ends.iter().filter(|end| end.0 >= 0.01 * most);
+    let enough = large().map(|end| end.2).sum::<usize>() >= 3;
+    largest(large().map(|end| end.1)).filter(|_| enough)
 }
 
 /// Largest gap after a period that follows an equal one, over the range of the output.

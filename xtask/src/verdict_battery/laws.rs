@@ -70,3 +70,6 @@ pub fn all() -> Vec<Law> {
     .flatten()
     .collect()
 }
+
+#[cfg(test)]
+mod tests;

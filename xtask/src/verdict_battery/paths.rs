@@ -107,12 +107,22 @@ fn repeated() -> Course {
 
 /// The same minor loops on both branches, nested three deep, and each repeated once.
 const NESTED: [f64; 33] = [
-    1.0, -1.0, 0.6, 0.1, 0.6, 0.1, 1.0, -0.6, -0.1, -0.6, -0.1, -1.0, 0.2, -0.4, 0.2, -0.4, 1.0, -0.4, 0.2,
-    -0.4, 0.2, -1.0, 0.7, -0.6, 0.5, -0.3, 0.3, -0.3, 0.5, -0.6, 1.0, -1.0, 1.0,
+    1.0, -1.0, 0.6, 0.1, 0.6, 0.1, 1.0, -0.6, -0.1, -0.6, -0.1, -1.0, 0.2, -0.15, 0.2, -0.15, 1.0, -0.15,
+    0.2, -0.15, 0.2, -1.0, 0.7, -0.6, 0.5, -0.3, 0.3, -0.3, 0.5, -0.6, 1.0, -1.0, 1.0,
 ];
 
 fn nested(shape: Shape) -> Course {
     Course::at_speed(shape, &NESTED, 1.0)
+}
+
+/// Three minor loops, each run twice on the way up and twice on the way down of the largest one.
+const MINOR_LOOPS: [f64; 29] = [
+    1.0, -1.0, -0.1, -0.5, -0.1, -0.5, 0.2, -0.4, 0.2, -0.4, 0.6, 0.0, 0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.6,
+    -0.4, 0.2, -0.4, 0.2, -0.5, -0.1, -0.5, -0.1, -1.0, 1.0,
+];
+
+fn minor_loops() -> Course {
+    Course::at_speed(Shape::Triangle, &MINOR_LOOPS, 1.0)
 }
 
 fn first_order_reversals() -> Course {
@@ -192,6 +202,7 @@ pub fn all() -> Vec<Path> {
         path("repeated", true, 97, repeated),
         path("nested", true, 151, || nested(Shape::Triangle)),
         path("nested-untimed", false, 120, || nested(Shape::Sine)),
+        path("minor-loops", true, 163, minor_loops),
         path("first-order-reversals", true, 101, first_order_reversals),
         path("reversals-sine", true, 61, reversals_of_one_duration),
         path("reversals-triangle", true, 107, reversals_of_one_speed),

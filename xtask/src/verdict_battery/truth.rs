@@ -8,6 +8,8 @@
 //! - The law violates the property, and the undisturbed record compares what the property says to be equal, but the
 //!   difference is below [`CLEARLY`] times the effect that matters: either answer is right then, or both are close. So
 //!   a Bouc-Wen law counts as one without return points only where its gaps matter.
+//! - The law violates a property of the memory, but the record shows so only between branches of different speed, where
+//!   the rate could be the reason.
 //! - The slope at the end, the direction of the loops or their area at rest is close to the limit on this path.
 //! - The law neither wears nor depends on the rate, but its first loops shrink or move while it settles: the record
 //!   shows what wear or an asymmetry would show.
@@ -86,4 +88,72 @@ pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Distu
         truth[DETERIORATION] = None;
     }
     truth
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::evidence::evidence;
+    use super::super::paths::SUBSTEPS;
+    use super::super::property::PROPERTIES;
+    use super::super::{AT_REST, disturbances, laws, paths};
+    use super::*;
+
+    /// The evidence of a law on every undisturbed path, and the answers that count.
+    fn survey(law: &laws::Law) -> Vec<(&'static str, Evidence, Answers)> {
+        let none = &disturbances::all()[0];
+        let on = |path: paths::Path| {
+            let inputs = path.inputs();
+            let seconds = path.row_seconds() / SUBSTEPS as f64;
+            let (outputs, at_rest) = (law.run(&inputs, seconds), law.run(&inputs, AT_REST * seconds));
+            let evidence = evidence(&inputs, &outputs, &at_rest, path.timed);
+            (path.name, evidence, truth(law.answers(), &evidence, &path, none))
+        };
+        paths::all().into_iter().map(on).collect()
+    }
+
+    #[test]
+    fn every_answer_counts_on_some_path_and_none_is_contradicted() {
+        for law in laws::all() {
+            let survey = survey(&law);
+            if std::env::var_os("HYSID_SURVEY").is_some() {
+                println!("{}", law.name);
+                for (property, name) in PROPERTIES.iter().enumerate() {
+                    let shown: Vec<String> = survey
+                        .iter()
+                        .map(|(_, e, t)| {
+                            format!(
+                                "{}{}",
+                                e[property].map_or("-".into(), |v| format!("{v:.3}")),
+                                if t[property].is_some() { "*" } else { "" }
+                            )
+                        })
+                        .collect();
+                    println!("   {name:18} {:?} {}", law.answers()[property], shown.join(" "));
+                }
+            }
+            for (property, answer) in law.answers().into_iter().enumerate() {
+                let counts = survey.iter().any(|(_, _, truth)| truth[property].is_some());
+                assert_eq!(counts, answer.is_some(), "{}: {}", law.name, PROPERTIES[property]);
+            }
+            for (property, effect) in EFFECTS {
+                let violated = matches!(property, RATE_DEPENDENCE | DETERIORATION);
+                if law.answers()[property] == Some(violated) {
+                    let clear = |e: &Evidence| e[property].is_some_and(|index| index >= CLEARLY * effect);
+                    assert!(
+                        survey.iter().any(|(_, e, _)| clear(e)),
+                        "{}: {}",
+                        law.name,
+                        PROPERTIES[property]
+                    );
+                }
+                let exact = law.answers()[RATE_DEPENDENCE] == Some(false)
+                    && matches!(property, WIPING_OUT | CONGRUENCY | MASING | LOOP_CLOSURE)
+                    && law.answers()[property] == Some(true);
+                for (path, evidence, _) in survey.iter().filter(|_| exact) {
+                    let index = evidence[property].unwrap_or(0.0);
+                    assert!(index < effect, "{} on {path}: {} {index}", law.name, PROPERTIES[property]);
+                }
+            }
+        }
+    }
 }

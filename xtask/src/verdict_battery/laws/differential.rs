@@ -80,7 +80,7 @@ fn bouc_wen<const HARD: usize>() -> Box<dyn Specimen> {
 /// 107 (1981) 1069.
 fn degrading() -> Box<dyn Specimen> {
     let law = |_: f64, z: f64, way: f64, energy: f64| {
-        SOFTENING.slope(z, way, 1.0 + 0.25 * energy) / (1.0 + 0.1 * energy)
+        SOFTENING.slope(z, way, 1.0 + 0.5 * energy) / (1.0 + 0.1 * energy)
     };
     Box::new(Along::law(law, |x, z| 0.1 * x + z))
 }
@@ -173,7 +173,7 @@ pub fn laws() -> Vec<Law> {
         ),
         law(
             "bouc-wen-wide",
-            "y y n  n n n  y n  n -",
+            "y y n  n n n  y -  n -",
             "as Bouc-Wen with a long transition: large gaps",
             bouc_wen::<2>,
         ),
@@ -211,7 +211,7 @@ pub fn laws() -> Vec<Law> {
         ),
         law(
             "jiles-atherton",
-            "y n n  n n n  y y  n -",
+            "y n n  n n n  y -  n -",
             "the branch depends on field and magnetization alone; its gaps matter on some paths only",
             jiles_atherton,
         ),

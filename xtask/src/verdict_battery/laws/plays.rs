@@ -62,7 +62,7 @@ impl Specimen for RateDependent {
     fn advance(&mut self, x: f64, seconds: f64) -> f64 {
         let speed = if seconds > 0.0 { (x - self.before).abs() / seconds } else { 0.0 };
         self.before = x;
-        self.plays.advance(x, 0.5 * (1.0 + speed / 0.2).ln())
+        self.plays.advance(x, 0.9 * (1.0 + speed / 0.2).ln())
     }
 }
 
@@ -159,7 +159,7 @@ pub fn laws() -> Vec<Law> {
             name: "rate-dependent-pi",
             answers: "y n y  - - -  y -  n y",
             why: "thresholds grow with the speed; conditions of the memory are stated for one speed only",
-            specimen: || Box::new(RateDependent { plays: plays(8, 0.3, 0.3), before: 0.0 }),
+            specimen: || Box::new(RateDependent { plays: plays(8, 0.2, 0.3), before: 0.0 }),
         },
         Law {
             name: "pi-lag",
@@ -178,7 +178,7 @@ pub fn laws() -> Vec<Law> {
             answers: "y - n  y n n  n n  n y",
             why: "an even function of plays: its two wings are passed in opposite directions, the memory is that of the plays",
             specimen: || {
-                Box::new(Superposition { plays: plays(6, 0.3, 0.3), of_input: |x| x, of_output: |p| p * p })
+                Box::new(Superposition { plays: plays(6, 0.5, 0.3), of_input: |x| x, of_output: |p| p * p })
             },
         },
     ]

@@ -127,7 +127,7 @@ pub fn laws() -> Vec<Law> {
         },
         Law {
             name: "menegotto-pinto",
-            answers: "y y n  n n n  - y  n -",
+            answers: "y y n  n - n  - y  n -",
             why: "after a short excursion the curve begins anew and overshoots",
             specimen: || Box::new(MenegottoPinto::new()),
         },
