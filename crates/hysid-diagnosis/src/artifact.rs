@@ -25,6 +25,10 @@ const DRIFTS: [f64; 10] = [0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.
 /// A lag of so many rows is at most this share of the rows of a typical branch.
 const LONGEST_LAG: f64 = 0.1;
 
+/// Share of the comparisons that must remain without an artifact, and of the difference that may.
+const AS_MANY: f64 = 0.75;
+const MUCH_SMALLER: f64 = 0.5;
+
 /// Something in the measurement that is not the specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Artifact {
@@ -119,11 +123,8 @@ pub(crate) fn withhold(
     findings: &mut [Finding],
     test: impl Fn(&BranchSet, Property) -> Finding,
 ) -> Vec<Explanation> {
-    let mut open: Vec<Property> = findings
-        .iter()
-        .filter(|finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property))
-        .map(|finding| finding.property)
-        .collect();
+    let is_open = |finding: &&Finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property);
+    let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
     let mut explanations: Vec<Explanation> = Vec::new();
     for artifact in Artifact::candidates(survey) {
         if open.is_empty() {
@@ -133,12 +134,10 @@ pub(crate) fn withhold(
             continue;
         };
         let corrected = BranchSet::new(&data, options);
-        let properties: Vec<Property> = open
-            .iter()
-            .copied()
-            .filter(|&property| test(&corrected, property).verdict == Verdict::Yes)
-            .collect();
-        open.retain(|property| !properties.contains(property));
+        let explains = |finding: &&Finding| explained(finding, &test(&corrected, finding.property));
+        let properties: Vec<Property> =
+            open.iter().filter(explains).map(|finding| finding.property).collect();
+        open.retain(|finding| !properties.contains(&finding.property));
         if !properties.is_empty() {
             explanations.push(Explanation { artifact, properties });
         }
@@ -155,4 +154,13 @@ pub(crate) fn withhold(
         }
     }
     explanations
+}
+
+/// True if a property that data contradict holds without an artifact, by about as many comparisons and a much smaller
+/// difference.
+fn explained(with: &Finding, without: &Finding) -> bool {
+    let index = |finding: &Finding| finding.index.unwrap_or(f64::INFINITY);
+    without.verdict == Verdict::Yes
+        && without.comparisons as f64 >= AS_MANY * with.comparisons as f64
+        && index(without) <= MUCH_SMALLER * index(with)
 }

@@ -50,6 +50,8 @@ pub(crate) struct Branch {
     pub speed: Option<f64>,
     /// Turning points that enclose it, the latest last; the last is where it began.
     pub beneath: Vec<f64>,
+    /// How many of them the input is known to have turned at; the first row of a record is no turning point.
+    pub known: usize,
     /// Those of them that still enclose it at its end, the latest last.
     pub around: Vec<f64>,
     /// Loops that it closes on its way.
@@ -279,6 +281,27 @@ impl<'a> BranchSet<'a> {
         (LOWEST * self.height()).max(LOWEST_IN_NOISE * self.output_noise.deviation())
     }
 
+    /// By how much the output after a turning point may be off because the input turned between two rows, and so further
+    /// on than it was measured: half the way between rows, times the change of slope.
+    pub fn turn_error(&self, branch: &Branch) -> f64 {
+        let record = &self.data.records()[branch.record];
+        let (x, first) = (&record.inputs()[0], branch.rows.start);
+        let before = (x[first] - x[first.saturating_sub(1)]).abs();
+        let after = (x[(first + 1).min(x.len() - 1)] - x[first]).abs();
+        let way = before.max(after);
+        let reach = 2.0 * if branch.rises() { way } else { -way };
+        let slope = |of: &Branch| -> Option<f64> {
+            Some((of.curve.at(branch.from + reach)?.y - of.curve.at(branch.from)?.y) / reach)
+        };
+        let place = self.branches.partition_point(|b| (b.record, b.rows.start) < (branch.record, first));
+        let arriving = place.checked_sub(1).map(|place| &self.branches[place]);
+        let arriving = arriving.filter(|arriving| arriving.record == branch.record);
+        match (slope(branch), arriving.and_then(slope)) {
+            (Some(own), Some(other)) => 0.5 * way * (own - other).abs(),
+            _ => 0.0,
+        }
+    }
+
     /// Mean time between rows; 0 without time.
     pub fn time_step(&self) -> f64 {
         let records = self.data.records().iter();
@@ -312,6 +335,8 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
             stack[stack.len().saturating_sub(KEPT)..].iter().map(|(x, _)| *x).collect()
         };
         let beneath = latest(&stack);
+        let begins_there = stack.len() == beneath.len() && stack[0].1.is_none() && stack.len() > 1;
+        let known = beneath.len() - usize::from(begins_there);
         let mut closes = Vec::new();
         while stack.len() >= 2 {
             let (before, arrived) = stack[stack.len() - 2];
@@ -337,6 +362,7 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
             to,
             speed,
             beneath,
+            known,
             around,
             closes,
             curve: Curve::default(),

@@ -77,7 +77,9 @@ fn same_beginning(survey: &BranchSet) -> BTreeMap<(i64, bool), Vec<usize>> {
 
 /// True if the turning points that enclose two branches differ, so that they are on different loops.
 fn other_past(survey: &BranchSet, a: &Branch, b: &Branch) -> bool {
-    let outer = |branch: &Branch, depth: usize| branch.beneath.iter().rev().nth(depth).copied();
+    let outer = |branch: &Branch, depth: usize| {
+        branch.beneath.iter().rev().nth(depth).copied().filter(|_| depth < branch.known)
+    };
     (1..=2).any(|depth| match (outer(a, depth), outer(b, depth)) {
         (Some(a), Some(b)) => (a - b).abs() > OTHER_PAST * survey.width(),
         // What is not known is not known to differ.
@@ -129,7 +131,12 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
     Some(Comparison {
         index: (square / places).sqrt() / height,
         deviation: deviation / height,
-        bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
+        bend: ((bend / places).sqrt()
+            + start_a.bend
+            + start_b.bend
+            + survey.turn_error(a)
+            + survey.turn_error(b))
+            / height,
         pieces: vec![survey.piece(a), survey.piece(b)],
         curves: vec![
             from_beginning(survey.curve_between("first", a, (beginning, end)), start_a.y),

@@ -96,8 +96,10 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let alike: Vec<&Cycle> =
         group.iter().filter(|cycle| survey.similar_speed(branch(group[0]), branch(cycle))).copied().collect();
+    // The first cycle still remembers what was before.
+    let alike = &alike[1.min(alike.len())..];
     let step = alike.len().div_ceil(MOST).max(1);
-    let cycles: Vec<&Cycle> = alike.into_iter().step_by(step).collect();
+    let cycles: Vec<&Cycle> = alike.iter().copied().step_by(step).collect();
     let n = cycles.len();
     let first = cycles.first()?;
     if n < 2 || first.area < SMALLEST * largest {

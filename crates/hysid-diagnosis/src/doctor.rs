@@ -7,6 +7,7 @@ mod closure;
 mod columns;
 mod creep;
 mod drift;
+mod hum;
 mod lag;
 mod marks;
 mod repetition;
@@ -48,6 +49,8 @@ pub enum DataIssueKind {
     RepeatedRows,
     /// A column keeps its value for a fixed number of rows.
     HeldSamples,
+    /// The output swings with a period of its own.
+    Hum,
     /// A column has few different values.
     CoarseResolution,
     /// Time steps change within a record.
@@ -125,6 +128,7 @@ pub(crate) fn examine(
         artifacts::added(survey, lag::complaints(survey, delay), explanations, DataIssueKind::Lag),
         artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
         creep::complaints(survey),
+        hum::complaints(survey),
         clipping::complaints(survey),
         repetition::complaints(survey),
         sampling::complaints(survey),

@@ -7,8 +7,16 @@
 mod differences;
 mod resolution;
 
+use std::f64::consts::TAU;
+
 pub(crate) use differences::roughness;
 pub(crate) use resolution::resolution;
+
+/// Share of the variance above which noise is hum.
+const MOSTLY: f64 = 0.7;
+
+/// Amplitude of a sine over the deviation that its median magnitude seems to have: `√2 · 0.6745 √2`.
+const SINE: f64 = 0.954;
 
 /// How the noise of a part depends on that of the rows before.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,6 +94,22 @@ impl Noise {
     /// Standard deviation of white noise that neighbouring rows would differ by as much.
     pub fn roughness(&self) -> f64 {
         self.roughness
+    }
+
+    /// Period in rows and amplitude of the hum, where most of the noise is hum.
+    pub fn hum(&self) -> Option<(f64, f64)> {
+        let periodic = |part: &(Correlation, f64)| match part {
+            (Correlation::Periodic(angle), variance) => Some((TAU / angle, *variance)),
+            _ => None,
+        };
+        let parts: Vec<(f64, f64)> = self.parts.iter().filter_map(periodic).collect();
+        let variance: f64 = parts.iter().map(|part| part.1).sum();
+        if variance <= MOSTLY * self.deviation().powi(2) {
+            return None;
+        }
+        let period = parts.iter().map(|(period, part)| period * part).sum::<f64>() / variance;
+        // The median magnitude of a sine is 1.48 times that of a normal number of its deviation.
+        Some((period, SINE * variance.sqrt()))
     }
 
     /// True if rows are independent.

@@ -97,7 +97,9 @@ fn end(survey: &BranchSet, rising: bool) -> Option<Finding> {
 fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
     let place = |part: usize| branch.from + (branch.to - branch.from) * part as f64 / PARTS as f64;
     let readings: Vec<_> = (0..=PARTS).map(|part| branch.curve.at(place(part))).collect::<Option<_>>()?;
-    let rises: Vec<f64> = readings.windows(2).map(|pair| (pair[1].y - pair[0].y).abs()).collect();
+    let direction = (readings[PARTS].y - readings[0].y).signum();
+    let rises: Vec<f64> =
+        readings.windows(2).map(|pair| (direction * (pair[1].y - pair[0].y)).max(0.0)).collect();
     let largest = rises.iter().copied().fold(0.0, f64::max);
     if (readings[PARTS].y - readings[0].y).abs() < HIGH * survey.height() {
         return None;

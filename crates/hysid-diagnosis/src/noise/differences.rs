@@ -18,7 +18,7 @@ const ORDERS: [usize; 4] = [2, 3, 4, 6];
 const DISTANCES: [usize; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32];
 
 /// A difference spans at most this share of a run.
-const SPAN: f64 = 0.125;
+const SPAN: f64 = 0.3;
 
 /// Correlations from row to row that are tried, where they decay within a share of a run.
 const DECAYS: [f64; 6] = [0.6, 0.8, 0.9, 0.95, 0.98, 0.99];
@@ -42,6 +42,9 @@ const SAMPLING: f64 = 7.0;
 
 /// Power of the distance with which differences grow on a line with many kinks.
 const KINKS: i32 = 3;
+
+/// Distances of near rows.
+const NEAR: usize = 2;
 
 /// Parts below this share of the variance are left out.
 const SMALLEST: f64 = 1e-3;
@@ -81,11 +84,14 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     if roughness == 0.0 {
         return Noise::default();
     }
-    // White noise is believed as long as it explains the differences to within their sampling error.
-    let white = vec![Correlation::White];
-    let (mut shares, misfit) = shares(&differences, &white);
-    let mut correlations = white;
-    if misfit > SAMPLING / (rows as f64).sqrt() {
+    // White noise is believed as long as it alone explains the differences of near rows, and with the course of the
+    // values all others, to within their sampling error.
+    let mut correlations = vec![Correlation::White];
+    let (mut shares, misfit) = shares(&differences, &correlations);
+    let sampling = SAMPLING / (rows as f64).sqrt();
+    let is_white = |d: &Difference| (d.variance / shares[0].max(f64::MIN_POSITIVE) - 1.0).abs() <= sampling;
+    let near = differences.iter().filter(|difference| difference.distance <= NEAR);
+    if misfit > sampling || !near.into_iter().all(is_white) {
         correlations = self::correlations(length);
         shares = self::shares(&differences, &correlations).0;
     }
@@ -288,6 +294,9 @@ mod tests {
             let ratio = noise.deviation() / (0.01 / 2.0_f64.sqrt());
             // A sine has another median magnitude than a normal number: 1.48 times too much.
             assert!((0.67..1.6).contains(&ratio), "period {period}: {ratio}");
+            let (found, amplitude) = noise.hum().expect("hum");
+            assert!((found / period - 1.0).abs() < 0.15, "{found} for {period}");
+            assert!((amplitude / 0.01 - 1.0).abs() < 0.3, "{amplitude} for a period of {period}");
         }
     }
 

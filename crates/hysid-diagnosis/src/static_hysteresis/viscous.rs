@@ -80,6 +80,11 @@ impl Products {
                 continue;
             }
             let (before, after) = (row.saturating_sub(1), (row + 1).min(x.len() - 1));
+            // Where the input turns between rows, its rate is not known.
+            let (came, goes) = (x[row] - x[before], x[after] - x[row]);
+            if came * goes <= 0.0 {
+                continue;
+            }
             let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;
             let u = scale * (x[row] - middle);
             let columns = [
