@@ -86,10 +86,14 @@ fn folder_of_records(request: &Request) -> Result<PathBuf> {
         Some(list) => list.with_extension("records"),
         None => program::target()?.join("verdict-battery"),
     };
-    if folder.exists() {
-        fs::remove_dir_all(&folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
-    }
     fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    // What an earlier run left; whatever else is there stays.
+    for entry in fs::read_dir(&folder).with_context(|| format!("{} cannot be read", folder.display()))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ending| ending == "csv") {
+            fs::remove_file(&path).with_context(|| format!("{} cannot be removed", path.display()))?;
+        }
+    }
     Ok(folder)
 }
 

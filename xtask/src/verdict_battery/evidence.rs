@@ -27,15 +27,18 @@ pub type Evidence = [Option<f64>; PROPERTIES.len()];
 /// The evidence of a run from its inputs and outputs; `at_rest` are the outputs at a vanishing speed.
 pub fn evidence(inputs: &[f64], outputs: &[f64], at_rest: &[f64], timed: bool) -> Evidence {
     let [run, slow] = [outputs, at_rest].map(|outputs| Branches::of(inputs, outputs, timed));
+    let any_speed = Branches::of(inputs, outputs, false);
     let (run, slow) = (&run, &slow);
+    // Of branches of one speed; where there are none, of all.
+    let of_memory = |index: fn(&Branches) -> Option<f64>| index(run).or_else(|| index(&any_speed));
     let cycles = cycles(run);
     let mut evidence = [None; PROPERTIES.len()];
     evidence[STATIC_HYSTERESIS] = fullness(slow, run.height);
     evidence[ORIENTATION] = orientation(run);
     evidence[RATE_DEPENDENCE] = rate_dependence(run);
-    evidence[WIPING_OUT] = wiping_out(run);
-    evidence[CONGRUENCY] = congruency(run);
-    evidence[MASING] = masing(run);
+    evidence[WIPING_OUT] = of_memory(wiping_out);
+    evidence[CONGRUENCY] = of_memory(congruency);
+    evidence[MASING] = of_memory(masing);
     evidence[ODD_SYMMETRY] = odd_symmetry(run);
     evidence[SATURATION] = saturation(run);
     evidence[DETERIORATION] = deterioration(run, &cycles);
@@ -274,6 +277,10 @@ fn saturation(run: &Branches) -> Option<f64> {
 /// and speed; at least two in a group.
 fn cycles(run: &Branches) -> Vec<Vec<usize>> {
     let same = |a: f64, b: f64| (a - b).abs() <= SAME * run.width;
+    let same_surroundings = |a: &Branch, b: &Branch| {
+        let mut outer = a.around.iter().rev().zip(b.around.iter().rev()).skip(1).take(2);
+        outer.all(|(a, b)| same(*a, *b))
+    };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut index = 0;
     while index + 1 < run.branches.len() {
@@ -288,7 +295,7 @@ fn cycles(run: &Branches) -> Vec<Vec<usize>> {
             same(other.from, there.from)
                 && same(other.to, there.to)
                 && a.max(b) <= 1.25 * a.min(b)
-                && !other_past(run, other, there)
+                && same_surroundings(other, there)
         });
         match known {
             Some(group) => group.push(index),
