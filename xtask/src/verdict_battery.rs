@@ -19,6 +19,7 @@ mod tally;
 mod truth;
 
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path as FilePath, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
@@ -75,8 +76,7 @@ pub fn run(request: &Request) -> Result<()> {
     if let Some(list) = &request.list_wrong {
         files::write(list, &page::wrong_verdicts(&verdicts))?;
     }
-    print!("{tables}");
-    Ok(())
+    io::stdout().write_all(tables.as_bytes()).context("cannot write to stdout")
 }
 
 /// The folder of the records: beside the list of wrong verdicts, whose records stay; otherwise they go as soon as
@@ -86,10 +86,14 @@ fn folder_of_records(request: &Request) -> Result<PathBuf> {
         Some(list) => list.with_extension("records"),
         None => program::target()?.join("verdict-battery"),
     };
-    if folder.exists() {
-        fs::remove_dir_all(&folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
-    }
     fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+    // What an earlier run left; whatever else is there stays.
+    for entry in fs::read_dir(&folder).with_context(|| format!("{} cannot be read", folder.display()))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ending| ending == "csv") {
+            fs::remove_file(&path).with_context(|| format!("{} cannot be removed", path.display()))?;
+        }
+    }
     Ok(folder)
 }
 
@@ -145,6 +149,7 @@ impl Battery {
             }
         });
         if let Some(error) = failure.into_inner().expect("no thread panics") {
+            eprintln!("stopped: {} of {} runs are done", finished.into_inner(), runs.len());
             return Err(error);
         }
         let done = done.into_inner().expect("no thread panics");

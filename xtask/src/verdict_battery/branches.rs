@@ -15,6 +15,8 @@ pub struct Branch {
     pub to: f64,
     /// Turning points that enclose its beginning, the latest last, which is its own beginning.
     pub outer: Vec<f64>,
+    /// Those of them that still enclose its end.
+    pub around: Vec<f64>,
     /// Turning points to which it returns: the input, and the step at which it was left.
     pub returns: Vec<(f64, usize)>,
 }
@@ -165,8 +167,9 @@ fn cut(inputs: &[f64], smallest: f64) -> Vec<Branch> {
             returns.push((before, step));
             open.truncate(open.len() - 2);
         }
+        let around = open.iter().map(|&step| inputs[step]).collect();
         open.push(last);
-        branches.push(Branch { first, last, from, to, outer, returns });
+        branches.push(Branch { first, last, from, to, outer, around, returns });
     }
     branches
 }

@@ -18,6 +18,9 @@ const PLACES: usize = 40;
 /// Shares of a course where speeds are compared.
 const SPEED_AT: [f64; 4] = [0.05, 0.3, 0.6, 0.95];
 
+/// Loops that fill less than this share of the box of the run are none.
+const LOOPLESS: f64 = 0.003;
+
 /// The index of each property; none where the run has nothing to compare.
 ///
 /// Violations: the largest of all comparisons. Orientation: signed over unsigned area. Saturation: slope of the last
@@ -27,15 +30,18 @@ pub type Evidence = [Option<f64>; PROPERTIES.len()];
 /// The evidence of a run from its inputs and outputs; `at_rest` are the outputs at a vanishing speed.
 pub fn evidence(inputs: &[f64], outputs: &[f64], at_rest: &[f64], timed: bool) -> Evidence {
     let [run, slow] = [outputs, at_rest].map(|outputs| Branches::of(inputs, outputs, timed));
+    let any_speed = Branches::of(inputs, outputs, false);
     let (run, slow) = (&run, &slow);
+    // Of branches of one speed; where there are none, of all.
+    let of_memory = |index: fn(&Branches) -> Option<f64>| index(run).or_else(|| index(&any_speed));
     let cycles = cycles(run);
     let mut evidence = [None; PROPERTIES.len()];
     evidence[STATIC_HYSTERESIS] = fullness(slow, run.height);
     evidence[ORIENTATION] = orientation(run);
     evidence[RATE_DEPENDENCE] = rate_dependence(run);
-    evidence[WIPING_OUT] = wiping_out(run);
-    evidence[CONGRUENCY] = congruency(run);
-    evidence[MASING] = masing(run);
+    evidence[WIPING_OUT] = of_memory(wiping_out);
+    evidence[CONGRUENCY] = of_memory(congruency);
+    evidence[MASING] = of_memory(masing);
     evidence[ODD_SYMMETRY] = odd_symmetry(run);
     evidence[SATURATION] = saturation(run);
     evidence[DETERIORATION] = deterioration(run, &cycles);
@@ -56,8 +62,16 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Signed area (clockwise) and unsigned area between a branch and the next, and the width that both share.
-fn opening(run: &Branches, there: &Branch, back: &Branch) -> Option<(f64, f64, f64)> {
+/// A branch and the next, over the inputs of both.
+struct Opening {
+    /// `∮ y dx`, positive if passed clockwise.
+    signed: f64,
+    /// The same with all parts counted as positive.
+    area: f64,
+    width: f64,
+}
+
+fn opening(run: &Branches, there: &Branch, back: &Branch) -> Option<Opening> {
     let ((a, b), (c, d)) = (there.span(), back.span());
     let (low, high) = (a.max(c), b.min(d));
     let sign = if there.rises() { 1.0 } else { -1.0 };
@@ -65,28 +79,34 @@ fn opening(run: &Branches, there: &Branch, back: &Branch) -> Option<(f64, f64, f
         .map(|x| Some(sign * (run.at(there, x)? - run.at(back, x)?)))
         .collect::<Option<_>>()?;
     let step = (high - low) / apart.len() as f64;
-    Some((apart.iter().sum::<f64>() * step, apart.iter().map(|v| v.abs()).sum::<f64>() * step, high - low))
+    Some(Opening {
+        signed: apart.iter().sum::<f64>() * step,
+        area: apart.iter().map(|v| v.abs()).sum::<f64>() * step,
+        width: high - low,
+    })
 }
 
-fn openings(run: &Branches) -> Vec<(f64, f64, f64)> {
-    run.branches.windows(2).filter_map(|pair| opening(run, &pair[0], &pair[1])).collect()
+/// The openings over more than this share of the widest.
+fn wide_openings(run: &Branches, share: f64) -> Vec<Opening> {
+    let mut openings: Vec<Opening> =
+        run.branches.windows(2).filter_map(|pair| opening(run, &pair[0], &pair[1])).collect();
+    let widest = openings.iter().map(|opening| opening.width).fold(0.0, f64::max);
+    openings.retain(|opening| opening.width > share * widest);
+    openings
 }
 
 /// Mean area of the widest loops over their width and the range of the output at the measured speed.
 fn fullness(slow: &Branches, height: f64) -> Option<f64> {
-    let openings = openings(slow);
-    let widest = largest(openings.iter().map(|o| o.2))?;
-    let wide: Vec<f64> =
-        openings.iter().filter(|o| o.2 > 0.7 * widest).map(|o| o.1 / (o.2 * height)).collect();
-    Some(wide.iter().sum::<f64>() / wide.len() as f64)
+    let wide = wide_openings(slow, 0.7);
+    let sum: f64 = wide.iter().map(|opening| opening.area / (opening.width * height)).sum();
+    (!wide.is_empty()).then(|| sum / wide.len() as f64)
 }
 
 fn orientation(run: &Branches) -> Option<f64> {
-    let openings = openings(run);
-    let widest = largest(openings.iter().map(|o| o.2))?;
-    let open = || openings.iter().filter(|o| o.2 > 0.3 * widest && o.1 > 0.003 * o.2 * run.height);
-    let area: f64 = open().map(|o| o.1).sum();
-    (area > 0.0).then(|| open().map(|o| o.0).sum::<f64>() / area)
+    let mut open = wide_openings(run, 0.3);
+    open.retain(|opening| opening.area > LOOPLESS * opening.width * run.height);
+    let area: f64 = open.iter().map(|opening| opening.area).sum();
+    (area > 0.0).then(|| open.iter().map(|opening| opening.signed).sum::<f64>() / area)
 }
 
 /// Largest difference between the fastest and the slowest branch of equal ends, over the range of the output. What a
@@ -274,6 +294,10 @@ fn saturation(run: &Branches) -> Option<f64> {
 /// and speed; at least two in a group.
 fn cycles(run: &Branches) -> Vec<Vec<usize>> {
     let same = |a: f64, b: f64| (a - b).abs() <= SAME * run.width;
+    let same_surroundings = |a: &Branch, b: &Branch| {
+        let mut outer = a.around.iter().rev().zip(b.around.iter().rev()).skip(1).take(2);
+        outer.all(|(a, b)| same(*a, *b))
+    };
     let mut groups: Vec<Vec<usize>> = Vec::new();
     let mut index = 0;
     while index + 1 < run.branches.len() {
@@ -288,7 +312,7 @@ fn cycles(run: &Branches) -> Vec<Vec<usize>> {
             same(other.from, there.from)
                 && same(other.to, there.to)
                 && a.max(b) <= 1.25 * a.min(b)
-                && !other_past(run, other, there)
+                && same_surroundings(other, there)
         });
         match known {
             Some(group) => group.push(index),
@@ -300,14 +324,11 @@ fn cycles(run: &Branches) -> Vec<Vec<usize>> {
     groups
 }
 
-/// Loops that fill less than this share of the box of the run have no energy to lose.
-const LOOPLESS: f64 = 0.003;
-
 /// The largest loss of energy of a kind of repeated loops, from the first to the last; of three loops at least.
 fn deterioration(run: &Branches, groups: &[Vec<usize>]) -> Option<f64> {
     // Loops that cross themselves have an area, but hardly an energy.
     let energy = |index: usize| {
-        let (signed, area, width) = opening(run, &run.branches[index], &run.branches[index + 1])?;
+        let Opening { signed, area, width } = opening(run, &run.branches[index], &run.branches[index + 1])?;
         let energy = if signed.abs() < 0.3 * area { area } else { signed.abs() };
         (area > LOOPLESS * width * run.height).then_some(energy)
     };

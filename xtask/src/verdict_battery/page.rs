@@ -27,6 +27,7 @@ pub fn tables(names: &Names, verdicts: &[Verdict]) -> String {
         by("property", &PROPERTIES, |verdict| verdict.property),
         by("law", &names.laws, |verdict| verdict.law),
         by("path", &names.paths, |verdict| verdict.path),
+        crossed(&names.disturbances, verdicts),
         most_frequent(verdicts),
     ]
     .concat()
@@ -45,6 +46,19 @@ fn table(heading: &str, names: &[&str], verdicts: &[Verdict], of: fn(&Verdict) -
 fn cells(tally: &Tally) -> [String; 4] {
     let share = tally.percent_wrong().map_or_else(|| "–".into(), |percent| format!("{percent:.2}"));
     [tally.right.to_string(), tally.wrong.to_string(), tally.not_testable.to_string(), share]
+}
+
+/// Numbers of wrong verdicts, a row for each disturbance and a column for each property.
+fn crossed(disturbances: &[&str], verdicts: &[Verdict]) -> String {
+    let mut rows = vec![row("disturbance", &PROPERTIES)];
+    for disturbance in disturbances {
+        let wrong = |property: &&str| {
+            let here = |v: &&Verdict| v.disturbance == *disturbance && v.property == *property;
+            Tally::of(verdicts.iter().filter(here)).wrong.to_string()
+        };
+        rows.push(row(disturbance, &PROPERTIES.iter().map(wrong).collect::<Vec<_>>()));
+    }
+    format!("## Wrong verdicts by disturbance and property\n\n{}\n", aligned(&rows))
 }
 
 fn most_frequent(verdicts: &[Verdict]) -> String {

@@ -48,12 +48,12 @@ enum Course {
 }
 
 impl Course {
-    /// Between turning points at this speed, in full ranges per second.
-    fn at_speed(shape: Shape, turns: &[f64], speed: f64) -> Self {
+    /// Between turning points, the whole range in a second.
+    fn between(shape: Shape, turns: &[f64]) -> Self {
         let mut from = 0.0_f64;
         let mut pieces = Vec::new();
         for &to in turns {
-            pieces.push((to, 0.5 * (to - from).abs() / speed));
+            pieces.push((to, 0.5 * (to - from).abs()));
             from = to;
         }
         Self::Pieces(shape, pieces)
@@ -98,11 +98,11 @@ fn cycles(amplitudes: impl Iterator<Item = f64>) -> Vec<f64> {
 
 fn growing(shape: Shape) -> Course {
     let twice = [0.2, 0.4, 0.6, 0.8, 1.0].into_iter().flat_map(|a| [a, a]);
-    Course::at_speed(shape, &cycles(twice), 1.0)
+    Course::between(shape, &cycles(twice))
 }
 
 fn repeated() -> Course {
-    Course::at_speed(Shape::Sine, &cycles([1.0; 8].into_iter()), 1.0)
+    Course::between(Shape::Sine, &cycles([1.0; 8].into_iter()))
 }
 
 /// The same minor loops on both branches, nested three deep, and each repeated once.
@@ -112,7 +112,7 @@ const NESTED: [f64; 33] = [
 ];
 
 fn nested(shape: Shape) -> Course {
-    Course::at_speed(shape, &NESTED, 1.0)
+    Course::between(shape, &NESTED)
 }
 
 /// Three minor loops, each run twice on the way up and twice on the way down of the largest one.
@@ -122,12 +122,12 @@ const MINOR_LOOPS: [f64; 29] = [
 ];
 
 fn minor_loops() -> Course {
-    Course::at_speed(Shape::Triangle, &MINOR_LOOPS, 1.0)
+    Course::between(Shape::Triangle, &MINOR_LOOPS)
 }
 
 fn first_order_reversals() -> Course {
     let turns: Vec<f64> = (1..=10).flat_map(|k| [1.0, 1.0 - 0.2 * f64::from(k)]).chain([1.0]).collect();
-    Course::at_speed(Shape::Triangle, &turns, 1.0)
+    Course::between(Shape::Triangle, &turns)
 }
 
 /// Turning points by chance between two passes of the whole range.
@@ -145,7 +145,7 @@ fn random_turns(name: &str) -> Vec<f64> {
 }
 
 fn reversals_of_one_speed() -> Course {
-    Course::at_speed(Shape::Triangle, &random_turns("triangle"), 1.0)
+    Course::between(Shape::Triangle, &random_turns("triangle"))
 }
 
 /// Every branch takes the same time, so that the speeds differ.
@@ -176,7 +176,7 @@ fn two_tones() -> Course {
 
 fn decaying() -> Course {
     let amplitudes = (0..12).map(|k| 0.8_f64.powi(k));
-    Course::at_speed(Shape::Triangle, &cycles(amplitudes), 1.0)
+    Course::between(Shape::Triangle, &cycles(amplitudes))
 }
 
 /// From 0.05 to 0.5 cycles per second, as a power.
@@ -190,7 +190,7 @@ fn chirp() -> Course {
 }
 
 fn one_loop() -> Course {
-    Course::at_speed(Shape::Sine, &[1.0, -1.0, 1.0], 1.0)
+    Course::between(Shape::Sine, &[1.0, -1.0, 1.0])
 }
 
 /// All paths.

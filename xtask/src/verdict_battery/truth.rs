@@ -32,15 +32,15 @@ use super::property::{
 /// A violation counts from this multiple of the effect that matters on.
 const CLEARLY: f64 = 2.0;
 
-/// The effects that docs/diagnosis.md calls relevant: differences above them matter.
-const EFFECTS: [(usize, f64); 7] = [
-    (RATE_DEPENDENCE, 0.01),
-    (WIPING_OUT, 0.01),
-    (CONGRUENCY, 0.05),
-    (MASING, 0.05),
-    (ODD_SYMMETRY, 0.02),
-    (DETERIORATION, 0.05),
-    (LOOP_CLOSURE, 0.01),
+/// Properties that a law violates, the answer of a law that does, and the effect that docs/diagnosis.md calls relevant.
+const VIOLATIONS: [(usize, bool, f64); 7] = [
+    (RATE_DEPENDENCE, true, 0.01),
+    (WIPING_OUT, false, 0.01),
+    (CONGRUENCY, false, 0.05),
+    (MASING, false, 0.05),
+    (ODD_SYMMETRY, false, 0.02),
+    (DETERIORATION, true, 0.05),
+    (LOOP_CLOSURE, false, 0.01),
 ];
 
 /// Loops that fill less than this share of their box are none, if it is half of it; those that fill twice as much are.
@@ -56,12 +56,14 @@ const SATURATED: f64 = 0.1;
 pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Disturbance) -> Answers {
     let depends_on_rate = law[RATE_DEPENDENCE] == Some(true);
     let mut truth = law;
-    for (property, effect) in EFFECTS {
-        let violated = matches!(property, RATE_DEPENDENCE | DETERIORATION);
-        if let Some(index) = evidence[property]
-            && law[property] == Some(violated)
-            && index < CLEARLY * effect
-        {
+    for (property, violated, effect) in VIOLATIONS {
+        let Some(index) = evidence[property] else { continue };
+        let hardly_shows = law[property] == Some(violated) && index < CLEARLY * effect;
+        let settles = law[property] == Some(!violated)
+            && matches!(property, ODD_SYMMETRY | DETERIORATION)
+            && !depends_on_rate
+            && index > effect / CLEARLY;
+        if hardly_shows || settles {
             truth[property] = None;
         }
     }
@@ -76,15 +78,7 @@ pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Distu
     if depends_on_rate && !path.timed {
         truth[STATIC_HYSTERESIS] = None;
     }
-    let effect = |property: usize| {
-        EFFECTS.iter().find(|(name, _)| *name == property).map_or(0.0, |(_, effect)| *effect)
-    };
-    let moves = |property: usize| evidence[property].is_some_and(|index| index > effect(property) / CLEARLY);
-    if law[ODD_SYMMETRY] == Some(true) && !depends_on_rate && moves(ODD_SYMMETRY) {
-        truth[ODD_SYMMETRY] = None;
-    }
-    let settles = law[DETERIORATION] == Some(false) && !depends_on_rate && moves(DETERIORATION);
-    if settles || disturbance.wears() {
+    if disturbance.wears() {
         truth[DETERIORATION] = None;
     }
     truth
@@ -115,28 +109,11 @@ mod tests {
     fn every_answer_counts_on_some_path_and_none_is_contradicted() {
         for law in laws::all() {
             let survey = survey(&law);
-            if std::env::var_os("HYSID_SURVEY").is_some() {
-                println!("{}", law.name);
-                for (property, name) in PROPERTIES.iter().enumerate() {
-                    let shown: Vec<String> = survey
-                        .iter()
-                        .map(|(_, e, t)| {
-                            format!(
-                                "{}{}",
-                                e[property].map_or("-".into(), |v| format!("{v:.3}")),
-                                if t[property].is_some() { "*" } else { "" }
-                            )
-                        })
-                        .collect();
-                    println!("   {name:18} {:?} {}", law.answers()[property], shown.join(" "));
-                }
-            }
             for (property, answer) in law.answers().into_iter().enumerate() {
                 let counts = survey.iter().any(|(_, _, truth)| truth[property].is_some());
                 assert_eq!(counts, answer.is_some(), "{}: {}", law.name, PROPERTIES[property]);
             }
-            for (property, effect) in EFFECTS {
-                let violated = matches!(property, RATE_DEPENDENCE | DETERIORATION);
+            for (property, violated, effect) in VIOLATIONS {
                 if law.answers()[property] == Some(violated) {
                     let clear = |e: &Evidence| e[property].is_some_and(|index| index >= CLEARLY * effect);
                     assert!(

@@ -39,17 +39,8 @@ impl<B: Branches> Memory<B> {
         if x == self.now.0 {
             return self.now.1;
         }
-        let (kept, y) = self.course(x);
-        let reversed = self.reverses(x);
-        if reversed {
-            if self.stack.is_empty() {
-                // The virgin curve reaches as far to the other side.
-                self.stack.push((-self.now.0, -self.now.1));
-            }
-            self.stack.push(self.now);
-        }
-        self.stack.truncate(kept);
-        self.now = (x, y);
+        let (stack, y) = self.course(x);
+        (self.stack, self.now) = (stack, (x, y));
         y
     }
 
@@ -60,11 +51,12 @@ impl<B: Branches> Memory<B> {
         }
     }
 
-    /// How many turning points remain, and the output.
-    fn course(&self, x: f64) -> (usize, f64) {
+    /// The turning points that remain at an input, and the output there.
+    fn course(&self, x: f64) -> (Vec<(f64, f64)>, f64) {
         let mut points = self.stack.clone();
         if self.reverses(x) {
             if points.is_empty() {
+                // The virgin curve reaches as far to the other side.
                 points.push((-self.now.0, -self.now.1));
             }
             points.push(self.now);
@@ -82,7 +74,8 @@ impl<B: Branches> Memory<B> {
             // Beyond the largest input so far the virgin curve continues.
             points.clear();
         }
-        (points.len(), self.output(points.last(), x))
+        let y = self.output(points.last(), x);
+        (points, y)
     }
 
     fn output(&self, from: Option<&(f64, f64)>, x: f64) -> f64 {

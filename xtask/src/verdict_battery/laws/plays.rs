@@ -17,7 +17,8 @@ impl Specimen for Backlash {
 }
 
 /// A function of a sum of plays of a function of the input. Kuhnen, European Journal of Control 9 (2003) 407, for the
-/// function of the output; Al Janaideh, Rakheja & Su, Mechatronics 19 (2009) 656, for that of the input.
+/// function of the output; Al Janaideh, Rakheja & Su, IEEE/ASME Transactions on Mechatronics 16 (2011) 734, for that of
+/// the input.
 struct Superposition {
     plays: Plays,
     of_input: fn(f64) -> f64,
@@ -31,7 +32,7 @@ impl Specimen for Superposition {
 }
 
 /// Two generalized plays with envelopes of their own up and down:
-/// `p = max(γ_up(x) - r, min(γ_down(x) + r, p))`. Brokate & Sprekels (1996), section 2.5; Al Janaideh et al. (2009).
+/// `p = max(γ_up(x) - r, min(γ_down(x) + r, p))`. Brokate & Sprekels (1996), section 2.5; Al Janaideh et al. (2011).
 struct Envelopes {
     values: [f64; 6],
 }
@@ -51,7 +52,7 @@ impl Specimen for Envelopes {
 }
 
 /// Plays whose thresholds grow with the logarithm of the speed, `r_i(v) = r_i [1 + β ln(1 + |v|/v_0)]`. Al Janaideh,
-/// Rakheja & Su, IEEE/ASME Transactions on Mechatronics 16 (2011) 734. Were all thresholds wider by the same multiple of
+/// Rakheja & Su, Mechatronics 19 (2009) 656. Were all thresholds wider by the same multiple of
 /// the speed, the output would only be late.
 struct RateDependent {
     plays: Plays,
@@ -90,8 +91,8 @@ struct Creeping {
 
 impl Specimen for Creeping {
     fn advance(&mut self, x: f64, seconds: f64) -> f64 {
-        for (state, time) in self.states.iter_mut().zip([0.3, 3.0, 30.0]) {
-            *state = x + (*state - x) * (-seconds / time as f64).exp();
+        for (state, time) in self.states.iter_mut().zip([0.3, 3.0, 30.0_f64]) {
+            *state = x + (*state - x) * (-seconds / time).exp();
         }
         self.plays.advance(x, 0.0) + 0.25 * self.states.iter().sum::<f64>()
     }

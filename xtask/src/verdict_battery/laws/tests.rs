@@ -94,6 +94,21 @@ fn bouc_wen_and_dahl_follow_their_exact_solutions() {
 }
 
 #[test]
+fn friction_and_magnetization_follow_their_exact_solutions() {
+    // Sliding at 0.5 per second: Stribeck's curve and the viscosity; no slope of the bristles is left.
+    let force = visited("lugre", &[1.0])[0];
+    let exact = 1.0 + 0.3 * (-1.0_f64).exp() + 0.15 * 0.5;
+    assert!(close(force, exact, 1e-3), "{force} {exact}");
+    // dy/dx = 3 (x - y) + 0.2 from 0.
+    let y = visited("coleman-hodgdon", &[0.5])[0];
+    let exact = 0.5 - 0.8 / 3.0 * (1.0 - (-1.5_f64).exp());
+    assert!(close(y, exact, 1e-9), "{y} {exact}");
+    // A settled loop is odd and stays below saturation.
+    let m = visited("jiles-atherton", &[1.0, -1.0, 1.0, -1.0]);
+    assert!(close(m[2], -m[3], 1e-3) && m[2] > 0.5 && m[2] < 1.0, "{m:?}");
+}
+
+#[test]
 fn preisach_operators_span_the_same_whatever_came_before() {
     for name in ["preisach-symmetric", "preisach-asymmetric", "preisach-broad"] {
         let law = visited(name, &[1.0, -1.0, 0.2, -0.3, 0.2, 1.0, -0.3, 0.2, -0.3]);
