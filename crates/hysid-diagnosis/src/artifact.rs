@@ -29,6 +29,9 @@ const LONGEST_LAG: f64 = 0.1;
 const AS_MANY: f64 = 0.75;
 const MUCH_SMALLER: f64 = 0.5;
 
+/// A probe that leaves less than this share of a difference is on the right way.
+const SMALLER: f64 = 0.9;
+
 /// Something in the measurement that is not the specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Artifact {
@@ -46,15 +49,23 @@ pub(crate) struct Explanation {
 }
 
 impl Artifact {
-    /// Those that are tried, the smallest first.
-    fn candidates(survey: &BranchSet) -> Vec<Self> {
+    /// Those that are tried: one list for each kind and direction, the smallest first.
+    fn candidates(survey: &BranchSet) -> Vec<Vec<Self>> {
         let mut rows: Vec<usize> = survey.branches.iter().map(|branch| branch.rows.len()).collect();
         rows.sort_unstable();
         let typical = rows.get(rows.len() / 2).copied().unwrap_or(0) as f64;
-        let lags = LAGS.into_iter().filter(|lag| *lag <= LONGEST_LAG * typical);
-        let both_ways = |size: f64| [size, -size];
-        let lags = lags.flat_map(both_ways).map(Self::Lag);
-        lags.chain(DRIFTS.into_iter().flat_map(both_ways).map(Self::Drift)).collect()
+        let lags: Vec<f64> = LAGS.into_iter().filter(|lag| *lag <= LONGEST_LAG * typical).collect();
+        let both_ways = [1.0, -1.0].into_iter();
+        let of_way = |way: f64| {
+            let lags = lags.iter().map(|lag| Self::Lag(way * lag)).collect();
+            [lags, DRIFTS.iter().map(|drift| Self::Drift(way * drift)).collect()]
+        };
+        both_ways.flat_map(of_way).collect()
+    }
+
+    /// Two of a list that show whether the others are worth a try.
+    fn probes(list: &[Self]) -> Vec<Self> {
+        [list.len() / 6, list.len() / 2].iter().filter_map(|&place| list.get(place)).copied().collect()
     }
 
     /// The data as they would be without it; `None` where a record cannot be corrected.
@@ -126,20 +137,27 @@ pub(crate) fn withhold(
     let is_open = |finding: &&Finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property);
     let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
     let mut explanations: Vec<Explanation> = Vec::new();
-    for artifact in Artifact::candidates(survey) {
-        if open.is_empty() {
-            break;
-        }
-        let Some(data) = artifact.removed_from(survey.data, survey.height()) else {
-            continue;
-        };
+    let tested = |artifact: Artifact, open: &[Finding]| -> Option<Vec<(Finding, Finding)>> {
+        let data = artifact.removed_from(survey.data, survey.height())?;
         let corrected = BranchSet::new(&data, options);
-        let explains = |finding: &&Finding| explained(finding, &test(&corrected, finding.property));
-        let properties: Vec<Property> =
-            open.iter().filter(explains).map(|finding| finding.property).collect();
-        open.retain(|finding| !properties.contains(&finding.property));
-        if !properties.is_empty() {
-            explanations.push(Explanation { artifact, properties });
+        Some(open.iter().map(|finding| (finding.clone(), test(&corrected, finding.property))).collect())
+    };
+    for list in Artifact::candidates(survey) {
+        let improves = |probe: Artifact| {
+            tested(probe, &open)
+                .is_some_and(|pairs| pairs.iter().any(|(with, without)| is_smaller(with, without)))
+        };
+        if open.is_empty() || !Artifact::probes(&list).into_iter().any(improves) {
+            continue;
+        }
+        for artifact in list {
+            let pairs = tested(artifact, &open).unwrap_or_default();
+            let explains = pairs.iter().filter(|(with, without)| explained(with, without));
+            let properties: Vec<Property> = explains.map(|(with, _)| with.property).collect();
+            open.retain(|finding| !properties.contains(&finding.property));
+            if !properties.is_empty() {
+                explanations.push(Explanation { artifact, properties });
+            }
         }
     }
     for explanation in &explanations {
@@ -156,11 +174,19 @@ pub(crate) fn withhold(
     explanations
 }
 
-/// True if a property that data contradict holds without an artifact, by about as many comparisons and a much smaller
-/// difference.
+/// The difference that contradicts a property without an artifact, as a share of that with it; `None` where far fewer
+/// comparisons are left.
+fn share_left(with: &Finding, without: &Finding) -> Option<f64> {
+    let as_many = without.comparisons as f64 >= AS_MANY * with.comparisons as f64;
+    as_many.then(|| Some(without.index? / with.index?)).flatten()
+}
+
+/// True if the difference is smaller without an artifact.
+fn is_smaller(with: &Finding, without: &Finding) -> bool {
+    share_left(with, without).is_some_and(|share| share < SMALLER)
+}
+
+/// True if a property that data contradict holds without an artifact.
 fn explained(with: &Finding, without: &Finding) -> bool {
-    let index = |finding: &Finding| finding.index.unwrap_or(f64::INFINITY);
-    without.verdict == Verdict::Yes
-        && without.comparisons as f64 >= AS_MANY * with.comparisons as f64
-        && index(without) <= MUCH_SMALLER * index(with)
+    without.verdict == Verdict::Yes && share_left(with, without).is_some_and(|share| share < MUCH_SMALLER)
 }

@@ -18,6 +18,8 @@ pub(crate) struct Comparison {
     pub deviation: f64,
     /// What reading between rows may add to it.
     pub bend: f64,
+    /// What other causes may add to it: turning points between rows, wear.
+    pub other: f64,
     /// Where it was found.
     pub pieces: Vec<Piece>,
     /// What is drawn of it.
@@ -45,7 +47,7 @@ pub(crate) struct Judgement {
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
-    let limit = |c: &Comparison| (effect + 2.0 * c.bend).max(critical * c.deviation);
+    let limit = |c: &Comparison| (effect + 2.0 * (c.bend + c.other)).max(critical * c.deviation);
     let excess = |c: &Comparison| c.index / limit(c);
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));

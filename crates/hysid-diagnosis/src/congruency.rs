@@ -131,12 +131,8 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
     Some(Comparison {
         index: (square / places).sqrt() / height,
         deviation: deviation / height,
-        bend: ((bend / places).sqrt()
-            + start_a.bend
-            + start_b.bend
-            + survey.turn_error(a)
-            + survey.turn_error(b))
-            / height,
+        bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
+        other: (survey.turn_error(a) + survey.turn_error(b)) / height,
         pieces: vec![survey.piece(a), survey.piece(b)],
         curves: vec![
             from_beginning(survey.curve_between("first", a, (beginning, end)), start_a.y),

@@ -96,8 +96,8 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let alike: Vec<&Cycle> =
         group.iter().filter(|cycle| survey.similar_speed(branch(group[0]), branch(cycle))).copied().collect();
-    // The first cycle still remembers what was before.
-    let alike = &alike[1.min(alike.len())..];
+    // The first cycle still remembers what was before; of two, it is all there is to compare with.
+    let alike = if alike.len() > 2 { &alike[1..] } else { &alike[..] };
     let step = alike.len().div_ceil(MOST).max(1);
     let cycles: Vec<&Cycle> = alike.iter().copied().step_by(step).collect();
     let n = cycles.len();

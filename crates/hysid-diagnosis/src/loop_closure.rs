@@ -17,22 +17,25 @@ const MOST: usize = 400;
 const EXPERIMENT: &str = "repeat a loop three times or more";
 
 /// Tests for closed loops.
-pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle], equal_speed: bool) -> Finding {
+pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: bool) -> Finding {
     let groups = repeated(survey, cycles);
-    let comparisons_after = |before: usize| -> Vec<Comparison> {
-        let later: Vec<&Cycle> = groups.iter().flat_map(|group| settled(survey, group, before)).collect();
+    let judged = |cycles_after: &dyn Fn(&[&'c Cycle]) -> Vec<&'c Cycle>| {
+        let later: Vec<&Cycle> = groups.iter().flat_map(|group| cycles_after(group)).collect();
         let step = later.len().div_ceil(MOST).max(1);
-        later.into_iter().step_by(step).filter_map(|cycle| gap(survey, cycle)).collect()
+        let comparisons: Vec<Comparison> =
+            later.into_iter().step_by(step).filter_map(|cycle| gap(survey, cycle)).collect();
+        judge(&comparisons, EFFECT).map(|judgement| (judgement, comparisons))
     };
     // The first period still remembers what was before.
-    let comparisons = comparisons_after(1);
-    let Some(mut judgement) = judge(&comparisons, EFFECT) else {
+    let Some((mut judgement, comparisons)) = judged(&|group| group[1..].to_vec()) else {
         return Finding::not_testable(Property::LoopClosure, "no loop is repeated", EXPERIMENT);
     };
-    // So may the second, where the speed matters and memory may fade.
-    if equal_speed && judgement.verdict == Verdict::No {
-        let settled = judge(&comparisons_after(2), EFFECT);
-        judgement.verdict = settled.map_or(Verdict::NotTestable, |settled| settled.verdict);
+    // Where the speed matters and memory may fade, so may every period that follows another loop, and the one after.
+    for before in [1, 2] {
+        if equal_speed && judgement.verdict == Verdict::No {
+            let settled = judged(&|group| settled(survey, group, before));
+            judgement.verdict = settled.map_or(Verdict::NotTestable, |(settled, _)| settled.verdict);
+        }
     }
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
@@ -81,6 +84,7 @@ fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
         index: (last.y - first.y).abs() / height,
         deviation: first.deviation.hypot(last.deviation).hypot(survey.slow_noise) / height,
         bend: (first.bend + last.bend + own) / height,
+        other: 0.0,
         pieces: vec![cycle.piece()],
         curves: vec![survey.curve("there", out), survey.curve("back", back)],
     })

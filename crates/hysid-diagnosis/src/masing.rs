@@ -126,9 +126,8 @@ fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comp
     Some(Comparison {
         index: (square / places).sqrt() / height,
         deviation: (variance / places).sqrt() / height,
-        bend: ((bend / places).sqrt()
-            + 0.5 * (survey.turn_error(longest.branch) + survey.turn_error(part.branch)))
-            / height,
+        bend: (bend / places).sqrt() / height,
+        other: 0.5 * (survey.turn_error(longest.branch) + survey.turn_error(part.branch)) / height,
         pieces: vec![survey.piece(longest.branch), survey.piece(part.branch)],
         curves: vec![
             super::PictureCurve { label: "longest branch".into(), points: master },

@@ -105,6 +105,7 @@ fn compare(
         index: square.sqrt() / height,
         deviation: variance.sqrt() / height,
         bend: bend / height,
+        other: 0.0,
         pieces: [before, branch, after].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![
             super::PictureCurve {

@@ -278,7 +278,8 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     Some(Comparison {
         index: apart / height,
         deviation: (variance / places).sqrt().hypot(survey.slow_noise) / height,
-        bend: (0.5 * CLEAR * own).max((bend / places).sqrt()).max(wear) / height,
+        bend: (bend / places).sqrt() / height,
+        other: (0.5 * CLEAR * own).max(wear) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
     })

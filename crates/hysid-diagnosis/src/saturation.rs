@@ -109,6 +109,7 @@ fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
         index: rises[PARTS - 1] / largest,
         deviation: last / largest,
         bend: 0.0,
+        other: 0.0,
         pieces: vec![survey.piece(branch)],
         curves: vec![
             survey.curve("branch", branch),

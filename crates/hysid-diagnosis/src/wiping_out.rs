@@ -69,7 +69,8 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
     Some(Comparison {
         index: (second.y - before).abs() / height,
         deviation: deviation.hypot(second.deviation).hypot(survey.slow_noise) / height,
-        bend: (first.bend + second.bend + survey.turn_error(leaving)) / height,
+        bend: (first.bend + second.bend) / height,
+        other: survey.turn_error(leaving) / height,
         pieces: vec![rows(arriving), rows(back)],
         curves: vec![
             survey.curve("before", arriving),

@@ -36,15 +36,15 @@ const LONGEST_PERIOD: f64 = 0.2;
 /// Rounds in which the shares of the parts are found.
 const ROUNDS: usize = 2000;
 
-/// Root mean square of the relative errors that white noise is allowed, times the square root of the number of rows:
+/// By which share the variance of more distant rows may be larger by chance, times the square root of the number of rows:
 /// three times the relative deviation of a variance that is taken from a median.
 const SAMPLING: f64 = 7.0;
 
 /// Power of the distance with which differences grow on a line with many kinks.
 const KINKS: i32 = 3;
 
-/// Distances of near rows.
-const NEAR: usize = 2;
+/// Distances at which correlated noise is seen to grow.
+const NEAR: [usize; 2] = [2, 3];
 
 /// Parts below this share of the variance are left out.
 const SMALLEST: f64 = 1e-3;
@@ -62,14 +62,14 @@ const FEWEST: usize = 8;
 /// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
 pub(crate) fn roughness<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     let rows: usize = runs.clone().map(<[f64]>::len).sum();
-    if rows < FEWEST { 0.0 } else { least_of_neighbours(&differences(runs, rows, 0)) }
+    if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1).sqrt() }
 }
 
-/// The course of the values adds to the differences of all orders: the least tells most of the noise.
-fn least_of_neighbours(differences: &[Difference]) -> f64 {
-    let neighbours = differences.iter().filter(|difference| difference.distance == 1);
-    let least = neighbours.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least.sqrt() } else { 0.0 }
+/// The least variance of all orders at a distance: the course of the values adds to each. 0 where none was measured.
+fn least(differences: &[Difference], distance: usize) -> f64 {
+    let alike = differences.iter().filter(|difference| difference.distance == distance);
+    let least = alike.map(|difference| difference.variance).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 /// The noise of a channel; none for hardly any values.
@@ -80,21 +80,15 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     }
     let length = typical_length(runs.clone(), rows);
     let differences = differences(runs, rows, length);
-    let roughness = least_of_neighbours(&differences);
+    let roughness = least(&differences, 1).sqrt();
     if roughness == 0.0 {
         return Noise::default();
     }
-    // White noise is believed as long as it alone explains the differences of near rows, and with the course of the
-    // values all others, to within their sampling error.
-    let mut correlations = vec![Correlation::White];
-    let (mut shares, misfit) = shares(&differences, &correlations);
+    // The least of each distance does not grow where noise is white; a course of the values adds to all of them.
     let sampling = SAMPLING / (rows as f64).sqrt();
-    let is_white = |d: &Difference| (d.variance / shares[0].max(f64::MIN_POSITIVE) - 1.0).abs() <= sampling;
-    let near = differences.iter().filter(|difference| difference.distance <= NEAR);
-    if misfit > sampling || !near.into_iter().all(is_white) {
-        correlations = self::correlations(length);
-        shares = self::shares(&differences, &correlations).0;
-    }
+    let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
+    let correlations = if NEAR.iter().any(grows) { correlations(length) } else { vec![Correlation::White] };
+    let mut shares = shares(&differences, &correlations);
     // How slow the slowest noise is, and how large on the whole, a branch does not show: larger than it seems.
     let slowest = correlations.iter().rposition(|c| matches!(c, Correlation::Decaying(_)));
     if let Some(slowest) = slowest.filter(|&slowest| shares[slowest] > SLOW * shares.iter().sum::<f64>()) {
@@ -170,9 +164,8 @@ fn differences<'a>(
 
 /// Variances of noise of each correlation that add up to the differences, together with a course of the values that
 /// adds to those of order `p` and distance `d` by multiples of `d^{2p}` and, for its kinks, of `d^3`: least squares of the relative errors with
-/// shares that are not negative, by multiplicative updates (Lee and Seung 1999). With the root mean square of the
-/// relative errors that are left.
-fn shares(differences: &[Difference], correlations: &[Correlation]) -> (Vec<f64>, f64) {
+/// shares that are not negative, by multiplicative updates (Lee and Seung 1999).
+fn shares(differences: &[Difference], correlations: &[Correlation]) -> Vec<f64> {
     let relative = |of: &dyn Fn(&Difference) -> f64| -> Vec<f64> {
         differences.iter().map(|d| of(d) / floor(d, differences)).collect()
     };
@@ -198,12 +191,8 @@ fn shares(differences: &[Difference], correlations: &[Correlation]) -> (Vec<f64>
     }
     let mut shares = vec![0.0; columns.len()];
     used.iter().zip(&weights).for_each(|(&k, weight)| shares[k] = weight / scales[k]);
-    let error = |row: usize| {
-        1.0 - columns.iter().zip(&shares).map(|(column, share)| share * column[row]).sum::<f64>()
-    };
-    let squares: f64 = (0..differences.len()).map(|row| error(row).powi(2)).sum();
     shares.truncate(correlations.len());
-    (shares, (squares / differences.len() as f64).sqrt())
+    shares
 }
 
 /// What a difference is measured by: itself, but not less than rounding.

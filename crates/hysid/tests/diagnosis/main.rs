@@ -1,5 +1,6 @@
 //! Verdicts on laws whose properties are known, without noise and with, theory.md section 10.
 
+mod laboratory;
 mod subjects;
 
 use hysid::data::record::{ColumnNames, Dataset, Record};
