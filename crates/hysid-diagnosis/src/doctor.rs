@@ -12,6 +12,7 @@ mod lag;
 mod marks;
 mod repetition;
 mod sampling;
+mod spikes;
 mod start;
 
 use serde::Serialize;
@@ -125,6 +126,7 @@ pub(crate) fn examine(
 ) -> Vec<DataIssue> {
     let found = [
         marks::complaints(survey.data),
+        spikes::complaints(survey),
         artifacts::added(survey, lag::complaints(survey, delay), explanations, DataIssueKind::Lag),
         artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
         creep::complaints(survey),
@@ -163,9 +165,20 @@ pub fn before_a_fit(data: &Dataset) -> Result<Vec<DataIssue>> {
     Ok(clipping::complaints(&BranchSet::new(data, &DiagnosisOptions::default())))
 }
 
-/// The data without the outputs that an instrument clipped; `None` where there are none.
-pub(crate) fn without_clipped(survey: &BranchSet) -> Option<Dataset> {
-    clipping::blanked(survey)
+/// The data without the outputs that an instrument clipped, and without spikes; `None` where there are none.
+pub(crate) fn without_defects(survey: &BranchSet) -> Option<Dataset> {
+    let clipped = clipping::clipped_rows(survey);
+    let spikes = spikes::spikes(survey);
+    if clipped.is_empty() && spikes.is_empty() {
+        return None;
+    }
+    let is_defect = |number: usize, row: usize| {
+        spikes.contains(&(number, row))
+            || clipped.iter().any(|(record, rows)| *record == number && rows.contains(&row))
+    };
+    let records = survey.data.records().iter().enumerate();
+    let records = records.map(|(number, record)| record.clone().scored_where(|row| !is_defect(number, row)));
+    Dataset::new(survey.data.names().clone(), records.collect()).ok()
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input

@@ -216,9 +216,9 @@ impl Diagnosis {
     pub fn of(data: &Dataset, options: &DiagnosisOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
         let measured = BranchSet::new(data, options);
-        // What a clipped channel shows is not the output of the specimen.
-        let unclipped = doctor::without_clipped(&measured);
-        let survey = unclipped.as_ref().map(|data| BranchSet::new(data, options));
+        // What a clipped channel or a spike shows is not the output of the specimen.
+        let sound = doctor::without_defects(&measured);
+        let survey = sound.as_ref().map(|data| BranchSet::new(data, options));
         let survey = survey.as_ref().unwrap_or(&measured);
         let cycles = cycles::cycles(survey);
         let (rate, delay) = rate_dependence::test(survey);

@@ -75,22 +75,10 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     found
 }
 
-/// The data without the outputs that are clipped; `None` where none are.
-pub(super) fn blanked(survey: &BranchSet) -> Option<Dataset> {
-    let found: Vec<Clipped> =
-        [1.0, -1.0].into_iter().filter_map(|sign| clipped(survey, true, sign)).collect();
-    if found.is_empty() {
-        return None;
-    }
-    let is_clipped = |number: usize, row: usize| {
-        found
-            .iter()
-            .flat_map(|of_end| &of_end.runs)
-            .any(|run| run.record == number && run.rows.contains(&row))
-    };
-    let records = survey.data.records().iter().enumerate();
-    let records = records.map(|(number, record)| record.clone().scored_where(|row| !is_clipped(number, row)));
-    Dataset::new(survey.data.names().clone(), records.collect()).ok()
+/// Rows of each record whose output is clipped.
+pub(super) fn clipped_rows(survey: &BranchSet) -> Vec<(usize, Range<usize>)> {
+    let of_ends = [1.0, -1.0].into_iter().filter_map(|sign| clipped(survey, true, sign));
+    of_ends.flat_map(|of_end| of_end.runs).map(|run| (run.record, run.rows)).collect()
 }
 
 /// Rows of a record at the end of what was measured.

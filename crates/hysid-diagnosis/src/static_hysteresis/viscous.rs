@@ -22,6 +22,11 @@ const EXPLAINED: f64 = 0.05;
 /// Remainders are noise up to so many times its deviation.
 const NOISE: f64 = 1.3;
 
+/// The input goes on steadily where one step is at least this share of the next; not to be seen in one that jitters by
+/// this share of its range.
+const STEADY: f64 = 0.7;
+const JITTERS: f64 = 2e-4;
+
 /// Records with more rows are not looked at beyond them.
 const MOST_ROWS: usize = 100_000;
 
@@ -68,6 +73,7 @@ impl Products {
         let scale = 2.0 / survey.width();
         let middle = 0.5 * (survey.input.0 + survey.input.1);
         let speed = survey.width() / (stamps[stamps.len() - 1] - stamps[0]) * stamps.len() as f64;
+        let jitters = survey.input_noise.deviation() > JITTERS * survey.width();
         let mut relaxed = x[0];
         for row in 0..x.len().min(MOST_ROWS) {
             if row > 0 {
@@ -82,7 +88,9 @@ impl Products {
             let (before, after) = (row.saturating_sub(1), (row + 1).min(x.len() - 1));
             // Where the input turns between rows, its rate is not known.
             let (came, goes) = (x[row] - x[before], x[after] - x[row]);
-            if came * goes <= 0.0 {
+            if came * goes <= 0.0
+                || !jitters && came.abs().min(goes.abs()) < STEADY * came.abs().max(goes.abs())
+            {
                 continue;
             }
             let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;

@@ -1,0 +1,70 @@
+//! Spikes of the output: single rows that jump away from their neighbours and back, as a disturbed sensor makes them.
+
+use super::{DataIssue, DataIssueKind, Severity, Units, piece};
+use crate::Piece;
+use crate::branch::BranchSet;
+use crate::significance::{MEDIAN_OF_NORMAL, median};
+
+/// A spike is so many times as high as its neighbours differ from theirs: the tip of a loop goes on on both sides.
+const ABOVE_NEIGHBOURS: f64 = 5.0;
+
+/// It is so many deviations of the rows about the middle of their neighbours.
+const ABOVE_NOISE: f64 = 12.0;
+
+/// It is at least this share of the range of the output.
+const HIGH: f64 = 0.02;
+
+/// Beyond this share of the rows they are no spikes.
+const MOST: f64 = 0.01;
+
+/// Rows that are shown.
+const SHOWN: usize = 3;
+
+/// Spikes, as numbers of records and of their rows.
+pub(super) fn spikes(survey: &BranchSet) -> Vec<(usize, usize)> {
+    let records = survey.data.records();
+    let outputs = || records.iter().enumerate().map(|(number, record)| (number, record.output()));
+    let off_middle = |y: &[f64]| (y[2] - 0.5 * (y[1] + y[3])).abs();
+    let mut sizes: Vec<f64> =
+        outputs().flat_map(|(_, y)| y.windows(5).map(off_middle)).filter(|size| !size.is_nan()).collect();
+    let scale = median(&mut sizes) / MEDIAN_OF_NORMAL;
+    let least = (ABOVE_NOISE * scale).max(HIGH * survey.height());
+    let is_spike = |y: &[f64]| {
+        let neighbours = (y[1] - y[0]).abs().max((y[4] - y[3]).abs()).max((y[3] - y[1]).abs());
+        off_middle(y) > least && off_middle(y) > ABOVE_NEIGHBOURS * neighbours
+    };
+    let of_record = |(number, y): (usize, &'_ [f64])| -> Vec<(usize, usize)> {
+        y.windows(5)
+            .enumerate()
+            .filter(|(_, rows)| is_spike(rows))
+            .map(|(row, _)| (number, row + 2))
+            .collect()
+    };
+    let found: Vec<(usize, usize)> = outputs().flat_map(of_record).collect();
+    if found.len() as f64 > MOST * survey.data.rows() as f64 { Vec::new() } else { found }
+}
+
+pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
+    let found = spikes(survey);
+    let Some(&(number, row)) = found.first() else {
+        return Vec::new();
+    };
+    let records = survey.data.records();
+    let value = records[number].output()[row];
+    let units = Units::of(survey);
+    let statement = format!(
+        "the output jumps away and back in {}, first to {} in row {} of record \"{}\": leave the output of these rows \
+         blank; the tests omit them",
+        if found.len() == 1 { "1 row".into() } else { format!("{} rows", found.len()) },
+        units.output(value),
+        row + 1,
+        records[number].name()
+    );
+    let rows: Vec<Piece> =
+        found.iter().take(SHOWN).map(|&(number, row)| piece(&records[number], row, row)).collect();
+    vec![DataIssue {
+        value: Some(value),
+        unit: units.output.clone(),
+        ..DataIssue::of_rows(DataIssueKind::MissingValueMark, Severity::Warning, statement, rows)
+    }]
+}
