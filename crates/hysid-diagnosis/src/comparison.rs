@@ -6,6 +6,9 @@ use super::{PictureCurve, Piece, Verdict};
 /// A property holds if no difference can be larger than so many times the effect that matters.
 const BOUND: f64 = 2.5;
 
+/// A difference beyond this share of the effect that matters is too close to it for a property to hold.
+const CLOSE: f64 = 0.6;
+
 /// Deviations by which a difference may be larger than it was found.
 const UP_TO: f64 = 1.64;
 
@@ -52,7 +55,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
     let deciding = &comparisons[*order.first()?];
-    let is_doubtful = |c: &Comparison| c.index > effect.max(doubtful * c.deviation);
+    let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(doubtful * c.deviation);
     let mut bounds: Vec<f64> = comparisons.iter().map(|c| c.index + UP_TO * c.deviation + c.bend).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
