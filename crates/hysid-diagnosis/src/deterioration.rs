@@ -25,6 +25,8 @@ const EXPERIMENT: &str = "repeat a large loop five times or more, without changi
 /// What the cycles between two inputs say.
 struct Trend<'c> {
     cycles: Vec<&'c Cycle>,
+    /// All of them, with a first one that is left out.
+    repetitions: usize,
     /// `1 - E_last/E_first` along the median slope.
     loss: f64,
     deviation: f64,
@@ -38,7 +40,7 @@ pub(crate) fn test(survey: &BranchSet, cycles: &[Cycle]) -> Finding {
     let largest = cycles.iter().map(|cycle| cycle.area).fold(0.0, f64::max);
     let groups = repeated(survey, cycles);
     let trends: Vec<Trend> = groups.iter().filter_map(|group| trend(survey, group, largest)).collect();
-    let count: usize = trends.iter().map(|trend| trend.cycles.len()).sum();
+    let count: usize = trends.iter().map(|trend| trend.repetitions).sum();
     if count < FEWEST {
         let statement = format!("{count} loops are repeated between the same inputs; {FEWEST} are needed");
         return Finding::not_testable(Property::Deterioration, statement, EXPERIMENT);
@@ -96,6 +98,7 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     let branch = |cycle: &Cycle| &survey.branches[cycle.branches.0];
     let alike: Vec<&Cycle> =
         group.iter().filter(|cycle| survey.similar_speed(branch(group[0]), branch(cycle))).copied().collect();
+    let repetitions = alike.len();
     // The first cycle still remembers what was before; of two, it is all there is to compare with.
     let alike = if alike.len() > 2 { &alike[1..] } else { &alike[..] };
     let step = alike.len().div_ceil(MOST).max(1);
@@ -127,6 +130,7 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
         falls,
         variance: size * (size - 1.0) * (2.0 * size + 5.0) / 18.0,
         cycles,
+        repetitions,
     })
 }
 
