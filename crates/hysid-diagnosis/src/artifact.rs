@@ -134,9 +134,7 @@ pub(crate) fn withhold(
     findings: &mut [Finding],
     test: impl Fn(&BranchSet, Property) -> Finding,
 ) -> Vec<Explanation> {
-    let is_open = |finding: &&Finding| {
-        finding.verdict != Verdict::Yes && finding.index.is_some() && AFFECTED.contains(&finding.property)
-    };
+    let is_open = |finding: &&Finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property);
     let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
     let mut explanations: Vec<Explanation> = Vec::new();
     let tested = |artifact: Artifact, open: &[Finding]| -> Option<Vec<(Finding, Finding)>> {
