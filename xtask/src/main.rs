@@ -1,6 +1,7 @@
 //! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts |
 //! verdict-battery | fuzz | soak | same-models | tidy`.
 
+mod arguments;
 mod bench;
 mod cases;
 mod check;

@@ -15,9 +15,11 @@ mod page;
 mod paths;
 mod property;
 mod request;
+mod run;
 mod tally;
 mod truth;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path as FilePath, PathBuf};
@@ -32,19 +34,17 @@ use crate::cases::origin;
 use crate::{Interrupted, files, program};
 use answer::Findings;
 use chance::Chance;
-use disturbances::{Disturbance, Run};
-use evidence::evidence;
+use disturbances::Disturbance;
+use evidence::Evidence;
 use laws::Law;
 use page::Names;
-use paths::{Path, SUBSTEPS};
+use paths::Path;
 use property::PROPERTIES;
 pub use request::Request;
 use request::named;
+use run::Run;
 use tally::{Outcome, Tally, Verdict};
 use truth::truth;
-
-/// How much slower the path is whose loops are those at rest.
-const AT_REST: f64 = 1e4;
 
 pub fn run(request: &Request) -> Result<()> {
     let laws = named(laws::all(), request.laws.as_deref(), "law", |law| law.name)?;
@@ -158,17 +158,14 @@ impl Battery {
 
     /// All disturbances of one law on one path.
     fn judge(&self, law: &Law, path: &Path) -> Result<Vec<Verdict>> {
-        let inputs = path.inputs();
-        let seconds = path.row_seconds() / SUBSTEPS as f64;
-        let outputs = law.run(&inputs, seconds);
-        let at_rest = law.run(&inputs, AT_REST * seconds);
-        let run = Run { path, inputs, outputs };
+        let run = Run::of(law, path);
+        // By the step at which a record begins: nearly all begin with the run.
+        let mut evidence: BTreeMap<usize, Evidence> = BTreeMap::new();
         let mut verdicts = Vec::new();
         for disturbance in self.disturbances.iter().filter(|one| one.applies_to(path)) {
             let first = disturbance.first_step(&run);
-            let evidence =
-                evidence(&run.inputs[first..], &run.outputs[first..], &at_rest[first..], path.timed);
-            let answers = truth(law.answers(), &evidence, path, disturbance);
+            let evidence = evidence.entry(first).or_insert_with(|| run.evidence(first));
+            let answers = truth(law.answers(), evidence, path, disturbance);
             let name = format!("{}.{}.{}", law.name, path.name, disturbance.name);
             let record = disturbance.record(&run, &mut Chance::of(self.seed, &name));
             let file = self.records.join(format!("{name}.csv"));

@@ -2,13 +2,7 @@
 
 use super::chance::Chance;
 use super::paths::{Path, SUBSTEPS};
-
-/// An undisturbed run, at every step of the simulation.
-pub struct Run<'p> {
-    pub path: &'p Path,
-    pub inputs: Vec<f64>,
-    pub outputs: Vec<f64>,
-}
+use super::run::Run;
 
 /// What is measured: rows with input and output, most with time.
 #[derive(Debug, Clone, PartialEq)]
@@ -253,9 +247,7 @@ mod tests {
 
     fn run(path: &Path) -> Run<'_> {
         let law = laws::all().into_iter().find(|law| law.name == "pi-stops").expect("the law is there");
-        let inputs = path.inputs();
-        let outputs = law.run(&inputs, path.row_seconds() / SUBSTEPS as f64);
-        Run { path, inputs, outputs }
+        Run::of(&law, path)
     }
 
     fn measured(name: &str, run: &Run, seed: u64) -> Record {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 
-use crate::Usage;
+use crate::arguments::{option_and_value, usage};
 
 /// What is asked for.
 #[derive(Debug, PartialEq)]
@@ -42,10 +42,8 @@ impl Request {
             if !argument.starts_with('-') {
                 return usage(format!("`{argument}` is no option"));
             }
-            let (option, value) = match argument.split_once('=') {
-                Some((option, value)) => (option, value),
-                None => (argument, rest.next().unwrap_or_default()),
-            };
+            let (option, value) = option_and_value(argument, &mut rest);
+            let value = value.unwrap_or_default();
             request.set(option, value)?;
         }
         Ok(request)
@@ -84,13 +82,10 @@ pub fn named<T>(all: Vec<T>, names: Option<&[String]>, what: &str, name: fn(&T) 
     Ok(all.into_iter().filter(|one| names.iter().any(|wanted| wanted == name(one))).collect())
 }
 
-fn usage<T>(what: String) -> Result<T> {
-    Err(Usage(what).into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Usage;
 
     #[test]
     fn options_are_read() {

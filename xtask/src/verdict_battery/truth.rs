@@ -86,20 +86,16 @@ pub fn truth(law: Answers, evidence: &Evidence, path: &Path, disturbance: &Distu
 
 #[cfg(test)]
 mod tests {
-    use super::super::evidence::evidence;
-    use super::super::paths::SUBSTEPS;
     use super::super::property::PROPERTIES;
-    use super::super::{AT_REST, disturbances, laws, paths};
+    use super::super::run::Run;
+    use super::super::{disturbances, laws, paths};
     use super::*;
 
     /// The evidence of a law on every undisturbed path, and the answers that count.
     fn survey(law: &laws::Law) -> Vec<(&'static str, Evidence, Answers)> {
         let none = &disturbances::all()[0];
         let on = |path: paths::Path| {
-            let inputs = path.inputs();
-            let seconds = path.row_seconds() / SUBSTEPS as f64;
-            let (outputs, at_rest) = (law.run(&inputs, seconds), law.run(&inputs, AT_REST * seconds));
-            let evidence = evidence(&inputs, &outputs, &at_rest, path.timed);
+            let evidence = Run::of(law, &path).evidence(0);
             (path.name, evidence, truth(law.answers(), &evidence, &path, none))
         };
         paths::all().into_iter().map(on).collect()
