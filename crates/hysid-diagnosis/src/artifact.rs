@@ -134,7 +134,12 @@ pub(crate) fn withhold(
     findings: &mut [Finding],
     test: impl Fn(&BranchSet, Property) -> Finding,
 ) -> Vec<Explanation> {
-    let is_open = |finding: &&Finding| finding.verdict == Verdict::No && AFFECTED.contains(&finding.property);
+    // What is not testable with a difference may be so because of the artifact: it is told, too.
+    let is_open = |finding: &&Finding| {
+        let differs = finding.verdict == Verdict::No
+            || finding.verdict == Verdict::NotTestable && finding.comparisons > 0;
+        differs && AFFECTED.contains(&finding.property)
+    };
     let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
     let mut explanations: Vec<Explanation> = Vec::new();
     let tested = |artifact: Artifact, open: &[Finding]| -> Option<Vec<(Finding, Finding)>> {
@@ -174,6 +179,17 @@ pub(crate) fn withhold(
     explanations
 }
 
+/// Withholds what parts of loops seem to contradict, where the rest is not known.
+pub(crate) fn withhold_partial(findings: &mut [Finding]) {
+    const SHAPES: [Property; 3] = [Property::StaticHysteresis, Property::Congruency, Property::Masing];
+    let contradicted = |finding: &&mut Finding| finding.verdict == Verdict::No && SHAPES.contains(&finding.property);
+    for finding in findings.iter_mut().filter(contradicted) {
+        finding.verdict = Verdict::NotTestable;
+        finding.statement = format!("{}, where the output is not clipped", finding.statement);
+        finding.experiment = Some("measure with a larger range".into());
+    }
+}
+
 /// The difference that contradicts a property without an artifact, as a share of that with it; `None` where far fewer
 /// comparisons are left.
 fn share_left(with: &Finding, without: &Finding) -> Option<f64> {
@@ -188,5 +204,7 @@ fn is_smaller(with: &Finding, without: &Finding) -> bool {
 
 /// True if a property that data contradict holds without an artifact.
 fn explained(with: &Finding, without: &Finding) -> bool {
-    without.verdict == Verdict::Yes && share_left(with, without).is_some_and(|share| share < MUCH_SMALLER)
+    let holds = without.verdict == Verdict::Yes
+        || without.verdict == Verdict::NotTestable && with.verdict == Verdict::No;
+    holds && share_left(with, without).is_some_and(|share| share < MUCH_SMALLER)
 }

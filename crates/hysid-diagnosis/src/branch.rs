@@ -87,6 +87,12 @@ impl Branch {
         Some(if self.rises() { before.min(self.to) } else { before.max(self.to) })
     }
 
+    /// The row where it goes through an input, if it went evenly.
+    fn row_at(&self, x: f64) -> f64 {
+        let share = ((x - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
+        self.rows.start as f64 + share * (self.rows.len() - 1) as f64
+    }
+
     /// Time between its ends.
     pub fn duration(&self) -> Option<f64> {
         self.speed.map(|speed| self.travel() / speed)
@@ -289,9 +295,18 @@ impl<'a> BranchSet<'a> {
         let before = (x[first] - x[first.saturating_sub(1)]).abs();
         let after = (x[(first + 1).min(x.len() - 1)] - x[first]).abs();
         let way = before.max(after);
-        let reach = 2.0 * if branch.rises() { way } else { -way };
+        let inwards = if branch.rises() { way } else { -way };
+        let rise = |of: &Branch, reach: f64| -> Option<f64> {
+            let (there, here) = (of.curve.at(branch.from + reach)?, of.curve.at(branch.from)?);
+            let rise = there.y - here.y;
+            // As far as it is not noise.
+            let clear = (rise.abs() - there.deviation.hypot(here.deviation)).max(0.0);
+            Some(clear.copysign(rise) / reach)
+        };
+        // A law may bend within two rows.
         let slope = |of: &Branch| -> Option<f64> {
-            Some((of.curve.at(branch.from + reach)?.y - of.curve.at(branch.from)?.y) / reach)
+            let (near, far) = (rise(of, inwards), rise(of, 2.0 * inwards));
+            [near, far].into_iter().flatten().max_by(|a, b| a.abs().total_cmp(&b.abs()))
         };
         let place = self.branches.partition_point(|b| (b.record, b.rows.start) < (branch.record, first));
         let arriving = place.checked_sub(1).map(|place| &self.branches[place]);
@@ -300,6 +315,23 @@ impl<'a> BranchSet<'a> {
             (Some(own), Some(other)) => 0.5 * way * (own - other).abs(),
             _ => 0.0,
         }
+    }
+
+    /// Deviation by which slow noise and drift move the output from a row to one so many rows away.
+    pub fn wander(&self, rows: f64) -> f64 {
+        self.output_noise.wander(rows).max(self.slow_noise)
+    }
+
+    /// Deviation of the walk along a branch from its beginning, on average over a part of its way.
+    pub fn wander_along(&self, branch: &Branch, way: f64) -> f64 {
+        self.output_noise.wander(0.5 * way / branch.travel() * (branch.rows.len() - 1) as f64)
+    }
+
+    /// Rows between where two branches go through an input.
+    pub fn rows_between(&self, a: &Branch, b: &Branch, x: f64) -> f64 {
+        let (a_row, b_row) = (a.row_at(x), b.row_at(x));
+        // Records of their own begin anywhere.
+        if a.record == b.record { (a_row - b_row).abs() } else { a_row + b_row }
     }
 
     /// Mean time between rows; 0 without time.

@@ -1,5 +1,6 @@
 //! Many comparisons, one verdict: what is larger than the noise, and large enough to matter.
 
+use super::branch::Reading;
 use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
@@ -11,6 +12,12 @@ const CLOSE: f64 = 0.6;
 
 /// Deviations by which a difference may be larger than it was found.
 const UP_TO: f64 = 1.64;
+
+/// Differences of this share of the effect that matters, on average, are near it.
+const NEAR: f64 = 0.3;
+
+/// Deviations by which the sum of squares of many differences may be too large.
+const TOGETHER: f64 = 2.3;
 
 /// A difference that a property says is nought.
 #[derive(Debug, Clone)]
@@ -27,6 +34,20 @@ pub(crate) struct Comparison {
     pub pieces: Vec<Piece>,
     /// What is drawn of it.
     pub curves: Vec<PictureCurve>,
+}
+
+impl Comparison {
+    /// Of two readings that should be equal, between which slow noise may have wandered so far. Nothing is drawn.
+    pub fn of_readings(height: f64, [a, b]: [Reading; 2], wander: f64) -> Self {
+        Self {
+            index: (a.y - b.y).abs() / height,
+            deviation: a.deviation.hypot(b.deviation).hypot(wander) / height,
+            bend: (a.bend + b.bend) / height,
+            other: 0.0,
+            pieces: Vec::new(),
+            curves: Vec::new(),
+        }
+    }
 }
 
 /// What many comparisons say together.
@@ -46,6 +67,16 @@ pub(crate) struct Judgement {
     pub order: Vec<usize>,
 }
 
+/// True if many differences that noise may cause, each by itself, are too large together, by a chance of about 1 in 100
+/// (normal approximation of the chi-squared distribution), and near the effect that matters.
+fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
+    let count = comparisons.len() as f64;
+    let beyond = |c: &Comparison| (c.index - c.bend - c.other).max(0.0);
+    let squares: f64 = comparisons.iter().map(|c| (beyond(c) / c.deviation.max(f64::MIN_POSITIVE)).powi(2)).sum();
+    let mean = comparisons.iter().map(beyond).sum::<f64>() / count;
+    mean > NEAR * effect && squares > count + TOGETHER * (2.0 * count).sqrt()
+}
+
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
@@ -56,10 +87,11 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
     let deciding = &comparisons[*order.first()?];
     let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(doubtful * c.deviation);
-    let mut bounds: Vec<f64> = comparisons.iter().map(|c| c.index + UP_TO * c.deviation + c.bend).collect();
+    let mut bounds: Vec<f64> = comparisons.iter().map(|c| c.index + UP_TO * c.deviation + c.bend + c.other).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
-    } else if comparisons.iter().any(is_doubtful) || significance::median(&mut bounds) > BOUND * effect {
+    } else if comparisons.iter().any(is_doubtful)
+        || are_doubtful_together(comparisons, effect) || significance::median(&mut bounds) > BOUND * effect {
         Verdict::NotTestable
     } else {
         Verdict::Yes

@@ -77,14 +77,23 @@ fn same_beginning(survey: &BranchSet) -> BTreeMap<(i64, bool), Vec<usize>> {
 
 /// True if the turning points that enclose two branches differ, so that they are on different loops.
 fn other_past(survey: &BranchSet, a: &Branch, b: &Branch) -> bool {
-    let outer = |branch: &Branch, depth: usize| {
-        branch.beneath.iter().rev().nth(depth).copied().filter(|_| depth < branch.known)
-    };
-    (1..=2).any(|depth| match (outer(a, depth), outer(b, depth)) {
-        (Some(a), Some(b)) => (a - b).abs() > OTHER_PAST * survey.width(),
-        // What is not known is not known to differ.
-        _ => false,
-    })
+    let same = OTHER_PAST * survey.width();
+    let (a, b) = (past(a, same), past(b, same));
+    // What is not known is not known to differ.
+    a.iter().zip(&b).take(2).any(|(a, b)| (a - b).abs() > same)
+}
+
+/// The known turning points that enclose a branch, the latest first, without its beginning. A loop that is closed but for
+/// `nearly` has left hardly a trace: whatever law it is, the branch goes on as if the loop had not been.
+fn past(branch: &Branch, nearly: f64) -> Vec<f64> {
+    let unknown = branch.beneath.len() - branch.known.min(branch.beneath.len());
+    let mut past: Vec<f64> = branch.beneath[unknown..].to_vec();
+    while past.len() >= 3 && (past[past.len() - 1] - past[past.len() - 3]).abs() <= nearly {
+        past.truncate(past.len() - 2);
+    }
+    past.pop();
+    past.reverse();
+    past
 }
 
 /// A curve moved to where branches of one shape lie on each other.
@@ -128,9 +137,10 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
     }
     // Of the noise, that at the beginning shifts the whole branch.
     let deviation = (variance / places + start_a.deviation.powi(2) + start_b.deviation.powi(2)).sqrt();
+    let wander = survey.wander_along(a, way).hypot(survey.wander_along(b, way));
     Some(Comparison {
         index: (square / places).sqrt() / height,
-        deviation: deviation / height,
+        deviation: deviation.hypot(wander) / height,
         bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
         other: (survey.turn_error(a) + survey.turn_error(b)) / height,
         pieces: vec![survey.piece(a), survey.piece(b)],

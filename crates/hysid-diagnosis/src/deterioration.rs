@@ -5,6 +5,7 @@
 use super::branch::BranchSet;
 use super::cycles::repeated;
 use super::significance;
+use super::static_hysteresis::FULL;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
 use hysid_core::significant::Significant;
 
@@ -119,6 +120,11 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
             slopes.push(change / (j - i) as f64);
             falls -= if change.abs() > 0.0 { change.signum() } else { 0.0 };
         }
+    }
+    // A line that noise or drift opens has nothing to lose.
+    let box_area = first.swing() * first.height();
+    if first.area < FULL * box_area {
+        (slopes, falls) = (vec![0.0], 0.0);
     }
     let slope = significance::median(&mut slopes);
     let scale = energy(first);

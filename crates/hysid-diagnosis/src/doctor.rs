@@ -181,6 +181,11 @@ pub(crate) fn without_defects(survey: &BranchSet) -> Option<Dataset> {
     Dataset::new(survey.data.names().clone(), records.collect()).ok()
 }
 
+/// True if an instrument clipped outputs.
+pub(crate) fn is_clipped(survey: &BranchSet) -> bool {
+    !clipping::clipped_rows(survey).is_empty()
+}
+
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input
 /// turns, theory.md (10.21); `None` where the turning points do not tell.
 pub(crate) fn longest_lag(survey: &BranchSet) -> Option<f64> {

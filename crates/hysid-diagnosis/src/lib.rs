@@ -236,6 +236,9 @@ impl Diagnosis {
             deterioration::test(survey, &cycles),
             loop_closure::test(survey, &cycles, equal_speed),
         ];
+        if doctor::is_clipped(&measured) {
+            artifact::withhold_partial(&mut properties);
+        }
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
                 Property::WipingOut => wiping_out::test(corrected, equal_speed),

@@ -37,6 +37,10 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: boo
             judgement.verdict = settled.map_or(Verdict::NotTestable, |(settled, _)| settled.verdict);
         }
     }
+    // Loops that close may yet be different loops each time.
+    if judgement.verdict == Verdict::Yes && moves(survey, &groups) {
+        judgement.verdict = Verdict::NotTestable;
+    }
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
         Verdict::Yes => format!("repeated loops close, within {percent:.2} % of the output's range"),
@@ -61,6 +65,19 @@ fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'
     group.windows(before + 1).filter(|run| run.windows(2).all(follows)).map(|run| run[before]).collect()
 }
 
+/// True if the loops of a group begin at another output in the end.
+fn moves(survey: &BranchSet, groups: &[Vec<&Cycle>]) -> bool {
+    let moved = |group: &Vec<&Cycle>| -> Option<Comparison> {
+        let [first, last] = [group[0], group[group.len() - 1]].map(|cycle| &survey.branches[cycle.branches.0]);
+        let x = if first.rises() { first.from.max(last.from) } else { first.from.min(last.from) };
+        let (before, after) = (first.curve.at(x)?, last.curve.at(x)?);
+        let wander = survey.wander(survey.rows_between(first, last, x));
+        Some(Comparison::of_readings(survey.height(), [before, after], wander))
+    };
+    let moves: Vec<Comparison> = groups.iter().filter_map(moved).collect();
+    judge(&moves, EFFECT).is_some_and(|judgement| judgement.verdict == Verdict::No)
+}
+
 /// The gap between a branch and the next that begins at the same turning point: both are then at the same speed.
 fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
     let (out, back) = (&survey.branches[cycle.branches.0], &survey.branches[cycle.branches.1]);
@@ -80,9 +97,10 @@ fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
         0.0
     };
     let height = survey.height();
+    let apart = survey.rows_between(out, after, x);
     Some(Comparison {
         index: (last.y - first.y).abs() / height,
-        deviation: first.deviation.hypot(last.deviation).hypot(survey.slow_noise) / height,
+        deviation: first.deviation.hypot(last.deviation).hypot(survey.wander(apart)) / height,
         bend: (first.bend + last.bend + own) / height,
         other: 0.0,
         pieces: vec![cycle.piece()],

@@ -123,9 +123,11 @@ fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comp
         return None;
     }
     let [master, here] = curves;
+    let along = |of: &OwnPart| 0.5 * survey.wander_along(of.branch, part.length);
+    let wander = along(longest).hypot(along(part));
     Some(Comparison {
         index: (square / places).sqrt() / height,
-        deviation: (variance / places).sqrt() / height,
+        deviation: (variance / places).sqrt().hypot(wander) / height,
         bend: (bend / places).sqrt() / height,
         other: 0.5 * (survey.turn_error(longest.branch) + survey.turn_error(part.branch)) / height,
         pieces: vec![survey.piece(longest.branch), survey.piece(part.branch)],

@@ -1,8 +1,8 @@
 //! Noise of a measured channel: how large it is, and how far the noise of one row is that of the next.
 //!
 //! It is a sum of parts: white noise, noise whose correlation decays with the distance of rows (filtered, amplifier and
-//! 1/f noise), and periodic noise (hum). The deviation of a mean, of a smoothed value or of an energy follows from
-//! all of them, theory.md (10.1).
+//! 1/f noise), periodic noise (hum), and a random walk (drift, and all that changes more slowly than a branch). The
+//! deviation of a mean, of a smoothed value or of an energy follows from all of them, theory.md (10.1).
 
 mod differences;
 mod resolution;
@@ -27,19 +27,24 @@ enum Correlation {
     Decaying(f64),
     /// By a sine that turns by this angle from row to row.
     Periodic(f64),
+    /// It is the noise of the row before and an independent step. The variance is that of a step, and what counts is the
+    /// difference from another row.
+    Walking,
 }
 
 impl Correlation {
-    /// Correlation of two rows at this distance.
+    /// Correlation of two rows at this distance; of a walk, half its variance between them, negative, which takes the
+    /// place of a correlation in differences.
     fn at(self, distance: f64) -> f64 {
         match self {
             Self::White => f64::from(distance == 0.0),
             Self::Decaying(factor) => factor.powf(distance),
             Self::Periodic(angle) => (angle * distance).cos(),
+            Self::Walking => -0.5 * distance,
         }
     }
 
-    /// Variance of a weighted sum of successive rows of variance 1.
+    /// Variance of a weighted sum of successive rows of variance 1; of a walk, from its middle row on.
     fn of_sum(self, weights: &[f64]) -> f64 {
         match self {
             Self::White => weights.iter().map(|w| w * w).sum(),
@@ -58,6 +63,14 @@ impl Correlation {
                     |(re, im): (f64, f64), w: &f64| (w + re * cosine - im * sine, re * sine + im * cosine);
                 let (re, im) = weights.iter().rev().fold((0.0, 0.0), turn);
                 re * re + im * im
+            }
+            Self::Walking => {
+                // A step moves all rows that are further from the middle than it.
+                let (before, after) = weights.split_at(weights.len() / 2);
+                let steps = |outwards: &mut dyn Iterator<Item = &f64>| {
+                    outwards.fold((0.0, 0.0), |(moved, sum), w| (moved + w, sum + (moved + w).powi(2))).1
+                };
+                steps(&mut before.iter()) + steps(&mut after.iter().skip(1).rev())
             }
         }
     }
@@ -86,9 +99,16 @@ impl Noise {
         differences::noise(runs)
     }
 
-    /// Standard deviation of a value.
+    /// Standard deviation of a value, without the walk.
     pub fn deviation(&self) -> f64 {
-        self.parts.iter().map(|part| part.1).sum::<f64>().sqrt()
+        let of_value = self.parts.iter().filter(|part| part.0 != Correlation::Walking);
+        of_value.map(|part| part.1).sum::<f64>().sqrt()
+    }
+
+    /// Standard deviation of the walk from a row to one so many rows away.
+    pub fn wander(&self, rows: f64) -> f64 {
+        let steps = self.parts.iter().filter(|part| part.0 == Correlation::Walking);
+        (steps.map(|part| part.1).sum::<f64>() * rows).sqrt()
     }
 
     /// Standard deviation of white noise that neighbouring rows would differ by as much.
@@ -142,6 +162,7 @@ impl Noise {
             let own = correlation.of_sum(&mean);
             let blocks = match correlation {
                 Correlation::White => Correlation::White,
+                Correlation::Walking => return (Correlation::Walking, variance * rows as f64),
                 Correlation::Periodic(angle) => Correlation::Periodic(angle * rows as f64),
                 Correlation::Decaying(factor) => {
                     // What a block shares with the next: the variance of both together says it.
@@ -185,6 +206,16 @@ mod tests {
         };
         assert_relative_eq!(noise.in_blocks(5).of_mean(4), noise.of_mean(20), max_relative = 0.05);
         assert_relative_eq!(noise.in_blocks(5).deviation(), noise.of_mean(5), max_relative = 1e-12);
+    }
+
+    #[test]
+    fn a_walk_counts_from_the_middle_row_on_and_in_differences_from_any() {
+        let walk = Noise { parts: vec![(Correlation::Walking, 0.04)], roughness: 0.1 };
+        assert_relative_eq!(walk.wander(25.0), 1.0, max_relative = 1e-12);
+        assert_relative_eq!(walk.of_sum(&[-1.0, 0.0, 0.0, 0.0, 1.0]), 0.4, max_relative = 1e-12);
+        assert_relative_eq!(walk.of_sum(&[0.0, 0.0, 0.0, 0.0, 1.0]), 0.08f64.sqrt(), max_relative = 1e-12);
+        assert_eq!(walk.of_sum(&[0.0, 0.0, 1.0, 0.0, 0.0]), 0.0);
+        assert_eq!(walk.deviation(), 0.0);
     }
 
     #[test]

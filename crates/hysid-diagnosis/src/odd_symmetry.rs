@@ -100,10 +100,11 @@ fn compare(
     let square = rows.iter().map(|row| (row.1 + row.2 - mean).powi(2)).sum::<f64>() / n;
     let variance = rows.iter().map(|row| row.3).sum::<f64>() / n;
     let bend = (rows.iter().map(|row| row.4 * row.4).sum::<f64>() / n).sqrt();
+    let wander = survey.wander_along(branch, 2.0 * half);
     let height = survey.height();
     Some(Comparison {
         index: square.sqrt() / height,
-        deviation: variance.sqrt() / height,
+        deviation: variance.sqrt().hypot(wander) / height,
         bend: bend / height,
         other: 0.0,
         pieces: [before, branch, after].into_iter().map(|branch| survey.piece(branch)).collect(),

@@ -7,6 +7,7 @@
 //! one time makes all speeds agree, that time is a delay, and the law behind it does not depend on the rate.
 
 pub mod delay;
+mod varying_speed;
 
 use std::collections::HashMap;
 
@@ -14,6 +15,7 @@ use super::branch::{Branch, BranchSet, Reading};
 use super::comparison::{Comparison, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
+use varying_speed::Remainders;
 
 /// A difference that matters, as a share of the range of the output.
 pub(super) const EFFECT: f64 = 0.01;
@@ -39,6 +41,12 @@ const ALL: f64 = 0.15;
 /// Branches of one speed whose mean square difference is so many times that of their noise change with time.
 const NOT_NOISE: f64 = 2.0;
 
+/// Wear between the sets may be so many times faster than within them.
+const FASTER: f64 = 1.5;
+
+/// Wear is known where noise in it is so many times smaller than what it is to explain.
+const CLEARLY: f64 = 3.0;
+
 /// Rows by which an input may be late.
 const FEW_ROWS: f64 = 3.0;
 
@@ -47,6 +55,11 @@ const SHORTEST: f64 = 0.1;
 
 /// Branches of one course and speed at most.
 const MOST: usize = 8;
+
+/// A law with the rate must leave less than this share of what one without leaves; and what it explains is nothing below
+/// this share of the effect that matters.
+const HELPFUL: f64 = 0.4;
+const UNHELPFUL: f64 = 0.3;
 
 /// Places along a branch.
 const PLACES: usize = 40;
@@ -57,6 +70,8 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 pub(crate) struct Speeds<'b> {
     pub slow: Vec<&'b Branch>,
     pub fast: Vec<&'b Branch>,
+    /// Of each that has one branch, it and the one that follows it on the course.
+    next: Vec<(&'b Branch, &'b Branch)>,
     /// Inputs that all go through.
     pub from: f64,
     pub to: f64,
@@ -70,8 +85,9 @@ impl Speeds<'_> {
     }
 
     /// By how much the output changes between the two sets if it goes on changing as it does within them, from branch
-    /// to branch: wear, drift, or a specimen that settles. Root mean square along the way, without the noise.
-    fn wear(&self, survey: &BranchSet) -> f64 {
+    /// to branch: wear, drift, or a specimen that settles. Root mean square along the way, without the noise, where it is
+    /// clear; and what noise alone makes of it.
+    fn wear(&self, survey: &BranchSet) -> (f64, f64) {
         let number = |branch: &Branch| {
             survey.branches.partition_point(|b| (b.record, b.rows.start) < (branch.record, branch.rows.start))
                 as f64
@@ -79,7 +95,7 @@ impl Speeds<'_> {
         let middle =
             |set: &[&Branch]| set.iter().map(|branch| number(branch)).sum::<f64>() / set.len() as f64;
         let apart = (middle(&self.fast) - middle(&self.slow)).abs();
-        let of_set = |set: &[&Branch]| -> Option<f64> {
+        let of_set = |set: &[&Branch]| -> Option<(f64, f64)> {
             let (latest, earliest) = (set.first()?, set.last()?);
             let times = apart / (number(latest) - number(earliest)).max(1.0);
             let (mut changes, mut noise, mut places) = (0.0, 0.0, 0.0);
@@ -90,16 +106,28 @@ impl Speeds<'_> {
                 places += 1.0;
             }
             let clear = changes > NOT_NOISE * noise;
-            Some(if clear { times * ((changes - noise) / places).sqrt() } else { 0.0 })
+            let wear = if clear { times * ((changes - noise) / places).sqrt() } else { 0.0 };
+            Some((wear, times * (noise / places).sqrt()))
         };
         [&self.slow, &self.fast]
             .into_iter()
             .filter(|set| set.len() > 1)
             .filter_map(|set| of_set(set))
-            .fold(0.0, f64::max)
+            .fold((0.0, 0.0), |(wear, noise), (w, n)| (f64::max(wear, w), f64::max(noise, n)))
     }
 
-    /// True if one speed was run after the other, without a repetition that would show how the specimen wears, and the
+    /// By how much the output of a slow or fast branch that was not repeated differs from the next of its course,
+    /// whose speed is another: a specimen that settles changes most at the beginning. Root mean square along the way.
+    fn settling(&self) -> f64 {
+        let between = |(alone, next): (&Branch, &Branch)| -> Option<f64> {
+            let squares = self.places().map(|x| Some((alone.curve.at(x)?.y - next.curve.at(x)?.y).powi(2)));
+            let squares: Vec<f64> = squares.collect::<Option<_>>()?;
+            Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+        };
+        self.next.iter().filter_map(|pair| between(*pair)).fold(0.0, f64::max)
+    }
+
+    /// True if one speed was run after the other, without repetitions that would show how the specimen wears, and the
     /// later branches are the lower ones.
     fn may_be_wear(&self, survey: &BranchSet) -> bool {
         let begins = |branch: &Branch| (branch.record, branch.rows.start);
@@ -119,8 +147,9 @@ impl Speeds<'_> {
             };
             set.iter().map(of).sum::<f64>() / set.len() as f64
         };
-        let known = earlier.len() > 1 && later.len() > 1;
-        !known && height(later) < height(earlier) - EFFECT * survey.height()
+        let lower = height(earlier) - height(later);
+        let known = earlier.len() > 1 && later.len() > 1 && lower > CLEARLY * self.wear(survey).1;
+        !known && lower > EFFECT * survey.height()
     }
 
     /// Inputs along the way.
@@ -138,8 +167,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     let courses = courses(survey);
     let comparisons: Vec<Comparison> = courses.iter().filter_map(|speeds| compare(survey, speeds)).collect();
     let Some(mut judgement) = judge(&comparisons, EFFECT) else {
-        let statement = "no input path was run at two speeds";
-        return (Finding::not_testable(Property::RateDependence, statement, EXPERIMENT), None);
+        return (of_varying_speed(survey), None);
     };
     let ratio = courses.iter().map(Speeds::ratio).fold(0.0, f64::max);
     let percent = 100.0 * judgement.index;
@@ -198,6 +226,43 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     (survey.finding(Property::RateDependence, &judgement, &comparisons, statement, EXPERIMENT), explained)
 }
 
+/// What laws with and without the rate say, where no path was run at two speeds.
+fn of_varying_speed(survey: &BranchSet) -> Finding {
+    let statement = "no input path was run at two speeds";
+    let untold = Finding::not_testable(Property::RateDependence, statement, EXPERIMENT);
+    let Some(remainders) = varying_speed::remainders(survey).filter(|r| r.ratio >= FAR_APART) else {
+        return untold;
+    };
+    let Remainders { without, with_rate, noise, .. } = remainders;
+    let clear = |remainder: f64| (remainder * remainder - noise * noise).max(0.0).sqrt();
+    let explained = (without * without - with_rate * with_rate).max(0.0).sqrt();
+    let matters = clear(without) > 2.0 * EFFECT && remainders.everywhere;
+    let alone = remainders.with_more_stops.min(remainders.with_a_lag);
+    let verdict = if clear(without) <= EFFECT && explained <= UNHELPFUL * EFFECT {
+        Verdict::No
+    } else if matters && clear(with_rate) <= HELPFUL * clear(alone) {
+        Verdict::Yes
+    } else {
+        return untold;
+    };
+    let statement = format!(
+        "no input path was run at two speeds, but speeds differ by a factor of {:.1}: a law without the rate predicts \
+         branches that it was not fitted to within {:.2} % of the output's range, one with the rate within {:.2} %",
+        remainders.ratio,
+        100.0 * without,
+        100.0 * with_rate
+    );
+    Finding {
+        verdict,
+        index: Some(explained),
+        threshold: Some(EFFECT),
+        noise: Some(noise),
+        statement,
+        experiment: None,
+        ..untold
+    }
+}
+
 /// Branches of the same course that are gone at different speeds: same ends, same direction, same turning
 /// point before.
 pub(crate) fn courses<'s>(survey: &'s BranchSet) -> Vec<Speeds<'s>> {
@@ -241,7 +306,14 @@ fn speeds<'b>(branches: &[&'b Branch]) -> Option<Speeds<'b>> {
     let lowest = all().map(|b| b.curve.range().0).fold(f64::NEG_INFINITY, f64::max);
     let highest = all().map(|b| b.curve.range().1).fold(f64::INFINITY, f64::min);
     let (from, to) = if rises { (lowest, highest) } else { (highest, lowest) };
-    Some(Speeds { slow, fast, from, to })
+    let alone = [&slow, &fast].into_iter().filter(|set| set.len() == 1).map(|set| set[0]);
+    let after = |one: &'b Branch| {
+        let at = branches.iter().position(|branch| std::ptr::eq(*branch, one))?;
+        let next = branches.get(at + 1).filter(|next| speed(next) < DIFFERENT * speed(&one))?;
+        Some((one, *next))
+    };
+    let next = alone.filter_map(after).collect();
+    Some(Speeds { slow, fast, next, from, to })
 }
 
 /// Mean over a set of branches at an input.
@@ -274,12 +346,16 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     let height = survey.height();
     let apart = (square / places).sqrt();
     let own = (own[0].max(own[1]) / places).sqrt();
-    let wear = speeds.wear(survey);
+    let (wear, _) = speeds.wear(survey);
+    let settling = speeds.settling();
+    let middle = 0.5 * (speeds.from + speeds.to);
+    let pairs = speeds.slow.iter().flat_map(|slow| speeds.fast.iter().map(move |fast| (slow, fast)));
+    let rows = pairs.map(|(slow, fast)| survey.rows_between(slow, fast, middle)).fold(f64::INFINITY, f64::min);
     Some(Comparison {
         index: apart / height,
-        deviation: (variance / places).sqrt().hypot(survey.slow_noise) / height,
+        deviation: (variance / places).sqrt().hypot(survey.wander(rows)) / height,
         bend: (bend / places).sqrt() / height,
-        other: (0.5 * CLEAR * own).max(wear) / height,
+        other: (0.5 * CLEAR * own).max(FASTER * wear).max(settling) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
     })

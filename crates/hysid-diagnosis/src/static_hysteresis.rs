@@ -20,6 +20,9 @@ const BEYOND_A_LAG: f64 = 3.0;
 /// Speeds within this factor are taken together.
 const TOGETHER: f64 = 1.15;
 
+/// Without time stamps, a loop as wide as a lag of so many rows makes it may be that of a lag.
+const FEW_ROWS: f64 = 3.0;
+
 /// Openings over less than this share of the widest do not count.
 const WIDE: f64 = 0.7;
 
@@ -75,9 +78,12 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     };
     // What noise leaves between two branches that are one line.
     let shown = slow.iter().max_by(|a, b| a.area.total_cmp(&b.area)).expect("the slowest is among them");
-    let noise = OF_A_LINE * survey.output_noise.of_mean(survey.window) / shown.height;
+    let rows: usize = shown.rows(survey);
+    let between = survey.output_noise.of_mean(survey.window).hypot(survey.output_noise.wander(0.5 * rows as f64));
+    let noise = OF_A_LINE * between / shown.height;
     let threshold = FULL + significance::critical_value(1) * noise;
     let percent = 100.0 * index;
+    let fullest = large.iter().map(|opening| opening.fullness()).fold(0.0, f64::max);
     let known = rate != Verdict::Yes || growth_is_known(&large);
     let looks_static = area >= threshold && (next.is_none() || index >= REMAINS * area && known);
     let viscous = looks_static && survey.data.has_time() && viscous::may_be_viscous(survey);
@@ -91,6 +97,11 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
         )
     } else if area < threshold && threshold > 2.0 * FULL && area > FULL {
         (Verdict::NotTestable, "the noise is too large to detect loops that matter".to_string())
+    } else if area < threshold && next.is_none() && fullest > 2.0 * threshold {
+        (
+            Verdict::NotTestable,
+            format!("loops fill {percent:.1} % to {:.1} % of their bounding boxes", 100.0 * fullest),
+        )
     } else if area < threshold {
         (
             Verdict::No,
@@ -135,6 +146,11 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
                      same"
             ),
         )
+    } else if area < 2.0 * lag_of_few_rows(rows) {
+        (
+            Verdict::NotTestable,
+            format!("loops fill {percent:.1} % of their bounding box: a lag of {FEW_ROWS} rows would look the same"),
+        )
     } else {
         (
             Verdict::Yes,
@@ -156,6 +172,11 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
         evidence: vec![Evidence { index: shown.fullness(), pieces: shown.pieces(survey) }],
         picture: Some(loops(shown.curves(survey))),
     }
+}
+
+/// Share of its box that a lag of a few rows fills on a line of so many rows, there and back.
+fn lag_of_few_rows(rows: usize) -> f64 {
+    2.0 * FEW_ROWS / (0.5 * rows as f64)
 }
 
 /// True if loops grow from speed to speed (at three or more), and from the slowest to the next by much less than the

@@ -66,9 +66,10 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
     };
     let height = survey.height();
     let rows = |branch: &Branch| survey.piece(branch);
+    let apart = survey.rows_between(arriving, back, x);
     Some(Comparison {
         index: (second.y - before).abs() / height,
-        deviation: deviation.hypot(second.deviation).hypot(survey.slow_noise) / height,
+        deviation: deviation.hypot(second.deviation).hypot(survey.wander(apart)) / height,
         bend: (first.bend + second.bend) / height,
         other: survey.turn_error(leaving) / height,
         pieces: vec![rows(arriving), rows(back)],

@@ -37,6 +37,11 @@ impl Opening {
         vec![survey.piece(&survey.branches[self.branch]), survey.piece(&survey.branches[self.branch + 1])]
     }
 
+    /// Rows of both branches together.
+    pub fn rows(&self, survey: &BranchSet) -> usize {
+        survey.branches[self.branch..self.branch + 2].iter().map(|branch| branch.rows.len()).sum()
+    }
+
     /// Both branches for a picture.
     pub fn curves(&self, survey: &BranchSet) -> Vec<PictureCurve> {
         let curve = |label, index: usize| survey.curve(label, &survey.branches[index]);

@@ -1,6 +1,6 @@
 //! Noise from differences of a channel at several orders and distances, theory.md (10.1). The course of the values adds
-//! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, hum with its
-//! period: the shares of all follow from how the differences grow.
+//! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, a walk in
+//! proportion, hum with its period: the shares of all follow from how the differences grow.
 
 use std::f64::consts::TAU;
 
@@ -23,10 +23,6 @@ const SPAN: f64 = 0.3;
 /// Correlations from row to row that are tried, where they decay within a share of a run.
 const DECAYS: [f64; 6] = [0.6, 0.8, 0.9, 0.95, 0.98, 0.99];
 const DECAYED: f64 = 0.25;
-
-/// Where the slowest has this share of the variance, it may be so many times as large on the whole.
-const SLOW: f64 = 0.2;
-const BEYOND: f64 = 4.0;
 
 /// Periods of hum: from the shortest on by this factor, up to a share of a run.
 const SHORTEST_PERIOD: f64 = 4.0;
@@ -88,12 +84,7 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     let sampling = SAMPLING / (rows as f64).sqrt();
     let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
     let correlations = if NEAR.iter().any(grows) { correlations(length) } else { vec![Correlation::White] };
-    let mut shares = shares(&differences, &correlations);
-    // How slow the slowest noise is, and how large on the whole, a branch does not show: larger than it seems.
-    let slowest = correlations.iter().rposition(|c| matches!(c, Correlation::Decaying(_)));
-    if let Some(slowest) = slowest.filter(|&slowest| shares[slowest] > SLOW * shares.iter().sum::<f64>()) {
-        shares[slowest] *= BEYOND;
-    }
+    let shares = shares(&differences, &correlations);
     let total: f64 = shares.iter().sum();
     let parts: Vec<_> =
         correlations.into_iter().zip(shares).filter(|part| part.1 > SMALLEST * total).collect();
@@ -119,7 +110,7 @@ fn correlations(length: usize) -> Vec<Correlation> {
     let decays = DECAYS.iter().copied().filter(|factor| (1.0 - factor).recip() <= longest_decay);
     let periods = std::iter::successors(Some(SHORTEST_PERIOD), |period| Some(period * NEXT_PERIOD))
         .take_while(|period| *period <= LONGEST_PERIOD * length);
-    let mut correlations = vec![Correlation::White];
+    let mut correlations = vec![Correlation::White, Correlation::Walking];
     correlations.extend(decays.map(Correlation::Decaying));
     correlations.extend(periods.map(|period| Correlation::Periodic(TAU / period)));
     correlations

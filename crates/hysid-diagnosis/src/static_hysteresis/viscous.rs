@@ -13,19 +13,17 @@ const TIMES: i32 = 32;
 /// Columns without memory: 1, x, x², x³.
 const CURVE: usize = 4;
 
-/// All of them: with the rate and the relaxed input.
-const COLUMNS: usize = CURVE + 2;
+/// All of them: with drift, the rate and the relaxed input.
+const COLUMNS: usize = CURVE + 3;
 
 /// Remainders below this share of what a curve of the input leaves are explained.
-const EXPLAINED: f64 = 0.05;
+const EXPLAINED: f64 = 0.1;
 
 /// Remainders are noise up to so many times its deviation.
 const NOISE: f64 = 1.3;
 
-/// The input goes on steadily where one step is at least this share of the next; not to be seen in one that jitters by
-/// this share of its range.
-const STEADY: f64 = 0.7;
-const JITTERS: f64 = 2e-4;
+/// So many rows around a turning point are left out: an output that is late by as many is that of the branch before.
+const NEAR_A_TURN: usize = 3;
 
 /// Records with more rows are not looked at beyond them.
 const MOST_ROWS: usize = 100_000;
@@ -35,6 +33,7 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let records: Vec<&Record> = survey.data.records().iter().collect();
     let longest =
         records.iter().filter_map(|r| Some(r.time()?[r.len() - 1] - r.time()?[0])).fold(0.0, f64::max);
+    let on_branches: Vec<Vec<bool>> = (0..records.len()).map(|record| between_turns(survey, record)).collect();
     let step = survey.time_step();
     if step <= 0.0 || longest <= 2.0 * step {
         return false;
@@ -42,7 +41,9 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let factor = (0.5 * longest / step).powf(f64::from(TIMES - 1).recip());
     let products = |time: f64| {
         let mut products = Products::new();
-        records.iter().for_each(|record| products.add(survey, record, time));
+        for (record, on_branches) in records.iter().zip(&on_branches) {
+            products.add(survey, record, on_branches, time);
+        }
         products
     };
     let first = products(step);
@@ -51,6 +52,15 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
         (0..TIMES).map(|k| products(step * factor.powi(k)).remainder(COLUMNS)).fold(f64::INFINITY, f64::min);
     let noise = NOISE * survey.output_noise.deviation() / survey.height();
     least.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(noise)
+}
+
+/// Rows of a record that are not near a turning point.
+fn between_turns(survey: &BranchSet, record: usize) -> Vec<bool> {
+    let mut between = vec![false; survey.data.records()[record].len()];
+    for branch in survey.of_record(record).iter().filter(|branch| branch.rows.len() > 2 * NEAR_A_TURN) {
+        between[branch.rows.start + NEAR_A_TURN..branch.rows.end - NEAR_A_TURN].fill(true);
+    }
+    between
 }
 
 /// Products of all columns and the output, and the number of rows.
@@ -65,7 +75,7 @@ impl Products {
     }
 
     /// Adds the rows of a record whose input relaxes in a time.
-    fn add(&mut self, survey: &BranchSet, record: &Record, time: f64) {
+    fn add(&mut self, survey: &BranchSet, record: &Record, on_branches: &[bool], time: f64) {
         let Some(stamps) = record.time() else {
             return;
         };
@@ -73,7 +83,6 @@ impl Products {
         let scale = 2.0 / survey.width();
         let middle = 0.5 * (survey.input.0 + survey.input.1);
         let speed = survey.width() / (stamps[stamps.len() - 1] - stamps[0]) * stamps.len() as f64;
-        let jitters = survey.input_noise.deviation() > JITTERS * survey.width();
         let mut relaxed = x[0];
         for row in 0..x.len().min(MOST_ROWS) {
             if row > 0 {
@@ -82,17 +91,10 @@ impl Products {
                 let kept = (-step / time).exp();
                 relaxed = kept * relaxed + x[row] - kept * x[row - 1] - change * (1.0 - kept) * time / step;
             }
-            if y[row].is_nan() {
+            if !on_branches[row] || y[row].is_nan() {
                 continue;
             }
-            let (before, after) = (row.saturating_sub(1), (row + 1).min(x.len() - 1));
-            // Where the input turns between rows, its rate is not known.
-            let (came, goes) = (x[row] - x[before], x[after] - x[row]);
-            if came * goes <= 0.0
-                || !jitters && came.abs().min(goes.abs()) < STEADY * came.abs().max(goes.abs())
-            {
-                continue;
-            }
+            let (before, after) = (row - 1, row + 1);
             let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;
             let u = scale * (x[row] - middle);
             let columns = [
@@ -100,6 +102,7 @@ impl Products {
                 u,
                 u * u,
                 u * u * u,
+                row as f64 / x.len() as f64,
                 rate,
                 scale * (relaxed - middle),
                 (y[row] - survey.output.0) / survey.height(),
