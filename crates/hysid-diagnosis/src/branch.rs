@@ -253,6 +253,7 @@ impl<'a> BranchSet<'a> {
             slow_noise: 0.0,
         };
         set.slow_noise = slow_noise(&set);
+        if std::env::var("HYSID_DEBUG").is_ok() { eprintln!("{:?} slow {} height {}", set.output_noise, set.slow_noise, set.height()); }
         set
     }
 
@@ -291,10 +292,8 @@ impl<'a> BranchSet<'a> {
     /// on than it was measured: half the way between rows, times the change of slope.
     pub fn turn_error(&self, branch: &Branch) -> f64 {
         let record = &self.data.records()[branch.record];
-        let (x, first) = (&record.inputs()[0], branch.rows.start);
-        let before = (x[first] - x[first.saturating_sub(1)]).abs();
-        let after = (x[(first + 1).min(x.len() - 1)] - x[first]).abs();
-        let way = before.max(after);
+        let first = branch.rows.start;
+        let way = step_beside(&record.inputs()[0], first);
         let inwards = if branch.rises() { way } else { -way };
         let rise = |of: &Branch, reach: f64| -> Option<f64> {
             let (there, here) = (of.curve.at(branch.from + reach)?, of.curve.at(branch.from)?);
@@ -370,6 +369,8 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
         let begins_there = stack.len() == beneath.len() && stack[0].1.is_none() && stack.len() > 1;
         let known = beneath.len() - usize::from(begins_there);
         let mut closes = Vec::new();
+        // The input turns between rows: up to half the way between them further on than it was measured.
+        let reached = reached.max(0.5 * step_beside(x, last));
         while stack.len() >= 2 {
             let (before, arrived) = stack[stack.len() - 2];
             let passed = if to > from { to >= before - reached } else { to <= before + reached };
@@ -400,6 +401,13 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
             curve: Curve::default(),
         });
     }
+}
+
+/// The longer of the ways of the input to a row and from it.
+fn step_beside(x: &[f64], row: usize) -> f64 {
+    let before = (x[row] - x[row.saturating_sub(1)]).abs();
+    let after = (x[(row + 1).min(x.len() - 1)] - x[row]).abs();
+    before.max(after)
 }
 
 /// Steps in which the first input and the output are told.

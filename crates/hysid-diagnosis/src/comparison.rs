@@ -13,6 +13,9 @@ const CLOSE: f64 = 0.6;
 /// Deviations by which a difference may be larger than it was found.
 const UP_TO: f64 = 1.64;
 
+/// What reading between rows and other causes add may be so many times as large as estimated.
+const UNSURE: f64 = 2.5;
+
 /// Differences of this share of the effect that matters, on average, are near it.
 const NEAR: f64 = 0.3;
 
@@ -81,7 +84,7 @@ fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
 pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement> {
     let count = comparisons.len();
     let (critical, doubtful) = (significance::critical_value(count), significance::doubtful_value(count));
-    let limit = |c: &Comparison| (effect + 2.0 * (c.bend + c.other)).max(critical * c.deviation);
+    let limit = |c: &Comparison| (effect + UNSURE * (c.bend + c.other)).max(critical * c.deviation);
     let excess = |c: &Comparison| c.index / limit(c);
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));

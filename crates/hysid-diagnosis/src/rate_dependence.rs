@@ -61,6 +61,9 @@ const MOST: usize = 8;
 const HELPFUL: f64 = 0.4;
 const UNHELPFUL: f64 = 0.3;
 
+/// A law that leaves so many times the effect that matters predicts.
+const PREDICTS: f64 = 1.2;
+
 /// Places along a branch.
 const PLACES: usize = 40;
 
@@ -240,7 +243,7 @@ fn of_varying_speed(survey: &BranchSet) -> Finding {
     let alone = remainders.with_more_stops.min(remainders.with_a_lag);
     let verdict = if clear(without) <= EFFECT && explained <= UNHELPFUL * EFFECT {
         Verdict::No
-    } else if matters && clear(with_rate) <= HELPFUL * clear(alone) {
+    } else if matters && clear(with_rate) <= (HELPFUL * clear(alone)).min(PREDICTS * EFFECT) {
         Verdict::Yes
     } else {
         return untold;

@@ -1,6 +1,6 @@
 //! Noise from differences of a channel at several orders and distances, theory.md (10.1). The course of the values adds
-//! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, a walk in
-//! proportion, hum with its period: the shares of all follow from how the differences grow.
+//! to each of them with a high power of the distance, white noise not at all, coloured noise slowly, hum with its
+//! period: the shares of all follow from how the differences grow.
 
 use std::f64::consts::TAU;
 
@@ -39,7 +39,8 @@ const SAMPLING: f64 = 7.0;
 /// Power of the distance with which differences grow on a line with many kinks.
 const KINKS: i32 = 3;
 
-/// Distances at which correlated noise is seen to grow.
+/// Distances at which correlated noise is seen to grow, and the order from which on the course of the values hardly does.
+const TELLING: usize = 4;
 const NEAR: [usize; 2] = [2, 3];
 
 /// Parts below this share of the variance are left out.
@@ -82,13 +83,27 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     }
     // The least of each distance does not grow where noise is white; a course of the values adds to all of them.
     let sampling = SAMPLING / (rows as f64).sqrt();
-    let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
-    let correlations = if NEAR.iter().any(grows) { correlations(length) } else { vec![Correlation::White] };
+    let is_told = |distance: usize| differences.iter().any(|d| d.distance == distance && d.order >= TELLING);
+    let grows = |&distance: &usize| {
+        is_told(distance) && least(&differences, distance) > (1.0 + sampling) * least(&differences, 1)
+    };
+    let is_white = !NEAR.iter().any(grows);
+    let correlations = if is_white { vec![Correlation::White] } else { correlations(length) };
     let shares = shares(&differences, &correlations);
     let total: f64 = shares.iter().sum();
-    let parts: Vec<_> =
+    let mut parts: Vec<_> =
         correlations.into_iter().zip(shares).filter(|part| part.1 > SMALLEST * total).collect();
+    if !is_white {
+        parts.push((Correlation::Walking, largest_walk(&differences)));
+    }
     Noise { parts, roughness }
+}
+
+/// The largest variance of the steps of a walk that no difference contradicts. How slow the slowest noise is, branches do
+/// not show: what may be a walk counts as one.
+fn largest_walk(differences: &[Difference]) -> f64 {
+    let bounds = differences.iter().map(|d| d.variance / in_difference(Correlation::Walking, d));
+    bounds.fold(f64::INFINITY, f64::min)
 }
 
 /// Half of all rows are in runs at least so long.
@@ -110,7 +125,7 @@ fn correlations(length: usize) -> Vec<Correlation> {
     let decays = DECAYS.iter().copied().filter(|factor| (1.0 - factor).recip() <= longest_decay);
     let periods = std::iter::successors(Some(SHORTEST_PERIOD), |period| Some(period * NEXT_PERIOD))
         .take_while(|period| *period <= LONGEST_PERIOD * length);
-    let mut correlations = vec![Correlation::White, Correlation::Walking];
+    let mut correlations = vec![Correlation::White];
     correlations.extend(decays.map(Correlation::Decaying));
     correlations.extend(periods.map(|period| Correlation::Periodic(TAU / period)));
     correlations

@@ -1,8 +1,9 @@
 //! Rate dependence of a record in which no path was run at two speeds, but branches of many speeds occur: does a law with
 //! the rate predict branches that it was not fitted to better than a law without?
 //!
-//! Both are linear in their columns: a curve of the input, stops, and products of both; with the rate, also the rate,
-//! relaxed inputs, and stops times the logarithm of the speed, theory.md (10.26).
+//! Both are linear in their columns: a curve of the input, stops, inputs that fade with the path, and products of both
+//! with the input; with the rate, also the rate, inputs that fade with time, and stops times the logarithm of the speed,
+//! theory.md (10.26).
 
 use hysid_core::data::record::Record;
 use hysid_core::linear_algebra::Symmetric;
@@ -26,12 +27,14 @@ const OF_BRANCHES: usize = 5;
 /// Rows that are fitted at most.
 const MOST_ROWS: usize = 5_000;
 
-/// Columns of every law: 1, u, u², u³ and the drift; the stops; their products with u.
+/// Columns of every law: 1, u, u², u³ and the drift; stops and inputs that fade with the path; their products with u.
 const CURVE: usize = 5;
 const STOPS: usize = 10;
-const BASE: usize = CURVE + 2 * STOPS;
+const PATHS: [f64; 4] = [0.1, 0.3, 0.9, 2.7];
+const MEMORY: usize = STOPS + PATHS.len();
+const BASE: usize = CURVE + 2 * MEMORY;
 
-/// Columns of the rate: itself, relaxed inputs and stops times the logarithm of the speed.
+/// Columns of the rate: itself, inputs that fade with time, and stops times the logarithm of the speed.
 const TIMES: usize = 3;
 const PACED: usize = 4;
 const RATE: usize = 1 + TIMES + PACED;
@@ -186,6 +189,13 @@ fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
     (0..parts.len()).map(of_part).collect()
 }
 
+/// The exact answer of `s' = x' - s/τ` after a step in which the input goes a way at an even rate; `share` is the step over
+/// `τ`.
+fn fade(s: f64, way: f64, share: f64) -> f64 {
+    let kept = (-share).exp();
+    kept * s + way * if share > 0.0 { (1.0 - kept) / share } else { 1.0 }
+}
+
 /// Adds the rows of a record, with its output taken so many rows earlier.
 fn add(
     survey: &BranchSet,
@@ -212,7 +222,7 @@ fn add(
     let scale = 2.0 / survey.width();
     let times = [0.1, 0.5, 2.0].map(|share| share * 2.0 / (scale * fastest));
     let mut plays = [[scaled(0); STOPS]; 2];
-    let mut relaxed = [0.0; TIMES];
+    let (mut relaxed, mut faded) = ([0.0; TIMES], [0.0; PATHS.len()]);
     let mut before = scaled(0);
     for row in 0..input.len() {
         let u = scaled(row);
@@ -221,12 +231,12 @@ fn add(
                 *play = follow(*play, u, threshold(stop as f64 + 0.5 * between as f64));
             }
         }
-        if row > 0 {
-            let step = time[row] - time[row - 1];
-            for (relaxed, time) in relaxed.iter_mut().zip(times) {
-                let kept = (-step / time).exp();
-                *relaxed = kept * *relaxed + (u - before) * (1.0 - kept) * time / step;
-            }
+        let (step, way) = (time[row] - time[row.saturating_sub(1)], u - before);
+        for (relaxed, time) in relaxed.iter_mut().zip(times) {
+            *relaxed = fade(*relaxed, way, step / time);
+        }
+        for (faded, path) in faded.iter_mut().zip(PATHS) {
+            *faded = fade(*faded, way, way.abs() / path);
         }
         before = u;
         let Some(part) = parts[row].filter(|_| row % stride == 0 && !output[row].is_nan()) else { continue };
@@ -235,10 +245,10 @@ fn add(
         let pace = (speed.abs() / SLOWEST).max(1.0).ln();
         let mut columns = [0.0; COLUMNS + 1];
         columns[..CURVE].copy_from_slice(&[1.0, u, u * u, u * u * u, row as f64 / input.len() as f64]);
-        for stop in 0..STOPS {
-            let stress = elongation(u, plays[0][stop]);
-            columns[CURVE + stop] = stress;
-            columns[CURVE + STOPS + stop] = u * stress;
+        let stresses = plays[0].map(|play| elongation(u, play));
+        for (memory, stress) in stresses.into_iter().chain(faded).enumerate() {
+            columns[CURVE + memory] = stress;
+            columns[CURVE + MEMORY + memory] = u * stress;
         }
         columns[BASE] = speed;
         columns[BASE + 1..BASE + 1 + TIMES].copy_from_slice(&relaxed);
