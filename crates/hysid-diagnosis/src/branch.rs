@@ -20,6 +20,9 @@ const MOST_POINTS: usize = 400;
 /// A turning point counts as reached within this share of the input's range.
 const REACHED: f64 = 0.003;
 
+/// Where rows lie far apart, a turning point between them counts as reached within this share of it.
+const BETWEEN_ROWS: f64 = 0.01;
+
 /// Branches lower than this share of the output's range have no shape.
 const LOWEST: f64 = 0.05;
 
@@ -221,7 +224,7 @@ impl<'a> BranchSet<'a> {
         let reached = REACHED * width + 2.0 * roughness;
         let mut branches = Vec::new();
         for (number, record) in data.records().iter().enumerate() {
-            follow(number, record, smallest_reversal, reached, &mut branches);
+            follow(number, record, smallest_reversal, (reached, BETWEEN_ROWS * width), &mut branches);
         }
         let of_branch = |branch: &Branch| &data.records()[branch.record].inputs()[0][branch.rows.clone()];
         let input_noise = Noise::of(branches.iter().map(of_branch));
@@ -350,7 +353,13 @@ impl<'a> BranchSet<'a> {
 }
 
 /// The branches of a record.
-fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches: &mut Vec<Branch>) {
+fn follow(
+    number: usize,
+    record: &Record,
+    smallest: f64,
+    (reached, longest_beside): (f64, f64),
+    branches: &mut Vec<Branch>,
+) {
     let x = &record.inputs()[0];
     let mut ends = vec![0];
     ends.extend(turning_points(x, smallest));
@@ -370,7 +379,7 @@ fn follow(number: usize, record: &Record, smallest: f64, reached: f64, branches:
         let known = beneath.len() - usize::from(begins_there);
         let mut closes = Vec::new();
         // The input turns between rows: up to half the way between them further on than it was measured.
-        let reached = reached.max(0.5 * step_beside(x, last));
+        let reached = reached.max((0.5 * step_beside(x, last)).min(longest_beside));
         while stack.len() >= 2 {
             let (before, arrived) = stack[stack.len() - 2];
             let passed = if to > from { to >= before - reached } else { to <= before + reached };

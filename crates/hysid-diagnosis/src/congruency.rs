@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, judge};
+use super::static_hysteresis::FULL;
 use super::{Finding, PictureCurve, Property, Verdict};
 
 /// A difference of shape that matters, as a share of the height.
@@ -17,6 +18,9 @@ const SHORTEST: f64 = 0.05;
 
 /// Pasts whose last outer turning points are closer than this share of the input's range are the same.
 const OTHER_PAST: f64 = 0.05;
+
+/// Loops whose first outputs are apart by this share of the output's range are different loops.
+const APART: f64 = 0.05;
 
 /// Pairs with one beginning that are compared at most.
 const MOST_PAIRS: usize = 100;
@@ -29,13 +33,16 @@ const EXPERIMENT: &str =
 
 /// Tests for congruent minor loops.
 pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
-    let mut comparisons = Vec::new();
+    let (mut comparisons, mut apart) = (Vec::new(), Vec::new());
     for group in same_beginning(survey).values() {
         let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));
         let different = pairs.filter(|(a, b)| other_past(survey, &survey.branches[*a], &survey.branches[*b]));
         for (a, b) in different.take(MOST_PAIRS) {
             let (a, b) = (&survey.branches[a], &survey.branches[b]);
-            comparisons.extend(compare(survey, a, b, equal_speed));
+            if let Some((comparison, displaced)) = compare(survey, a, b, equal_speed) {
+                comparisons.push(comparison);
+                apart.push(displaced);
+            }
         }
     }
     let Some(judgement) = judge(&comparisons, EFFECT) else {
@@ -43,6 +50,13 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
             "no two branches begin at the same input, in the same direction, with a different past";
         return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
     };
+    // Loops that begin at one output may be the same loop again.
+    let has_loops = survey.openings.iter().any(|opening| opening.fullness() > FULL);
+    let are_apart = apart.iter().any(|apart| *apart > APART);
+    if judgement.verdict == Verdict::Yes && has_loops && !are_apart {
+        let statement = "loops between the same inputs begin at the same output";
+        return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
+    }
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
         Verdict::Yes => format!(
@@ -102,7 +116,8 @@ fn from_beginning(mut curve: PictureCurve, start: f64) -> PictureCurve {
     curve
 }
 
-fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Option<Comparison> {
+/// The difference of shape, and how far apart the outputs at the beginnings are, as a share of the output's range.
+fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Option<(Comparison, f64)> {
     let nearest = |a: f64, b: f64, rises: bool| if rises { a.min(b) } else { a.max(b) };
     let rises = a.rises();
     let beginning = if rises { a.from.max(b.from) } else { a.from.min(b.from) };
@@ -138,7 +153,7 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
     // Of the noise, that at the beginning shifts the whole branch.
     let deviation = (variance / places + start_a.deviation.powi(2) + start_b.deviation.powi(2)).sqrt();
     let wander = survey.wander_along(a, way).hypot(survey.wander_along(b, way));
-    Some(Comparison {
+    let comparison = Comparison {
         index: (square / places).sqrt() / height,
         deviation: deviation.hypot(wander) / height,
         bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
@@ -148,5 +163,6 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
             from_beginning(survey.curve_between("first", a, (beginning, end)), start_a.y),
             from_beginning(survey.curve_between("second, with another past", b, (beginning, end)), start_b.y),
         ],
-    })
+    };
+    Some((comparison, (start_a.y - start_b.y).abs() / survey.height()))
 }

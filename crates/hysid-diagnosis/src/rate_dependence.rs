@@ -47,6 +47,10 @@ const FASTER: f64 = 1.5;
 /// Wear is known where noise in it is so many times smaller than what it is to explain.
 const CLEARLY: f64 = 3.0;
 
+/// Branches of the first cycle of a record, and by what share of the output's range they may lie elsewhere than later ones.
+const FIRST_CYCLE: usize = 4;
+const SETTLES: f64 = 0.01;
+
 /// Rows by which an input may be late.
 const FEW_ROWS: f64 = 3.0;
 
@@ -61,7 +65,8 @@ const MOST: usize = 8;
 const HELPFUL: f64 = 0.4;
 const UNHELPFUL: f64 = 0.3;
 
-/// A law that leaves so many times the effect that matters predicts.
+/// A law that leaves so many times the effect that matters does not predict, and one that leaves so many times predicts.
+const MATTERS: f64 = 4.0;
 const PREDICTS: f64 = 1.2;
 
 /// Places along a branch.
@@ -128,6 +133,14 @@ impl Speeds<'_> {
             Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
         };
         self.next.iter().filter_map(|pair| between(*pair)).fold(0.0, f64::max)
+    }
+
+    /// True if one of the sets is a branch of the first cycle of its record, run only once.
+    fn may_settle(&self, survey: &BranchSet) -> bool {
+        let is_first = |branch: &Branch| {
+            survey.of_record(branch.record).iter().take(FIRST_CYCLE).any(|b| b.rows == branch.rows)
+        };
+        [&self.slow, &self.fast].into_iter().any(|set| set.len() == 1 && is_first(set[0]))
     }
 
     /// True if one speed was run after the other, without repetitions that would show how the specimen wears, and the
@@ -239,7 +252,7 @@ fn of_varying_speed(survey: &BranchSet) -> Finding {
     let Remainders { without, with_rate, noise, .. } = remainders;
     let clear = |remainder: f64| (remainder * remainder - noise * noise).max(0.0).sqrt();
     let explained = (without * without - with_rate * with_rate).max(0.0).sqrt();
-    let matters = clear(without) > 2.0 * EFFECT && remainders.everywhere;
+    let matters = clear(without) > MATTERS * EFFECT && remainders.everywhere;
     let alone = remainders.with_more_stops.min(remainders.with_a_lag);
     let verdict = if clear(without) <= EFFECT && explained <= UNHELPFUL * EFFECT {
         Verdict::No
@@ -350,7 +363,8 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     let apart = (square / places).sqrt();
     let own = (own[0].max(own[1]) / places).sqrt();
     let (wear, _) = speeds.wear(survey);
-    let settling = speeds.settling();
+    let first = if speeds.may_settle(survey) { SETTLES * survey.height() } else { 0.0 };
+    let settling = speeds.settling().max(first);
     let middle = 0.5 * (speeds.from + speeds.to);
     let pairs = speeds.slow.iter().flat_map(|slow| speeds.fast.iter().map(move |fast| (slow, fast)));
     let rows = pairs.map(|(slow, fast)| survey.rows_between(slow, fast, middle)).fold(f64::INFINITY, f64::min);

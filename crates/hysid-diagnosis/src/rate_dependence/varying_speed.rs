@@ -43,7 +43,7 @@ const RATE: usize = 1 + TIMES + PACED;
 const COLUMNS: usize = BASE + 2 * RATE;
 
 /// Rows by which the output may be late.
-const LAGS: [f64; 6] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0];
+const LAGS: [f64; 8] = [-3.0, -2.0, -1.0, -0.5, 0.5, 1.0, 1.5, 2.5];
 
 /// Speeds below this share of the fastest are alike.
 const SLOWEST: f64 = 0.01;
