@@ -5,13 +5,13 @@ use super::significance;
 use super::{PictureCurve, Piece, Verdict};
 
 /// A property holds if no difference can be larger than so many times the effect that matters.
-const BOUND: f64 = 2.5;
+const BOUND: f64 = 3.0;
 
 /// A difference beyond this share of the effect that matters is too close to it for a property to hold.
 const CLOSE: f64 = 0.6;
 
 /// Deviations by which a difference may be larger than it was found.
-const UP_TO: f64 = 1.64;
+const UP_TO: f64 = 1.28;
 
 /// What reading between rows and other causes add may be so many times as large as estimated.
 const UNSURE: f64 = 2.5;
@@ -90,7 +90,8 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
     let deciding = &comparisons[*order.first()?];
     let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(doubtful * c.deviation);
-    let mut bounds: Vec<f64> = comparisons.iter().map(|c| c.index + UP_TO * c.deviation + c.bend + c.other).collect();
+    let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(c.other);
+    let mut bounds: Vec<f64> = comparisons.iter().map(bound).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
     } else if comparisons.iter().any(is_doubtful)

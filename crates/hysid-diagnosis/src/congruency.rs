@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use super::branch::{Branch, BranchSet};
 use super::comparison::{Comparison, judge};
-use super::static_hysteresis::FULL;
 use super::{Finding, PictureCurve, Property, Verdict};
 
 /// A difference of shape that matters, as a share of the height.
@@ -31,8 +30,8 @@ const PLACES: usize = 40;
 const EXPERIMENT: &str =
     "run the same minor loop twice: once on the way up and once on the way down of a larger loop";
 
-/// Tests for congruent minor loops.
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
+/// Tests for congruent minor loops; `has_loops` unless the output is a function of the input.
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool, has_loops: bool) -> Finding {
     let (mut comparisons, mut apart) = (Vec::new(), Vec::new());
     for group in same_beginning(survey).values() {
         let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));
@@ -51,7 +50,6 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
         return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
     };
     // Loops that begin at one output may be the same loop again.
-    let has_loops = survey.openings.iter().any(|opening| opening.fullness() > FULL);
     let are_apart = apart.iter().any(|apart| *apart > APART);
     if judgement.verdict == Verdict::Yes && has_loops && !are_apart {
         let statement = "loops between the same inputs begin at the same output";

@@ -224,12 +224,14 @@ impl Diagnosis {
         let (rate, delay) = rate_dependence::test(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
+        let at_rest = static_hysteresis::test(survey, rate.verdict, || doctor::longest_lag(survey));
+        let has_loops = at_rest.verdict != Verdict::No;
         let mut properties = vec![
-            static_hysteresis::test(survey, rate.verdict, || doctor::longest_lag(survey)),
+            at_rest,
             orientation::test(survey),
             rate,
             wiping_out::test(survey, equal_speed),
-            congruency::test(survey, equal_speed),
+            congruency::test(survey, equal_speed, has_loops),
             masing::test(survey, equal_speed),
             odd_symmetry::test(survey, equal_speed),
             saturation::test(survey),
@@ -242,7 +244,7 @@ impl Diagnosis {
         let explanations =
             artifact::withhold(survey, options, &mut properties, |corrected, property| match property {
                 Property::WipingOut => wiping_out::test(corrected, equal_speed),
-                Property::Congruency => congruency::test(corrected, equal_speed),
+                Property::Congruency => congruency::test(corrected, equal_speed, has_loops),
                 Property::Masing => masing::test(corrected, equal_speed),
                 Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
                 _ => loop_closure::test(corrected, &cycles::cycles(corrected), equal_speed),

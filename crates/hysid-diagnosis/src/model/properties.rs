@@ -65,10 +65,12 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
         let problem = DataProblem::ConstantOutput(loops.output()[0]);
         return Err(loops.defect(None, Some(hysid_core::error::Channel::Output), problem));
     }
+    let at_rest = static_loops(probe)?;
+    let has_loops = at_rest.verdict != Verdict::No;
     let mut findings =
-        if slow > HARDLY_MOVES * moving { of_memory(probe, &memory)? } else { hardly_moving() };
+        if slow > HARDLY_MOVES * moving { of_memory(probe, &memory, has_loops)? } else { hardly_moving() };
     findings.extend([
-        static_loops(probe)?,
+        at_rest,
         direct::rate_dependence(probe)?,
         direct::odd_symmetry(probe)?,
         wear(probe)?,
@@ -82,12 +84,12 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
 }
 
 /// What a model remembers, at a vanishing speed.
-fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
+fn of_memory(probe: &Probe, memory: &Dataset, has_loops: bool) -> Result<Vec<Finding>> {
     let survey = survey(memory);
     let mut findings = vec![
         orientation::test(&survey),
         direct::with_accumulated_gap(probe, wiping_out::test(&survey, false), survey.height())?,
-        congruency::test(&survey, false),
+        congruency::test(&survey, false, has_loops),
         masing::test(&survey, false),
         saturation::test(&survey),
         closure(probe)?,

@@ -32,9 +32,10 @@ const LONGEST_PERIOD: f64 = 0.2;
 /// Rounds in which the shares of the parts are found.
 const ROUNDS: usize = 2000;
 
-/// By which share the variance of more distant rows may be larger by chance, times the square root of the number of rows:
-/// three times the relative deviation of a variance that is taken from a median.
-const SAMPLING: f64 = 7.0;
+/// By which share the variance of more distant rows may be larger by chance, times the square root of the number of rows.
+/// A variance that is taken from the median of so many differences has a relative deviation of about 4, the ratio of two
+/// one of 5 to 6, and the least of four orders is the more uncertain one.
+const SAMPLING: f64 = 14.0;
 
 /// Power of the distance with which differences grow on a line with many kinks.
 const KINKS: i32 = 3;
