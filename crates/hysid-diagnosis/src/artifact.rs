@@ -182,7 +182,8 @@ pub(crate) fn withhold(
 /// Withholds what parts of loops seem to contradict, where the rest is not known.
 pub(crate) fn withhold_partial(findings: &mut [Finding]) {
     const SHAPES: [Property; 3] = [Property::StaticHysteresis, Property::Congruency, Property::Masing];
-    let contradicted = |finding: &&mut Finding| finding.verdict == Verdict::No && SHAPES.contains(&finding.property);
+    let contradicted =
+        |finding: &&mut Finding| finding.verdict == Verdict::No && SHAPES.contains(&finding.property);
     for finding in findings.iter_mut().filter(contradicted) {
         finding.verdict = Verdict::NotTestable;
         finding.statement = format!("{}, where the output is not clipped", finding.statement);

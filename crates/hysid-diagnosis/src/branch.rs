@@ -256,7 +256,6 @@ impl<'a> BranchSet<'a> {
             slow_noise: 0.0,
         };
         set.slow_noise = slow_noise(&set);
-        if std::env::var("HYSID_DEBUG").is_ok() { eprintln!("{:?} slow {} height {}", set.output_noise, set.slow_noise, set.height()); }
         set
     }
 

@@ -16,6 +16,11 @@ const UP_TO: f64 = 1.28;
 /// What reading between rows and other causes add may be so many times as large as estimated.
 const UNSURE: f64 = 2.5;
 
+/// Independent numbers in a gap, and in a difference of shapes: a branch is smoothed over up to a fifth of it, and its
+/// beginning has a noise that shifts all of it.
+pub(crate) const GAP: f64 = 1.0;
+pub(crate) const SHAPE: f64 = 3.0;
+
 /// Differences of this share of the effect that matters, on average, are near it.
 const NEAR: f64 = 0.3;
 
@@ -31,6 +36,8 @@ pub(crate) struct Comparison {
     pub deviation: f64,
     /// What reading between rows may add to it.
     pub bend: f64,
+    /// Independent numbers in it: 1 for a gap, several for a shape.
+    pub freedom: f64,
     /// What other causes may add to it: turning points between rows, wear.
     pub other: f64,
     /// Where it was found.
@@ -46,6 +53,7 @@ impl Comparison {
             index: (a.y - b.y).abs() / height,
             deviation: a.deviation.hypot(b.deviation).hypot(wander) / height,
             bend: (a.bend + b.bend) / height,
+            freedom: GAP,
             other: 0.0,
             pieces: Vec::new(),
             curves: Vec::new(),
@@ -75,9 +83,11 @@ pub(crate) struct Judgement {
 fn are_doubtful_together(comparisons: &[Comparison], effect: f64) -> bool {
     let count = comparisons.len() as f64;
     let beyond = |c: &Comparison| (c.index - c.bend - c.other).max(0.0);
-    let squares: f64 = comparisons.iter().map(|c| (beyond(c) / c.deviation.max(f64::MIN_POSITIVE)).powi(2)).sum();
+    let squares: f64 =
+        comparisons.iter().map(|c| (beyond(c) / c.deviation.max(f64::MIN_POSITIVE)).powi(2)).sum();
     let mean = comparisons.iter().map(beyond).sum::<f64>() / count;
-    mean > NEAR * effect && squares > count + TOGETHER * (2.0 * count).sqrt()
+    let spread: f64 = comparisons.iter().map(|c| 2.0 / c.freedom).sum();
+    mean > NEAR * effect && squares > count + TOGETHER * spread.sqrt()
 }
 
 /// Judges comparisons: a difference counts if it is above `effect` and cannot be noise, theory.md (10.3).
@@ -89,13 +99,20 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by(|&a, &b| excess(&comparisons[b]).total_cmp(&excess(&comparisons[a])));
     let deciding = &comparisons[*order.first()?];
-    let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(doubtful * c.deviation);
+    // The root mean square of several numbers strays less from its deviation than one does.
+    let in_doubt = |c: &Comparison| match c.freedom > GAP {
+        true => (1.0 + doubtful * (2.0 / c.freedom).sqrt()).sqrt(),
+        false => doubtful,
+    };
+    let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(in_doubt(c) * c.deviation);
     let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(c.other);
     let mut bounds: Vec<f64> = comparisons.iter().map(bound).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No
     } else if comparisons.iter().any(is_doubtful)
-        || are_doubtful_together(comparisons, effect) || significance::median(&mut bounds) > BOUND * effect {
+        || are_doubtful_together(comparisons, effect)
+        || significance::median(&mut bounds) > BOUND * effect
+    {
         Verdict::NotTestable
     } else {
         Verdict::Yes

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::branch::{Branch, BranchSet};
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, SHAPE, judge};
 use super::{Finding, PictureCurve, Property, Verdict};
 
 /// A difference of shape that matters, as a share of the height.
@@ -155,6 +155,7 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
         index: (square / places).sqrt() / height,
         deviation: deviation.hypot(wander) / height,
         bend: ((bend / places).sqrt() + start_a.bend + start_b.bend) / height,
+        freedom: SHAPE,
         other: (survey.turn_error(a) + survey.turn_error(b)) / height,
         pieces: vec![survey.piece(a), survey.piece(b)],
         curves: vec![

@@ -4,7 +4,7 @@
 //! `|y(t + T) - y(t)| / R`                                                          theory.md (10.10)
 
 use super::branch::BranchSet;
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, GAP, judge};
 use super::cycles::repeated;
 use super::{Cycle, Finding, Property, Verdict};
 
@@ -68,7 +68,8 @@ fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'
 /// True if the loops of a group begin at another output in the end.
 fn moves(survey: &BranchSet, groups: &[Vec<&Cycle>]) -> bool {
     let moved = |group: &Vec<&Cycle>| -> Option<Comparison> {
-        let [first, last] = [group[0], group[group.len() - 1]].map(|cycle| &survey.branches[cycle.branches.0]);
+        let [first, last] =
+            [group[0], group[group.len() - 1]].map(|cycle| &survey.branches[cycle.branches.0]);
         let x = if first.rises() { first.from.max(last.from) } else { first.from.min(last.from) };
         let (before, after) = (first.curve.at(x)?, last.curve.at(x)?);
         let wander = survey.wander(survey.rows_between(first, last, x));
@@ -102,6 +103,7 @@ fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
         index: (last.y - first.y).abs() / height,
         deviation: first.deviation.hypot(last.deviation).hypot(survey.wander(apart)) / height,
         bend: (first.bend + last.bend + own) / height,
+        freedom: GAP,
         other: 0.0,
         pieces: vec![cycle.piece()],
         curves: vec![survey.curve("there", out), survey.curve("back", back)],

@@ -4,7 +4,7 @@
 //! `(|x - x_a|/2, |y - y_a|/2)` of each own part against that of the longest          theory.md (10.6)
 
 use super::branch::{Branch, BranchSet, is_one_speed};
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the height.
@@ -129,6 +129,7 @@ fn compare(survey: &BranchSet, longest: &OwnPart, part: &OwnPart) -> Option<Comp
         index: (square / places).sqrt() / height,
         deviation: (variance / places).sqrt().hypot(wander) / height,
         bend: (bend / places).sqrt() / height,
+        freedom: SHAPE,
         other: 0.5 * (survey.turn_error(longest.branch) + survey.turn_error(part.branch)) / height,
         pieces: vec![survey.piece(longest.branch), survey.piece(part.branch)],
         curves: vec![

@@ -4,7 +4,7 @@
 //! `rms(y_up(x) + y_down(2 x_c - x) - mean) / R`,  half the mean is the offset       theory.md (10.7)
 
 use super::branch::{Branch, BranchSet};
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 
 /// A difference that matters, as a share of the range of the output.
@@ -106,6 +106,7 @@ fn compare(
         index: square.sqrt() / height,
         deviation: variance.sqrt().hypot(wander) / height,
         bend: bend / height,
+        freedom: SHAPE,
         other: 0.0,
         pieces: [before, branch, after].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![

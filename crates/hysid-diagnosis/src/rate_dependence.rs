@@ -12,7 +12,7 @@ mod varying_speed;
 use std::collections::HashMap;
 
 use super::branch::{Branch, BranchSet, Reading};
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, SHAPE, judge};
 use super::{Finding, Property, Verdict};
 use delay::Delay;
 use varying_speed::Remainders;
@@ -367,11 +367,13 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
     let settling = speeds.settling().max(first);
     let middle = 0.5 * (speeds.from + speeds.to);
     let pairs = speeds.slow.iter().flat_map(|slow| speeds.fast.iter().map(move |fast| (slow, fast)));
-    let rows = pairs.map(|(slow, fast)| survey.rows_between(slow, fast, middle)).fold(f64::INFINITY, f64::min);
+    let rows =
+        pairs.map(|(slow, fast)| survey.rows_between(slow, fast, middle)).fold(f64::INFINITY, f64::min);
     Some(Comparison {
         index: apart / height,
         deviation: (variance / places).sqrt().hypot(survey.wander(rows)) / height,
         bend: (bend / places).sqrt() / height,
+        freedom: SHAPE,
         other: (0.5 * CLEAR * own).max(FASTER * wear).max(settling) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],

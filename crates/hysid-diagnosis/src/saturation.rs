@@ -2,7 +2,7 @@
 //! over the largest slope of the same branch, theory.md (10.8).
 
 use super::branch::{Branch, BranchSet};
-use super::comparison::Comparison;
+use super::comparison::{Comparison, GAP};
 use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict};
 
@@ -109,6 +109,7 @@ fn slope_ratio(survey: &BranchSet, branch: &Branch) -> Option<Comparison> {
         index: rises[PARTS - 1] / largest,
         deviation: last / largest,
         bend: 0.0,
+        freedom: GAP,
         other: 0.0,
         pieces: vec![survey.piece(branch)],
         curves: vec![

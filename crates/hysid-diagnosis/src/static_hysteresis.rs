@@ -79,7 +79,8 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     // What noise leaves between two branches that are one line.
     let shown = slow.iter().max_by(|a, b| a.area.total_cmp(&b.area)).expect("the slowest is among them");
     let rows: usize = shown.rows(survey);
-    let between = survey.output_noise.of_mean(survey.window).hypot(survey.output_noise.wander(0.5 * rows as f64));
+    let between =
+        survey.output_noise.of_mean(survey.window).hypot(survey.output_noise.wander(0.5 * rows as f64));
     let noise = OF_A_LINE * between / shown.height;
     let threshold = FULL + significance::critical_value(1) * noise;
     let percent = 100.0 * index;
@@ -149,7 +150,9 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     } else if area < 2.0 * lag_of_few_rows(rows) {
         (
             Verdict::NotTestable,
-            format!("loops fill {percent:.1} % of their bounding box: a lag of {FEW_ROWS} rows would look the same"),
+            format!(
+                "loops fill {percent:.1} % of their bounding box: a lag of {FEW_ROWS} rows would look the same"
+            ),
         )
     } else {
         (

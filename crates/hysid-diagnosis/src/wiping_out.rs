@@ -4,7 +4,7 @@
 //! `|y(return to x_a) - y(x_a)| / R`                                                 theory.md (10.4)
 
 use super::branch::{Branch, BranchSet, Closing};
-use super::comparison::{Comparison, judge};
+use super::comparison::{Comparison, GAP, judge};
 use super::{Evidence, Finding, Picture, Property, Verdict};
 
 /// A gap that matters, as a share of the range of the output.
@@ -71,6 +71,7 @@ fn gap(survey: &BranchSet, returning: usize, closing: &Closing) -> Option<Compar
         index: (second.y - before).abs() / height,
         deviation: deviation.hypot(second.deviation).hypot(survey.wander(apart)) / height,
         bend: (first.bend + second.bend) / height,
+        freedom: GAP,
         other: survey.turn_error(leaving) / height,
         pieces: vec![rows(arriving), rows(back)],
         curves: vec![

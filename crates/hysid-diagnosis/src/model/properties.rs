@@ -69,12 +69,7 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
     let has_loops = at_rest.verdict != Verdict::No;
     let mut findings =
         if slow > HARDLY_MOVES * moving { of_memory(probe, &memory, has_loops)? } else { hardly_moving() };
-    findings.extend([
-        at_rest,
-        direct::rate_dependence(probe)?,
-        direct::odd_symmetry(probe)?,
-        wear(probe)?,
-    ]);
+    findings.extend([at_rest, direct::rate_dependence(probe)?, direct::odd_symmetry(probe)?, wear(probe)?]);
     if findings.iter().any(|f| f.property == Property::Orientation && f.verdict == Verdict::NotTestable) {
         findings.retain(|finding| finding.property != Property::Orientation);
         findings.push(orientation_at_speed(probe, loops)?);

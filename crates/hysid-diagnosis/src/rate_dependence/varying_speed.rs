@@ -3,7 +3,7 @@
 //!
 //! Both are linear in their columns: a curve of the input, stops, inputs that fade with the path, and products of both
 //! with the input; with the rate, also the rate, inputs that fade with time, and stops times the logarithm of the speed,
-//! theory.md (10.26).
+//! theory.md (10.27).
 
 use hysid_core::data::record::Record;
 use hysid_core::linear_algebra::Symmetric;
@@ -182,7 +182,11 @@ impl Products {
 fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
     let of_part = |part: usize| -> Option<f64> {
         let mut others = Products::new();
-        parts.iter().enumerate().filter(|(other, _)| *other != part).for_each(|(_, other)| others.merge(other));
+        parts
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != part)
+            .for_each(|(_, other)| others.merge(other));
         let weights = others.weights(chosen)?;
         (parts[part].rows > 0.0).then(|| parts[part].remainder(chosen, &weights))
     };

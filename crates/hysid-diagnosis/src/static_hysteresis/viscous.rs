@@ -33,7 +33,8 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let records: Vec<&Record> = survey.data.records().iter().collect();
     let longest =
         records.iter().filter_map(|r| Some(r.time()?[r.len() - 1] - r.time()?[0])).fold(0.0, f64::max);
-    let on_branches: Vec<Vec<bool>> = (0..records.len()).map(|record| between_turns(survey, record)).collect();
+    let on_branches: Vec<Vec<bool>> =
+        (0..records.len()).map(|record| between_turns(survey, record)).collect();
     let step = survey.time_step();
     if step <= 0.0 || longest <= 2.0 * step {
         return false;
