@@ -208,6 +208,8 @@ pub(crate) struct BranchSet<'a> {
     pub openings: Vec<Opening>,
     /// Deviation by which the output moves from cycle to cycle.
     pub slow_noise: f64,
+    /// True if the rows include the turning points themselves, as where a path was simulated.
+    pub turns_on_rows: bool,
 }
 
 impl<'a> BranchSet<'a> {
@@ -254,6 +256,7 @@ impl<'a> BranchSet<'a> {
             branches,
             openings,
             slow_noise: 0.0,
+            turns_on_rows: false,
         };
         set.slow_noise = slow_noise(&set);
         set
@@ -293,6 +296,9 @@ impl<'a> BranchSet<'a> {
     /// By how much the output after a turning point may be off because the input turned between two rows, and so further
     /// on than it was measured: half the way between rows, times the change of slope.
     pub fn turn_error(&self, branch: &Branch) -> f64 {
+        if self.turns_on_rows {
+            return 0.0;
+        }
         let record = &self.data.records()[branch.record];
         let first = branch.rows.start;
         let way = step_beside(&record.inputs()[0], first);

@@ -21,6 +21,9 @@ const UNSURE: f64 = 2.5;
 pub(crate) const GAP: f64 = 1.0;
 pub(crate) const SHAPE: f64 = 3.0;
 
+/// A difference whose deviation is below this share of it is no noise.
+const CLEAR: f64 = 0.1;
+
 /// Differences of this share of the effect that matters, on average, are near it.
 const NEAR: f64 = 0.3;
 
@@ -72,6 +75,8 @@ pub(crate) struct Judgement {
     pub noise: f64,
     /// The difference beyond which the property does not hold.
     pub threshold: f64,
+    /// Without a verdict: why there is none.
+    pub doubt: &'static str,
     /// Number of comparisons.
     pub count: usize,
     /// Places of the comparisons, the one that decides first.
@@ -117,7 +122,14 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     } else {
         Verdict::Yes
     };
+    // Far above the noise, but not above what matters.
+    let is_close = |c: &Comparison| is_doubtful(c) && c.deviation < CLEAR * c.index;
+    let doubt = match comparisons.iter().any(is_close) {
+        true => "the largest difference is close to the smallest that matters",
+        false => "noise, or rows that are far apart, may hide a difference that matters",
+    };
     Some(Judgement {
+        doubt,
         verdict,
         index: deciding.index,
         noise: deciding.deviation * significance::typical_largest(count),

@@ -18,8 +18,10 @@ const SHORTEST: f64 = 0.05;
 /// Pasts whose last outer turning points are closer than this share of the input's range are the same.
 const OTHER_PAST: f64 = 0.05;
 
-/// Loops whose first outputs are apart by this share of the output's range are different loops.
+/// Loops whose first outputs are apart by this share of the output's range, or of the mean height of the largest loop if
+/// that is less, are different loops.
 const APART: f64 = 0.05;
+const OF_A_LOOP: f64 = 0.5;
 
 /// Pairs with one beginning that are compared at most.
 const MOST_PAIRS: usize = 100;
@@ -30,8 +32,9 @@ const PLACES: usize = 40;
 const EXPERIMENT: &str =
     "run the same minor loop twice: once on the way up and once on the way down of a larger loop";
 
-/// Tests for congruent minor loops; `has_loops` unless the output is a function of the input.
-pub(crate) fn test(survey: &BranchSet, equal_speed: bool, has_loops: bool) -> Finding {
+/// Tests for congruent minor loops. `needs_loops_apart` where the output has loops and the path was not chosen for this
+/// test: loops at the same output may then be the same loop.
+pub(crate) fn test(survey: &BranchSet, equal_speed: bool, needs_loops_apart: bool) -> Finding {
     let (mut comparisons, mut apart) = (Vec::new(), Vec::new());
     for group in same_beginning(survey).values() {
         let pairs = (0..group.len()).flat_map(|i| (i + 1..group.len()).map(move |j| (group[i], group[j])));
@@ -49,23 +52,26 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool, has_loops: bool) -> Fi
             "no two branches begin at the same input, in the same direction, with a different past";
         return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
     };
-    // Loops that begin at one output may be the same loop again.
-    let are_apart = apart.iter().any(|apart| *apart > APART);
-    if judgement.verdict == Verdict::Yes && has_loops && !are_apart {
-        let statement = "loops between the same inputs begin at the same output";
-        return Finding::not_testable(Property::Congruency, statement, EXPERIMENT);
-    }
     let percent = 100.0 * judgement.index;
+    let is_told = !needs_loops_apart || apart.iter().any(|apart| *apart > least_apart(survey));
+    let withheld = judgement.verdict == Verdict::Yes && !is_told;
     let statement = match judgement.verdict {
+        Verdict::Yes if withheld => {
+            "loops between the same inputs begin at the same output, and may be the same loop".into()
+        }
         Verdict::Yes => format!(
             "loops between the same inputs have the same shape, within {percent:.1} % of their height"
         ),
         Verdict::No => {
             format!("loops between the same inputs differ in shape by {percent:.0} % of their height")
         }
-        Verdict::NotTestable => "the noise is too large to detect differences that matter".into(),
+        Verdict::NotTestable => judgement.doubt.into(),
     };
     let mut finding = survey.finding(Property::Congruency, &judgement, &comparisons, statement, EXPERIMENT);
+    if withheld {
+        finding.verdict = Verdict::NotTestable;
+        finding.experiment = Some(EXPERIMENT.into());
+    }
     if let Some(picture) = &mut finding.picture {
         picture.y_label = "y - y(x_a)".into();
     }
@@ -114,7 +120,13 @@ fn from_beginning(mut curve: PictureCurve, start: f64) -> PictureCurve {
     curve
 }
 
-/// The difference of shape, and how far apart the outputs at the beginnings are, as a share of the output's range.
+/// Outputs that are further apart than this are those of different loops.
+fn least_apart(survey: &BranchSet) -> f64 {
+    let heights = survey.openings.iter().map(|opening| opening.area / opening.swing.max(f64::MIN_POSITIVE));
+    (APART * survey.height()).min(OF_A_LOOP * heights.fold(0.0, f64::max))
+}
+
+/// The difference of shape, and how far apart the outputs at the beginnings are, in their unit.
 fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Option<(Comparison, f64)> {
     let nearest = |a: f64, b: f64, rises: bool| if rises { a.min(b) } else { a.max(b) };
     let rises = a.rises();
@@ -163,5 +175,5 @@ fn compare(survey: &BranchSet, a: &Branch, b: &Branch, equal_speed: bool) -> Opt
             from_beginning(survey.curve_between("second, with another past", b, (beginning, end)), start_b.y),
         ],
     };
-    Some((comparison, (start_a.y - start_b.y).abs() / survey.height()))
+    Some((comparison, (start_a.y - start_b.y).abs()))
 }

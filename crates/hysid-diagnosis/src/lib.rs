@@ -224,7 +224,8 @@ impl Diagnosis {
         let (rate, delay) = rate_dependence::test(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
-        let at_rest = static_hysteresis::test(survey, rate.verdict, || doctor::longest_lag(survey));
+        let at_rest =
+            static_hysteresis::test_of_measured(survey, rate.verdict, || doctor::longest_lag(survey));
         let has_loops = at_rest.verdict != Verdict::No;
         let mut properties = vec![
             at_rest,

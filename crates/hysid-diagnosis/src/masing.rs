@@ -72,7 +72,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let statement = match judgement.verdict {
         Verdict::Yes => format!("all branches lie on one curve, within {percent:.1} % of their height"),
         Verdict::No => format!("a branch deviates from the longest by {percent:.0} % of its height"),
-        Verdict::NotTestable => "the noise is too large to detect differences that matter".into(),
+        Verdict::NotTestable => judgement.doubt.into(),
     };
     let mut finding = survey.finding(Property::Masing, &judgement, &comparisons, statement, EXPERIMENT);
     if let Some(picture) = &mut finding.picture {

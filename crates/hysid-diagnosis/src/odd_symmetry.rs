@@ -54,7 +54,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
                      output's range"
             )
         }
-        Verdict::NotTestable => "the noise is too large to detect differences that matter".into(),
+        Verdict::NotTestable => judgement.doubt.into(),
     };
     survey.finding(Property::OddSymmetry, &judgement, &comparisons, statement, EXPERIMENT)
 }

@@ -135,8 +135,12 @@ impl Speeds<'_> {
         self.next.iter().filter_map(|pair| between(*pair)).fold(0.0, f64::max)
     }
 
-    /// True if one of the sets is a branch of the first cycle of its record, run only once.
+    /// True if one of the sets is a branch of the first cycles of its record, run only once, and the other set was run
+    /// later. At the beginning of records of their own, specimens settle alike.
     fn may_settle(&self, survey: &BranchSet) -> bool {
+        if self.slow.iter().all(|slow| self.fast.iter().all(|fast| slow.record != fast.record)) {
+            return false;
+        }
         let is_first = |branch: &Branch| {
             survey.of_record(branch.record).iter().take(FIRST_CYCLE).any(|b| b.rows == branch.rows)
         };
@@ -223,7 +227,7 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
         (Verdict::Yes, _) => format!(
             "at {ratio:.1} times the speed the output is the same, within {percent:.2} % of its range"
         ),
-        (Verdict::NotTestable, _) => "the noise is too large to detect differences that matter".into(),
+        (Verdict::NotTestable, _) => judgement.doubt.into(),
     };
     let may_be_wear = !courses.is_empty() && courses.iter().all(|speeds| speeds.may_be_wear(survey));
     let statement = if agree == Verdict::No && explained.is_none() && may_be_wear {

@@ -86,17 +86,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     let percent = 100.0 * index;
     let fullest = large.iter().map(|opening| opening.fullness()).fold(0.0, f64::max);
     let known = rate != Verdict::Yes || growth_is_known(&large);
-    let looks_static = area >= threshold && (next.is_none() || index >= REMAINS * area && known);
-    let viscous = looks_static && survey.data.has_time() && viscous::may_be_viscous(survey);
-    let (verdict, statement) = if viscous {
-        (
-            Verdict::NotTestable,
-            format!(
-                "loops fill {percent:.0} % of their bounding box, and a spring with a dashpot, whose loops vanish at \
-                 speed 0, explains them"
-            ),
-        )
-    } else if area < threshold && threshold > 2.0 * FULL && area > FULL {
+    let (verdict, statement) = if area < threshold && threshold > 2.0 * FULL && area > FULL {
         (Verdict::NotTestable, "the noise is too large to detect loops that matter".to_string())
     } else if area < threshold && next.is_none() && fullest > 2.0 * threshold {
         (
@@ -180,6 +170,22 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
 /// Share of its box that a lag of a few rows fills on a line of so many rows, there and back.
 fn lag_of_few_rows(rows: usize) -> f64 {
     2.0 * FEW_ROWS / (0.5 * rows as f64)
+}
+
+/// [`test`] of a measured record: a "yes" is withheld where a law explains the record whose loops vanish at speed 0.
+pub(crate) fn test_of_measured(
+    survey: &BranchSet,
+    rate: Verdict,
+    longest_lag: impl FnOnce() -> Option<f64>,
+) -> Finding {
+    let mut finding = test(survey, rate, longest_lag);
+    if finding.verdict == Verdict::Yes && survey.data.has_time() && viscous::may_be_viscous(survey) {
+        finding.verdict = Verdict::NotTestable;
+        finding.statement +=
+            ", and a spring with a dashpot explains the record, whose loops vanish at speed 0";
+        finding.experiment = Some(EXPERIMENT.into());
+    }
+    finding
 }
 
 /// True if loops grow from speed to speed (at three or more), and from the slowest to the next by much less than the

@@ -40,7 +40,7 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let statement = match judgement.verdict {
         Verdict::Yes => format!("excursions close: the largest gap is {percent:.2} % of the output's range"),
         Verdict::No => format!("an excursion leaves a gap of {percent:.1} % of the output's range"),
-        Verdict::NotTestable => "the noise is too large to detect gaps that matter".into(),
+        Verdict::NotTestable => judgement.doubt.into(),
     };
     survey.finding(Property::WipingOut, &judgement, &comparisons, statement, EXPERIMENT)
 }

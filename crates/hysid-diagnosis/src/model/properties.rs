@@ -43,7 +43,7 @@ const LARGER: &str = "fit the model to a record with loops over a larger range o
 
 /// Looks through a model's own data.
 pub(super) fn survey(data: &Dataset) -> BranchSet<'_> {
-    BranchSet::new(data, &EXACT)
+    BranchSet { turns_on_rows: true, ..BranchSet::new(data, &EXACT) }
 }
 
 /// The whole loop repeated, for wear.
@@ -65,11 +65,14 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
         let problem = DataProblem::ConstantOutput(loops.output()[0]);
         return Err(loops.defect(None, Some(hysid_core::error::Channel::Output), problem));
     }
-    let at_rest = static_loops(probe)?;
-    let has_loops = at_rest.verdict != Verdict::No;
     let mut findings =
-        if slow > HARDLY_MOVES * moving { of_memory(probe, &memory, has_loops)? } else { hardly_moving() };
-    findings.extend([at_rest, direct::rate_dependence(probe)?, direct::odd_symmetry(probe)?, wear(probe)?]);
+        if slow > HARDLY_MOVES * moving { of_memory(probe, &memory)? } else { hardly_moving() };
+    findings.extend([
+        static_loops(probe)?,
+        direct::rate_dependence(probe)?,
+        direct::odd_symmetry(probe)?,
+        wear(probe)?,
+    ]);
     if findings.iter().any(|f| f.property == Property::Orientation && f.verdict == Verdict::NotTestable) {
         findings.retain(|finding| finding.property != Property::Orientation);
         findings.push(orientation_at_speed(probe, loops)?);
@@ -79,12 +82,12 @@ pub(super) fn findings(probe: &Probe) -> Result<Vec<Finding>> {
 }
 
 /// What a model remembers, at a vanishing speed.
-fn of_memory(probe: &Probe, memory: &Dataset, has_loops: bool) -> Result<Vec<Finding>> {
+fn of_memory(probe: &Probe, memory: &Dataset) -> Result<Vec<Finding>> {
     let survey = survey(memory);
     let mut findings = vec![
         orientation::test(&survey),
         direct::with_accumulated_gap(probe, wiping_out::test(&survey, false), survey.height())?,
-        congruency::test(&survey, false, has_loops),
+        congruency::test(&survey, false, false),
         masing::test(&survey, false),
         saturation::test(&survey),
         closure(probe)?,

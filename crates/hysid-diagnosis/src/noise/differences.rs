@@ -85,10 +85,9 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     // The least of each distance does not grow where noise is white; a course of the values adds to all of them.
     let sampling = SAMPLING / (rows as f64).sqrt();
     let is_told = |distance: usize| differences.iter().any(|d| d.distance == distance && d.order >= TELLING);
-    let grows = |&distance: &usize| {
-        is_told(distance) && least(&differences, distance) > (1.0 + sampling) * least(&differences, 1)
-    };
-    let is_white = !NEAR.iter().any(grows);
+    let grows = |&distance: &usize| least(&differences, distance) > (1.0 + sampling) * least(&differences, 1);
+    let told: Vec<usize> = NEAR.into_iter().filter(|distance| is_told(*distance)).collect();
+    let is_white = told.is_empty() || !told.iter().all(grows);
     let correlations = if is_white { vec![Correlation::White] } else { correlations(length) };
     let shares = shares(&differences, &correlations);
     let total: f64 = shares.iter().sum();

@@ -88,8 +88,12 @@ fn an_output_that_is_late_by_rows_is_named_and_contradicts_nothing() {
         for (name, y) in [("Prandtl-Ishlinskii", prandtl_ishlinskii(&then)), ("Preisach", steel(&then))] {
             let diagnosis = diagnose(&record_of(&x, y, 0.01));
             assert_eq!(contradicted(&diagnosis), [], "{name}, {rows} rows");
-            let lag = diagnosis.doctor.iter().find(|issue| issue.kind == DataIssueKind::Lag);
-            assert!(lag.is_some(), "{name}, {rows} rows: {:#?}", diagnosis.doctor);
+            // A lag that withholds verdicts is told; one that leaves them as they are may be.
+            let lag = diagnosis.doctor.iter().any(|issue| issue.kind == DataIssueKind::Lag);
+            let memory = [Property::WipingOut, Property::OddSymmetry, Property::LoopClosure];
+            let withheld: Vec<Property> =
+                memory.into_iter().filter(|p| diagnosis.verdict(*p) == Verdict::NotTestable).collect();
+            assert!(lag || withheld.is_empty(), "{name}, {rows} rows: {withheld:?} {:#?}", diagnosis.doctor);
         }
     }
 }

@@ -147,6 +147,18 @@ const LAWS: &[Property] = &[
     Property::LoopClosure,
 ];
 
+/// Where the small loops of the protocol lie outside the large one, or differ by nearly what matters: no congruency.
+const WITHOUT_CONGRUENCY: &[Property] = &[
+    Property::StaticHysteresis,
+    Property::Orientation,
+    Property::WipingOut,
+    Property::Masing,
+    Property::OddSymmetry,
+    Property::Saturation,
+    Property::Deterioration,
+    Property::LoopClosure,
+];
+
 /// Verdicts as one letter a property, in the order of `Property::ALL`: `y`, `n`, or `.` where nothing is known.
 fn letters(text: &'static str, property: Property) -> Option<bool> {
     let place = Property::ALL.iter().position(|other| *other == property).unwrap();
@@ -169,11 +181,16 @@ pub fn laws() -> Vec<Subject> {
     let x = protocol();
     vec![
         subject!("Prandtl-Ishlinskii", record(x.clone(), prandtl_ishlinskii(&x)), "yy.yyyyyny", LAWS),
-        subject!("Preisach M330-50A", m330(&x), "yn.yynyyny", LAWS),
-        subject!("GPIM-SMA", shape_memory(&x), "yn.y.nnyny", LAWS),
-        subject!("GPNN, beta 25", gpnn(&x), "yy.nnn..y.", LAWS),
-        subject!("Bouc-Wen, n 1.5", bouc_wen(&x), "yy.n.nyyn.", LAWS),
-        subject!("Jiles-Atherton 1992", jiles_atherton(&x), "yn.yynyyny", LAWS),
+        subject!("Preisach M330-50A", m330(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
+        subject!("GPIM-SMA", shape_memory(&x), "yn.y.nnyny", WITHOUT_CONGRUENCY),
+        subject!(
+            "GPNN, beta 25",
+            gpnn(&x),
+            "yy.nnn..y.",
+            &[Property::WipingOut, Property::Congruency, Property::Masing]
+        ),
+        subject!("Bouc-Wen, n 1.5", bouc_wen(&x), "yy.n.nyyn.", WITHOUT_CONGRUENCY),
+        subject!("Jiles-Atherton 1992", jiles_atherton(&x), "yn.yynyyny", WITHOUT_CONGRUENCY),
         subject!("Preisach network", preisach_nn(&x), "y..ynnn.ny", LAWS),
     ]
 }
@@ -205,7 +222,13 @@ pub fn timed() -> Vec<Subject> {
             "yyn..y.y.y",
             TIMED
         ),
-        subject!("Preisach, three speeds", at_three_speeds(steel, 1e-3, 0.0), "ynn....y.y", TIMED),
+        // At the fastest speed, the rows on the steep part are too far apart to show that the outputs agree.
+        subject!(
+            "Preisach, three speeds",
+            at_three_speeds(steel, 1e-3, 0.0),
+            "ynn....y.y",
+            &[Property::StaticHysteresis, Property::Orientation]
+        ),
         subject!(
             "Prandtl-Ishlinskii, delayed",
             at_three_speeds(prandtl_ishlinskii, 1e-3, 5e-4),
