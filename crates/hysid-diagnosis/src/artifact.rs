@@ -29,6 +29,9 @@ const LONGEST_LAG: f64 = 0.1;
 const AS_MANY: f64 = 0.75;
 const MUCH_SMALLER: f64 = 0.5;
 
+/// A difference is clear if that of noise is below this share of it.
+const CLEAR: f64 = 0.1;
+
 /// A probe that leaves less than this share of a difference is on the right way.
 const SMALLER: f64 = 0.9;
 
@@ -134,10 +137,13 @@ pub(crate) fn withhold(
     findings: &mut [Finding],
     test: impl Fn(&BranchSet, Property) -> Finding,
 ) -> Vec<Explanation> {
-    // What is not testable with a difference may be so because of the artifact: it is told, too.
+    // A difference without noise that is not testable may be so because of an artifact, too.
     let is_open = |finding: &&Finding| {
-        let differs = finding.verdict == Verdict::No
-            || finding.verdict == Verdict::NotTestable && finding.comparisons > 0;
+        let differs = match finding.verdict {
+            Verdict::Yes => false,
+            Verdict::No => true,
+            Verdict::NotTestable => is_clear(finding),
+        };
         differs && AFFECTED.contains(&finding.property)
     };
     let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
@@ -157,7 +163,7 @@ pub(crate) fn withhold(
         }
         for artifact in list {
             let pairs = tested(artifact, &open).unwrap_or_default();
-            let explains = pairs.iter().filter(|(with, without)| explained(with, without));
+            let explains = pairs.iter().filter(|(with, without)| explained(artifact, with, without));
             let properties: Vec<Property> = explains.map(|(with, _)| with.property).collect();
             open.retain(|finding| !properties.contains(&finding.property));
             if !properties.is_empty() {
@@ -191,6 +197,11 @@ pub(crate) fn withhold_partial(findings: &mut [Finding]) {
     }
 }
 
+/// True if noise is no part of a difference.
+fn is_clear(finding: &Finding) -> bool {
+    finding.index.zip(finding.noise).is_some_and(|(index, noise)| noise < CLEAR * index)
+}
+
 /// The difference that contradicts a property without an artifact, as a share of that with it; `None` where far fewer
 /// comparisons are left.
 fn share_left(with: &Finding, without: &Finding) -> Option<f64> {
@@ -203,9 +214,15 @@ fn is_smaller(with: &Finding, without: &Finding) -> bool {
     share_left(with, without).is_some_and(|share| share < SMALLER)
 }
 
-/// True if a property that data contradict holds without an artifact.
-fn explained(with: &Finding, without: &Finding) -> bool {
-    let holds = without.verdict == Verdict::Yes
-        || without.verdict == Verdict::NotTestable && with.verdict == Verdict::No;
+/// True if a property that data contradict holds without an artifact, or may hold without a lag: between rows, a lag is
+/// not removed exactly.
+fn explained(artifact: Artifact, with: &Finding, without: &Finding) -> bool {
+    let holds = match without.verdict {
+        Verdict::Yes => true,
+        Verdict::No => false,
+        Verdict::NotTestable => {
+            with.verdict == Verdict::No && is_clear(with) && matches!(artifact, Artifact::Lag(_))
+        }
+    };
     holds && share_left(with, without).is_some_and(|share| share < MUCH_SMALLER)
 }

@@ -163,26 +163,27 @@ pub(crate) fn repeated<'c>(survey: &BranchSet, cycles: &'c [Cycle]) -> Vec<Vec<&
     groups
 }
 
-/// Fewest differences between successive tips that tell how they scatter.
+/// Fewest second differences of successive tips that tell how they scatter.
 const FEWEST_TIPS: usize = 6;
 
 /// The scatter of few tips may be so many times as large.
 const UNSURE: f64 = 1.5;
 
-/// Deviation by which the output at the tips of repeated cycles moves from one to the next, beyond a steady trend and
-/// the noise of the tips themselves: noise and drift slower than a branch. 0 where cycles are not repeated often enough.
+/// Deviation by which the output at the tips of repeated cycles moves from one to the next, beyond a steady course (by
+/// second differences) and the noise of the tips themselves: noise and drift slower than a branch. 0 where cycles are not
+/// repeated often enough.
 pub(crate) fn slow_noise(survey: &BranchSet) -> f64 {
     let cycles = cycles(survey);
-    let mut scatter = Vec::new();
-    let mut variances = Vec::new();
+    let (mut scatter, mut variances) = (Vec::new(), Vec::new());
     for group in repeated(survey, &cycles) {
         let out = |cycle: &Cycle| &survey.branches[cycle.branches.0];
         for tip in [|branch: &Branch| branch.from, |branch: &Branch| branch.to] {
             let readings: Vec<_> = group[1..].iter().filter_map(|c| out(c).curve.at(tip(out(c)))).collect();
-            let mut moves: Vec<f64> = readings.windows(2).map(|pair| pair[1].y - pair[0].y).collect();
-            let trend = significance::median(&mut moves);
-            scatter.extend(moves.iter().map(|by| (by - trend).abs()));
-            variances.extend(readings.windows(2).map(|p| p[0].deviation.powi(2) + p[1].deviation.powi(2)));
+            for three in readings.windows(3) {
+                scatter.push((three[2].y - 2.0 * three[1].y + three[0].y).abs());
+                let [first, middle, last] = [0, 1, 2].map(|k: usize| three[k].deviation.powi(2));
+                variances.push(first + 4.0 * middle + last);
+            }
         }
     }
     if scatter.len() < FEWEST_TIPS {
@@ -190,5 +191,6 @@ pub(crate) fn slow_noise(survey: &BranchSet) -> f64 {
     }
     let found = significance::median(&mut scatter) / MEDIAN_OF_NORMAL;
     let expected = significance::median(&mut variances);
-    UNSURE * (found * found - expected).max(0.0).sqrt()
+    // A second difference has two independent moves.
+    UNSURE * (0.5 * (found * found - expected).max(0.0)).sqrt()
 }
