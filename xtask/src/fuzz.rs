@@ -11,7 +11,7 @@ use crate::{Usage, cargo, workspace_root};
 const SECONDS: &str = "60";
 
 /// Seconds for each target among all tests.
-const SECONDS_IN_TESTS: &str = "10";
+const SECONDS_IN_TESTS: &str = "5";
 
 /// What the compiler adds for libFuzzer: counters of every edge and of comparisons.
 const COVERAGE: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \

@@ -110,7 +110,7 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
         false => doubtful,
     };
     let is_doubtful = |c: &Comparison| c.index > (CLOSE * effect).max(in_doubt(c) * c.deviation);
-    let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(c.other);
+    let bound = |c: &Comparison| (c.index + UP_TO * c.deviation + c.bend).max(2.0 * c.other);
     let mut bounds: Vec<f64> = comparisons.iter().map(bound).collect();
     let verdict = if excess(deciding) > 1.0 {
         Verdict::No

@@ -11,6 +11,9 @@ use super::{Cycle, Finding, Property, Verdict};
 /// A gap that matters, as a share of the range of the output.
 const EFFECT: f64 = 0.01;
 
+/// Where the speed matters, loops are repeated at speeds within this factor.
+const ONE_SPEED: f64 = 1.05;
+
 /// Cycles that are compared at most.
 const MOST: usize = 400;
 
@@ -56,11 +59,13 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: boo
 
 /// The cycles of a group that so many of their kind precede without a pause, at the same speed.
 fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'c Cycle> {
+    let one_speed = |a: usize, b: usize| match (survey.branches[a].speed, survey.branches[b].speed) {
+        (Some(a), Some(b)) => a.max(b) <= ONE_SPEED * a.min(b),
+        _ => true,
+    };
     let follows = |pair: &[&Cycle]| {
         let (last, next) = (pair[0].branches, pair[1].branches);
-        let speeds = [(last.0, next.0), (last.1, next.1)];
-        next.0 == last.1 + 1
-            && speeds.iter().all(|&(a, b)| survey.similar_speed(&survey.branches[a], &survey.branches[b]))
+        next.0 == last.1 + 1 && one_speed(last.0, next.0) && one_speed(last.1, next.1)
     };
     group.windows(before + 1).filter(|run| run.windows(2).all(follows)).map(|run| run[before]).collect()
 }
