@@ -2,12 +2,13 @@
 //! drifts. A "no" that either of them explains is withheld, theory.md (10.25).
 
 use hysid_core::data::record::{Dataset, Record};
+use hysid_core::data::unit;
 use hysid_core::significant::Significant;
 
 use super::branch::BranchSet;
 use super::{DiagnosisOptions, Finding, Property, Verdict};
 
-/// Properties that artifacts make "no".
+/// Properties whose verdict an artifact can turn into "no".
 const AFFECTED: [Property; 5] = [
     Property::WipingOut,
     Property::Congruency,
@@ -93,13 +94,17 @@ impl Artifact {
                     .time()
                     .and_then(|time| Some((time.last()? - time.first()?) / (time.len() - 1) as f64));
                 let shown = match time {
-                    Some(step) => format!("{:.2}", Significant(step * rows.abs())),
+                    Some(step) => {
+                        let unit = data.names().time.as_deref().and_then(unit::of_column);
+                        format!("{:.2}{}", Significant(step * rows.abs()), unit::suffix(unit.as_deref()))
+                    }
+                    None if rows.abs() == 1.0 => "1 row".into(),
                     None => format!("{} rows", rows.abs()),
                 };
-                format!("a delay of the {} of {shown}", if rows > 0.0 { "output" } else { "input" })
+                format!("a delay of {shown} in the {}", if rows > 0.0 { "output" } else { "input" })
             }
             Self::Drift(share) => {
-                format!("a drift of the output of {:.1} % of its range over a record", 100.0 * share.abs())
+                format!("an output drift of {:.1} % of its range per record", 100.0 * share.abs())
             }
         }
     }
@@ -177,27 +182,29 @@ pub(crate) fn withhold(
             findings.iter_mut().filter(|finding| explanation.properties.contains(&finding.property))
         {
             finding.verdict = Verdict::NotTestable;
-            finding.statement = format!("{}, which {words} would explain", finding.statement);
-            finding.experiment =
-                Some("remove the artifact, or show that there is none, and diagnose again".into());
+            finding.statement = format!("{}; {words} would explain this", finding.statement);
+            finding.experiment = Some(
+                "correct the data, or show that the artifact is absent, and run the diagnosis again".into(),
+            );
         }
     }
     explanations
 }
 
-/// Withholds what parts of loops seem to contradict, where the rest is not known.
+/// Withholds a "no" about loops of which a part is unknown because the output is clipped.
 pub(crate) fn withhold_partial(findings: &mut [Finding]) {
     const SHAPES: [Property; 3] = [Property::StaticHysteresis, Property::Congruency, Property::Masing];
     let contradicted =
         |finding: &&mut Finding| finding.verdict == Verdict::No && SHAPES.contains(&finding.property);
     for finding in findings.iter_mut().filter(contradicted) {
         finding.verdict = Verdict::NotTestable;
-        finding.statement = format!("{}, where the output is not clipped", finding.statement);
-        finding.experiment = Some("measure with a larger range".into());
+        finding.statement =
+            format!("{} (clipped outputs omitted, so the loops are incomplete)", finding.statement);
+        finding.experiment = Some("measure with a larger range of the output channel".into());
     }
 }
 
-/// True if noise is no part of a difference.
+/// True if the noise in a difference is negligible.
 fn is_clear(finding: &Finding) -> bool {
     finding.index.zip(finding.noise).is_some_and(|(index, noise)| noise < CLEAR * index)
 }
@@ -214,8 +221,8 @@ fn is_smaller(with: &Finding, without: &Finding) -> bool {
     share_left(with, without).is_some_and(|share| share < SMALLER)
 }
 
-/// True if a property that data contradict holds without an artifact, or may hold without a lag: between rows, a lag is
-/// not removed exactly.
+/// True if the property holds after the artifact is removed. For a lag, it is enough that the property may hold, because a
+/// lag cannot be removed exactly between rows.
 fn explained(artifact: Artifact, with: &Finding, without: &Finding) -> bool {
     let holds = match without.verdict {
         Verdict::Yes => true,

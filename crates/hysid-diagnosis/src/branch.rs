@@ -1,4 +1,4 @@
-//! The way of the input as branches between turning points, and what closes what, theory.md (10.2).
+//! The path of the input as branches between turning points, and the loops that each branch closes, theory.md (10.2).
 
 mod opening;
 
@@ -20,7 +20,7 @@ const MOST_POINTS: usize = 400;
 /// A turning point counts as reached within this share of the input's range.
 const REACHED: f64 = 0.003;
 
-/// Where rows lie far apart, a turning point between them counts as reached within this share of it.
+/// The same where rows are far apart: at most this share of the input's range.
 const BETWEEN_ROWS: f64 = 0.01;
 
 /// Branches lower than this share of the output's range have no shape.
@@ -35,7 +35,7 @@ const JITTERS: f64 = 2e-4;
 /// Points on either side of one over which its slope is taken.
 const BESIDE: usize = 3;
 
-/// Turning points beneath a branch that are kept with it.
+/// Number of enclosing turning points that are kept with a branch.
 const KEPT: usize = 4;
 
 /// A monotone way of the input between two turning points.
@@ -49,7 +49,7 @@ pub(crate) struct Branch {
     pub from: f64,
     /// The input at its end.
     pub to: f64,
-    /// Way of the input for time.
+    /// Mean speed of the input.
     pub speed: Option<f64>,
     /// Turning points that enclose it, the latest last; the last is where it began.
     pub beneath: Vec<f64>,
@@ -130,7 +130,7 @@ pub(crate) struct Reading {
 }
 
 impl Curve {
-    /// True if the branch has hardly an output.
+    /// True if the curve has no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -424,7 +424,7 @@ fn step_beside(x: &[f64], row: usize) -> f64 {
     before.max(after)
 }
 
-/// Steps in which the first input and the output are told.
+/// Resolution of the first input and of the output.
 fn resolutions(data: &Dataset) -> (f64, f64) {
     let records = || data.records().iter();
     let input = resolution(records().flat_map(|record| &record.inputs()[0]));
@@ -435,7 +435,7 @@ fn resolutions(data: &Dataset) -> (f64, f64) {
 /// How branches are read from the rows of a data set.
 struct Reader<'r> {
     data: &'r Dataset,
-    /// True if the input jitters so much that it tells less of the order of rows without time than their numbers do.
+    /// True if the input is so noisy that, without time, the row number gives the order of rows better than the input.
     by_rows: bool,
     resolutions: (f64, f64),
     input_noise: &'r Noise,

@@ -30,7 +30,7 @@ const NEAR: f64 = 0.3;
 /// Deviations by which the sum of squares of many differences may be too large.
 const TOGETHER: f64 = 2.3;
 
-/// A difference that a property says is nought.
+/// A difference that vanishes if the property holds.
 #[derive(Debug, Clone)]
 pub(crate) struct Comparison {
     /// Its magnitude, as a share.
@@ -64,10 +64,10 @@ impl Comparison {
     }
 }
 
-/// What many comparisons say together.
+/// Result of all comparisons of a property.
 #[derive(Debug, Clone)]
 pub(crate) struct Judgement {
-    /// `Yes` if all differences are nought as far as can be told.
+    /// `Yes` if no difference is distinguishable from noise or close to the relevant size.
     pub verdict: Verdict,
     /// The difference that decides.
     pub index: f64,
@@ -125,8 +125,8 @@ pub(crate) fn judge(comparisons: &[Comparison], effect: f64) -> Option<Judgement
     // Far above the noise, but not above what matters.
     let is_close = |c: &Comparison| is_doubtful(c) && c.deviation < CLEAR * c.index;
     let doubt = match comparisons.iter().any(is_close) {
-        true => "the largest difference is close to the smallest that matters",
-        false => "noise, or rows that are far apart, may hide a difference that matters",
+        true => "the largest difference is close to the relevant size",
+        false => "noise or widely spaced rows may hide a relevant difference",
     };
     Some(Judgement {
         doubt,

@@ -50,14 +50,14 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: boo
         Verdict::No => format!("a repeated loop stays open by {percent:.1} % of the output's range"),
         Verdict::NotTestable => {
             format!(
-                "a repeated loop is open by {percent:.1} %, which noise or a start that has not settled may cause"
+                "a repeated loop is open by {percent:.1} % of the output's range: noise or an initial transient may cause this"
             )
         }
     };
     survey.finding(Property::LoopClosure, &judgement, &comparisons, statement, EXPERIMENT)
 }
 
-/// The cycles of a group that so many of their kind precede without a pause, at the same speed.
+/// The cycles of a group that directly follow at least `before` cycles of the same group at the same speed.
 fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'c Cycle> {
     let one_speed = |a: usize, b: usize| match (survey.branches[a].speed, survey.branches[b].speed) {
         (Some(a), Some(b)) => a.max(b) <= ONE_SPEED * a.min(b),
@@ -70,7 +70,7 @@ fn settled<'c>(survey: &BranchSet, group: &[&'c Cycle], before: usize) -> Vec<&'
     group.windows(before + 1).filter(|run| run.windows(2).all(follows)).map(|run| run[before]).collect()
 }
 
-/// True if the loops of a group begin at another output in the end.
+/// True if, in any group, the last loop begins at a different output than the first.
 fn moves(survey: &BranchSet, groups: &[Vec<&Cycle>]) -> bool {
     let moved = |group: &Vec<&Cycle>| -> Option<Comparison> {
         let [first, last] =

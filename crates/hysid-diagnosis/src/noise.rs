@@ -1,4 +1,5 @@
-//! Noise of a measured channel: how large it is, and how far the noise of one row is that of the next.
+//! Noise of a measured channel: how large it is, and how strongly it is correlated from row
+//! to row.
 //!
 //! It is a sum of parts: white noise, noise whose correlation decays with the distance of rows (filtered, amplifier and
 //! 1/f noise), periodic noise (hum), and a random walk (drift, and all that changes more slowly than a branch). The
@@ -15,7 +16,7 @@ pub(crate) use resolution::resolution;
 /// Share of the variance above which noise is hum.
 const MOSTLY: f64 = 0.7;
 
-/// Amplitude of a sine over the deviation that its median magnitude seems to have: `√2 · 0.6745 √2`.
+/// Amplitude of a sine, divided by the deviation estimated from its median magnitude: `0.6745 √2`.
 const SINE: f64 = 0.954;
 
 /// How the noise of a part depends on that of the rows before.
@@ -27,14 +28,14 @@ enum Correlation {
     Decaying(f64),
     /// By a sine that turns by this angle from row to row.
     Periodic(f64),
-    /// It is the noise of the row before and an independent step. The variance is that of a step, and what counts is the
-    /// difference from another row.
+    /// Random walk: the noise of the row before plus an independent step. Its variance is that of one step; only
+    /// differences between rows are defined.
     Walking,
 }
 
 impl Correlation {
-    /// Correlation of two rows at this distance; of a walk, half its variance between them, negative, which takes the
-    /// place of a correlation in differences.
+    /// Correlation of two rows at this distance. For a walk: minus half the variance of the difference between the rows,
+    /// which replaces the correlation where the weights add up to 0.
     fn at(self, distance: f64) -> f64 {
         match self {
             Self::White => f64::from(distance == 0.0),
@@ -111,7 +112,7 @@ impl Noise {
         (steps.map(|part| part.1).sum::<f64>() * rows).sqrt()
     }
 
-    /// Standard deviation of white noise that neighbouring rows would differ by as much.
+    /// Standard deviation of the white noise that would cause the differences between neighbouring rows.
     pub fn roughness(&self) -> f64 {
         self.roughness
     }

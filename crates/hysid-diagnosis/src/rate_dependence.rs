@@ -1,4 +1,4 @@
-//! Rate dependence: does the same way of the input give another output when it is gone faster? Index: how far
+//! Rate dependence: does the output along the same input path change with the speed? Index: how far
 //! branches of equal course and different speed lie apart, over the range of the output.
 //!
 //! `rms(y_fast(x) - y_slow(x)) / R`                                                 theory.md (10.13)
@@ -47,8 +47,9 @@ const FASTER: f64 = 1.5;
 /// Wear is known where noise in it is so many times smaller than what it is to explain.
 const CLEARLY: f64 = 3.0;
 
-/// Branches of the first cycle of a record, and by what share of the output's range they may lie elsewhere than later ones.
-const FIRST_CYCLE: usize = 4;
+/// Number of branches in the first two cycles of a record, and the share of the output's range by which they may differ
+/// from later ones.
+const FIRST_BRANCHES: usize = 4;
 const SETTLES: f64 = 0.01;
 
 /// Rows by which an input may be late.
@@ -60,12 +61,13 @@ const SHORTEST: f64 = 0.1;
 /// Branches of one course and speed at most.
 const MOST: usize = 8;
 
-/// A law with the rate must leave less than this share of what one without leaves; and what it explains is nothing below
-/// this share of the effect that matters.
+/// The rate helps if the law with it leaves less than `HELPFUL` of what laws without it leave. It does not help if it
+/// explains at most `UNHELPFUL` of the relevant size.
 const HELPFUL: f64 = 0.4;
 const UNHELPFUL: f64 = 0.3;
 
-/// A law that leaves so many times the effect that matters does not predict, and one that leaves so many times predicts.
+/// In multiples of the relevant size: a law that leaves more than `MATTERS` does not predict the record; one that leaves
+/// at most `PREDICTS` does.
 const MATTERS: f64 = 4.0;
 const PREDICTS: f64 = 1.2;
 
@@ -78,7 +80,7 @@ const EXPERIMENT: &str = "run the same loop at three speeds, the slowest ten tim
 pub(crate) struct Speeds<'b> {
     pub slow: Vec<&'b Branch>,
     pub fast: Vec<&'b Branch>,
-    /// Of each that has one branch, it and the one that follows it on the course.
+    /// For each set of one branch: this branch and the next of the same course.
     next: Vec<(&'b Branch, &'b Branch)>,
     /// Inputs that all go through.
     pub from: f64,
@@ -142,7 +144,7 @@ impl Speeds<'_> {
             return false;
         }
         let is_first = |branch: &Branch| {
-            survey.of_record(branch.record).iter().take(FIRST_CYCLE).any(|b| b.rows == branch.rows)
+            survey.of_record(branch.record).iter().take(FIRST_BRANCHES).any(|b| b.rows == branch.rows)
         };
         [&self.slow, &self.fast].into_iter().any(|set| set.len() == 1 && is_first(set[0]))
     }
@@ -231,7 +233,9 @@ pub(crate) fn test(survey: &BranchSet) -> (Finding, Option<Delay>) {
     };
     let may_be_wear = !courses.is_empty() && courses.iter().all(|speeds| speeds.may_be_wear(survey));
     let statement = if agree == Verdict::No && explained.is_none() && may_be_wear {
-        format!("{statement}, but it was run later, and the output is smaller: wear would look the same")
+        format!(
+            "{statement}, but one speed was run after the other, and the later output is smaller: wear would look the same"
+        )
     } else {
         statement
     };

@@ -12,13 +12,13 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Largest magnitude that `count` independent standard normal numbers exceed with a chance of 1 in 100,000
-/// all together (Bonferroni).
+/// Magnitude that the largest of `count` independent standard normal numbers exceeds with probability 1 in 100,000
+/// (Bonferroni bound).
 pub fn critical_value(count: usize) -> f64 {
     upper_quantile(5e-6 / count.max(1) as f64)
 }
 
-/// The same with a chance of 1 in 500: what is below is what noise does.
+/// The same with probability 1 in 500. Differences below this value are consistent with noise.
 pub fn doubtful_value(count: usize) -> f64 {
     upper_quantile(1e-3 / count.max(1) as f64)
 }

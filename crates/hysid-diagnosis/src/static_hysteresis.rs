@@ -8,7 +8,7 @@ use super::wiping_out::loops;
 use super::{Evidence, Finding, Property, Verdict, significance};
 use crate::branch::Opening;
 
-/// Loops fuller than this share of their box are loops.
+/// Hysteresis is present if a loop fills more than this share of its bounding box.
 pub(super) const FULL: f64 = 0.02;
 
 /// Speeds must differ by this factor for a loop of speed 0 to be told from that of the slowest.
@@ -91,7 +91,10 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
     } else if area < threshold && next.is_none() && fullest > 2.0 * threshold {
         (
             Verdict::NotTestable,
-            format!("loops fill {percent:.1} % to {:.1} % of their bounding boxes", 100.0 * fullest),
+            format!(
+                "loops fill {percent:.1} % to {:.1} % of their bounding boxes: some show hysteresis, others do not",
+                100.0 * fullest
+            ),
         )
     } else if area < threshold {
         (
@@ -172,7 +175,7 @@ fn lag_of_few_rows(rows: usize) -> f64 {
     2.0 * FEW_ROWS / (0.5 * rows as f64)
 }
 
-/// [`test`] of a measured record: a "yes" is withheld where a law explains the record whose loops vanish at speed 0.
+/// [`test`] for a measured record: withholds a "yes" if a law without loops at speed 0 also explains the record.
 pub(crate) fn test_of_measured(
     survey: &BranchSet,
     rate: Verdict,
@@ -182,7 +185,7 @@ pub(crate) fn test_of_measured(
     if finding.verdict == Verdict::Yes && survey.data.has_time() && viscous::may_be_viscous(survey) {
         finding.verdict = Verdict::NotTestable;
         finding.statement +=
-            ", and a spring with a dashpot explains the record, whose loops vanish at speed 0";
+            ", but a spring with a dashpot, whose loops vanish at speed 0, also explains the record";
         finding.experiment = Some(EXPERIMENT.into());
     }
     finding

@@ -26,7 +26,7 @@ fn complaint(survey: &BranchSet, explanation: &Explanation, kind: DataIssueKind)
     let properties: Vec<String> =
         explanation.properties.iter().map(|property| property.to_string()).collect();
     let statement = format!(
-        "{} would explain why the data contradict: {}. Check the measurement; these verdicts are withheld",
+        "{} would explain why these properties seem not to hold: {}. Their verdicts are \"not testable\". Check the measurement",
         explanation.artifact.in_words(survey.data),
         properties.join(", ")
     );

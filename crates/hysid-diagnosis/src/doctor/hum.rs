@@ -17,8 +17,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let step = survey.time_step();
     let period = if step > 0.0 { units.time(rows * step) } else { format!("{rows:.0} rows") };
     let statement = format!(
-        "the output hums with a period of about {period} and an amplitude of {}, {:.1} % of its range: remove it with a \
-         notch filter that shifts no phases, or measure over whole periods of it",
+        "the output contains hum with a period of about {period} and an amplitude of {}, {:.1} % of its range: remove the \
+         hum with a zero-phase notch filter",
         units.output(amplitude),
         100.0 * amplitude / survey.height()
     );

@@ -5,10 +5,11 @@ use crate::Piece;
 use crate::branch::BranchSet;
 use crate::significance::{MEDIAN_OF_NORMAL, median};
 
-/// A spike is so many times as high as its neighbours differ from theirs: the tip of a loop goes on on both sides.
+/// Least height of a spike, in multiples of the differences among the rows beside it. At the tip of a loop, these
+/// differences are larger.
 const ABOVE_NEIGHBOURS: f64 = 5.0;
 
-/// It is so many deviations of the rows about the middle of their neighbours.
+/// Least height of a spike, in deviations of a row from the mean of its two neighbours.
 const ABOVE_NOISE: f64 = 12.0;
 
 /// It is at least this share of the range of the output.
@@ -53,7 +54,7 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     let value = records[number].output()[row];
     let units = Units::of(survey);
     let statement = format!(
-        "the output jumps away and back in {}, first to {} in row {} of record \"{}\": leave the output of these rows \
+        "the output has spikes in {}; the first is {}, in row {} of record \"{}\": leave the output of these rows \
          blank; the tests omit them",
         if found.len() == 1 { "1 row".into() } else { format!("{} rows", found.len()) },
         units.output(value),

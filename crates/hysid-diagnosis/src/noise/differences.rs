@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use super::{Correlation, Noise};
 use crate::significance::{MEDIAN_OF_NORMAL, median};
 
-/// More differences than these tell the noise no better.
+/// Maximum number of differences; more do not improve the estimate.
 const MOST: usize = 100_000;
 
 /// Orders of the differences: the course of the values is less in the higher ones, and corners of it are in fewer of the
@@ -32,16 +32,18 @@ const LONGEST_PERIOD: f64 = 0.2;
 /// Rounds in which the shares of the parts are found.
 const ROUNDS: usize = 2000;
 
-/// By which share the variance of more distant rows may be larger by chance, times the square root of the number of rows.
-/// A variance that is taken from the median of so many differences has a relative deviation of about 4, the ratio of two
-/// one of 5 to 6, and the least of four orders is the more uncertain one.
+/// Relative excess of the variance at larger distances that chance may cause, times `√n` for `n` rows. Times `√n`, the
+/// relative deviation of a variance from a median is about 4, that of a ratio of two 5 to 6, and the minimum over four
+/// orders is more uncertain.
 const SAMPLING: f64 = 14.0;
 
 /// Power of the distance with which differences grow on a line with many kinks.
 const KINKS: i32 = 3;
 
-/// Distances at which correlated noise is seen to grow, and the order from which on the course of the values hardly does.
+/// Lowest order at which the course of the values adds little to near rows.
 const TELLING: usize = 4;
+
+/// Distances at which the differences of correlated noise are larger than at distance 1.
 const NEAR: [usize; 2] = [2, 3];
 
 /// Parts below this share of the variance are left out.
@@ -99,8 +101,8 @@ pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise 
     Noise { parts, roughness }
 }
 
-/// The largest variance of the steps of a walk that no difference contradicts. How slow the slowest noise is, branches do
-/// not show: what may be a walk counts as one.
+/// The largest variance of the steps of a walk that no difference contradicts. Branches do not show how slow the slowest noise is, so the largest possible walk is
+/// assumed.
 fn largest_walk(differences: &[Difference]) -> f64 {
     let bounds = differences.iter().map(|d| d.variance / in_difference(Correlation::Walking, d));
     bounds.fold(f64::INFINITY, f64::min)

@@ -1,4 +1,4 @@
-//! The steps in which an instrument tells its values.
+//! Resolution of an instrument: the step between its values.
 
 /// Gaps between values are multiples of one step to within this share of it.
 const ON_THE_GRID: f64 = 0.02;

@@ -48,7 +48,7 @@ const LAGS: [f64; 8] = [-3.0, -2.0, -1.0, -0.5, 0.5, 1.0, 1.5, 2.5];
 /// Speeds below this share of the fastest are alike.
 const SLOWEST: f64 = 0.01;
 
-/// Keeps columns apart that say nearly the same.
+/// Ridge for nearly collinear columns.
 const RIDGE: f64 = 1e-7;
 
 /// What laws leave of branches that they were not fitted to: root mean squares as shares of the output's range.
@@ -193,7 +193,7 @@ fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
     (0..parts.len()).map(of_part).collect()
 }
 
-/// The exact answer of `s' = x' - s/τ` after a step in which the input goes a way at an even rate; `share` is the step over
+/// Exact solution of `s' = x' - s/τ` after a step in which the input moves by `way` at a constant rate; `share` is the step over
 /// `τ`.
 fn fade(s: f64, way: f64, share: f64) -> f64 {
     let kept = (-share).exp();

@@ -117,7 +117,7 @@ impl Products {
 
     /// Mean square of the output, as a share of its range, that the first so many columns leave.
     fn remainder(&self, columns: usize) -> f64 {
-        /// Keeps columns apart that say nearly the same.
+        /// Ridge for nearly collinear columns.
         const RIDGE: f64 = 1e-12;
         let matrix = Symmetric::from_fn(columns, |i, j| {
             self.sums[i][j] + if i == j { RIDGE * self.sums[i][i] + f64::MIN_POSITIVE } else { 0.0 }
