@@ -28,7 +28,7 @@ fn block(part: &Part) -> Vec<String> {
         Part::Heading(text) => vec![visible(&text.plain()).into_owned()],
         Part::Lead(text) | Part::Paragraph(text) | Part::Note(text) => vec![paragraph(&text.plain())],
         Part::Command(command) => vec![format!("  {}", visible(command))],
-        Part::List(_) | Part::Verdicts(_) | Part::Definitions(_) => {
+        Part::List(_) | Part::Contents(_) | Part::Verdicts(_) | Part::Definitions(_) => {
             let items = part.items().into_iter().map(|item| paragraph(&format!("- {}", item.plain())));
             vec![items.collect::<Vec<String>>().join("\n")]
         }

@@ -1,0 +1,291 @@
+//! The choice of input, penalties and iterations by cross-validation on training data.
+
+use hysid::Result;
+use hysid::data::metrics::ErrorSums;
+use hysid::data::record::{Dataset, Record};
+use hysid::network::Family;
+use hysid::options::network::Regularisation;
+use hysid::validation::{Fold, folds};
+use hysid_document::{Table, number};
+use rayon::prelude::*;
+
+use super::{Effort, effort, network, networks, seeds};
+use crate::conditions::{Observer, Settings};
+use crate::spread::median;
+
+/// Number of folds.
+const FOLDS: usize = 5;
+
+/// Blocks that a single record is cut into where unseen data lie between training data.
+const BLOCKS: usize = 4 * FOLDS;
+
+/// Where unseen data lie; the folds of a single record imitate that.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FoldKind {
+    /// After the training data, or in other records.
+    After,
+    /// Between the training data.
+    Between,
+}
+
+/// How a network of a family is trained on data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// The rate is an input.
+    pub has_rate: bool,
+    /// The stops deteriorate; otherwise their capacities are unlimited, as the paper's 10⁷ is.
+    pub deteriorates: bool,
+    /// Penalties.
+    pub penalties: Regularisation,
+    /// Iterations of a start.
+    pub iterations: usize,
+}
+
+/// A way of training that was tried, and its error on each fold in percent of std of what was held out.
+#[derive(Debug, Clone)]
+struct Trial {
+    choice: Choice,
+    percents: Vec<f64>,
+}
+
+/// What was chosen, and from what.
+#[derive(Debug, Clone)]
+pub struct Chosen {
+    /// The choice.
+    pub choice: Choice,
+    trials: Vec<Trial>,
+    why_rate: &'static str,
+}
+
+/// Chooses how networks of a family are trained on data: first whether the rate is an input, then whether stops of an
+/// XPNN deteriorate, then the penalties, then the number of iterations, each time what has the lowest mean error on the
+/// folds. A single record has one speed, at
+/// which the rate tells the direction and no more: there it is an input only if it lowers the error on every fold.
+///
+/// # Errors
+/// As a fit.
+pub fn choose(
+    what: &str,
+    data: &Dataset,
+    family: Family,
+    kind: FoldKind,
+    settings: Settings,
+    observer: &dyn Observer,
+) -> Result<Chosen> {
+    let Effort { iterations, penalties, .. } = effort(settings);
+    let folds = match (data.records(), kind) {
+        ([record], FoldKind::Between) => between(data, record)?,
+        _ => folds(data, FOLDS),
+    };
+    let can_have_rate = family.uses_rate() && data.has_time();
+    let differs_in_rate = data.records().len() > 1;
+    let first = Choice {
+        has_rate: can_have_rate && differs_in_rate,
+        deteriorates: family.deteriorates(),
+        penalties: penalties[0],
+        iterations: iterations[0],
+    };
+    let mut bench = Bench { what, folds, family, settings, observer, trials: Vec::new() };
+    let mut best = first;
+    let why_rate = match (can_have_rate, differs_in_rate) {
+        (false, _) if family.uses_rate() => "The record has no time, so x is the only input.",
+        (false, _) => "The family has no rate.",
+        (true, true) => "The records differ in rate, so x' is an input.",
+        (true, false) => {
+            let without = bench.percents(first)?;
+            let with = bench.percents(Choice { has_rate: true, ..first })?;
+            let is_better = without.iter().zip(&with).all(|(without, with)| with < without);
+            best.has_rate = is_better && !without.is_empty();
+            match best.has_rate {
+                true => {
+                    "The record has one speed, so that x' tells only the direction; it is an input because it lowers the error on every fold."
+                }
+                false => {
+                    "The record has one speed, so that x' tells only the direction; it is no input because it does not lower the error on every fold."
+                }
+            }
+        }
+    };
+    if family == Family::Xpnn {
+        best = bench.best([true, false].map(|deteriorates| Choice { deteriorates, ..best }).into())?;
+    }
+    let of_penalties = penalties.iter().map(|&penalties| Choice { penalties, ..best });
+    best = bench.best(of_penalties.collect())?;
+    let of_iterations = iterations.iter().map(|&iterations| Choice { iterations, ..best });
+    best = bench.best(of_iterations.collect())?;
+    Ok(Chosen { choice: best, trials: bench.trials, why_rate })
+}
+
+/// Folds of a single record that are held out from between: blocks of its scored rows, dealt to the folds in turn.
+fn between(data: &Dataset, record: &Record) -> Result<Vec<Fold>> {
+    let mut scored = 0;
+    let all = record.scored();
+    let mut fold_of_row = vec![usize::MAX; record.len()];
+    for (row, output) in record.output().iter().enumerate() {
+        if !output.is_nan() {
+            fold_of_row[row] = scored * BLOCKS / all % FOLDS;
+            scored += 1;
+        }
+    }
+    let part = |keeps: &dyn Fn(usize) -> bool| {
+        let output = record.output().iter().enumerate();
+        let output = output.map(|(row, &y)| if keeps(fold_of_row[row]) { y } else { f64::NAN }).collect();
+        Dataset::new(data.names().clone(), vec![record.clone().with_output(output)?])
+    };
+    let fold = |fold: usize| -> Result<Fold> {
+        Ok(Fold {
+            name: format!("every fifth block, from block {}", fold + 1),
+            train: part(&|of_row| of_row != fold)?,
+            held_out: part(&|of_row| of_row == fold)?,
+        })
+    };
+    (0..FOLDS).map(fold).collect()
+}
+
+/// What candidates are tried on.
+struct Bench<'a> {
+    what: &'a str,
+    folds: Vec<Fold>,
+    family: Family,
+    settings: Settings,
+    observer: &'a dyn Observer,
+    trials: Vec<Trial>,
+}
+
+impl Bench<'_> {
+    /// The candidate with the lowest mean error on the folds; the first of those that there are without folds.
+    fn best(&mut self, candidates: Vec<Choice>) -> Result<Choice> {
+        if self.folds.is_empty() || candidates.len() == 1 {
+            return Ok(candidates[0]);
+        }
+        let mut best = (f64::INFINITY, candidates[0]);
+        for candidate in candidates {
+            let error = mean(&self.percents(candidate)?);
+            if error < best.0 {
+                best = (error, candidate);
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Error on each fold of the median of networks, one from each seed.
+    fn percents(&mut self, choice: Choice) -> Result<Vec<f64>> {
+        if let Some(trial) = self.trials.iter().find(|trial| trial.choice == choice) {
+            return Ok(trial.percents.clone());
+        }
+        let percents: Vec<f64> =
+            self.folds.par_iter().map(|fold| self.percent(fold, choice)).collect::<Result<_>>()?;
+        self.observer.say(&format!(
+            "  {}: {} on five folds {} % of std",
+            self.what,
+            choice.words(),
+            number(mean(&percents), 3)
+        ));
+        self.trials.push(Trial { choice, percents: percents.clone() });
+        Ok(percents)
+    }
+
+    fn percent(&self, fold: &Fold, choice: Choice) -> Result<f64> {
+        let seeds: Vec<u64> = seeds(self.settings).collect();
+        let of_seed = |place: u64| network(self.family, choice, seeds[place as usize], 0);
+        let models = networks(&fold.train, of_seed, seeds.len(), self.observer)?;
+        let mut sums = ErrorSums::default();
+        for record in fold.held_out.records() {
+            let outputs: Vec<Vec<f64>> =
+                models.iter().map(|model| model.simulate(record)).collect::<Result<_>>()?;
+            sums.add(record.output(), &medians(&outputs));
+        }
+        let errors = sums.errors(&fold.held_out.names().output);
+        Ok(errors.and_then(|errors| errors.nrmse_std_percent).unwrap_or(f64::INFINITY))
+    }
+}
+
+/// The medians, row by row, of several outputs.
+pub fn medians(outputs: &[Vec<f64>]) -> Vec<f64> {
+    let rows = outputs.first().map_or(0, Vec::len);
+    let of_row = |row: usize| {
+        let mut values: Vec<f64> = outputs.iter().map(|output| output[row]).collect();
+        median(&mut values).unwrap_or(f64::NAN)
+    };
+    (0..rows).map(of_row).collect()
+}
+
+/// Geometric mean: one fold with a large error does not decide.
+fn mean(percents: &[f64]) -> f64 {
+    (percents.iter().map(|percent| percent.ln()).sum::<f64>() / percents.len() as f64).exp()
+}
+
+impl Choice {
+    /// In words.
+    pub fn words(self) -> String {
+        format!(
+            "{}, {}, ridge {:e} and decay {:e}, {} iterations",
+            if self.has_rate { "x and x'" } else { "x alone" },
+            if self.deteriorates { "capacities" } else { "no capacities" },
+            self.penalties.ridge,
+            self.penalties.decay,
+            self.iterations
+        )
+    }
+}
+
+impl Chosen {
+    /// The choice in a sentence or two.
+    pub fn words(&self, name: &str) -> String {
+        let by =
+            if self.trials.is_empty() { "" } else { ", chosen by cross-validation on the training data" };
+        format!("{name}: {}{by}. {}", self.choice.words(), self.why_rate)
+    }
+
+    /// What was tried, with the errors on the folds; `None` if there was nothing to choose from.
+    pub fn table(&self, heading: &str) -> Option<Table> {
+        let folds = self.trials.first()?.percents.len();
+        let columns = ["tried".to_string(), "mean".into()].into_iter();
+        let columns = columns.chain((1..=folds).map(|fold| format!("fold {fold}")));
+        let row = |trial: &Trial| {
+            let is_chosen = trial.choice == self.choice;
+            let name = trial.choice.words() + if is_chosen { " (chosen)" } else { "" };
+            let percents = trial.percents.iter().map(|&percent| percent.into());
+            [name.into(), mean(&trial.percents).into()].into_iter().chain(percents).collect()
+        };
+        let heading =
+            format!("{heading}: error on five folds of the training data, % of std, geometric mean");
+        Some(Table::new(columns).headed(heading).with_rows(self.trials.iter().map(row)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hysid::specimens::Specimen;
+
+    use super::*;
+
+    #[test]
+    fn folds_between_hold_every_scored_row_out_once() {
+        let specimen = Specimen::named("reinforced-concrete-joint-cycles").unwrap();
+        let data = specimen.train();
+        let record = &data.records()[0];
+        let folds = between(&data, record).unwrap();
+        assert_eq!(folds.len(), FOLDS);
+        let mut held = vec![0; record.len()];
+        for fold in &folds {
+            let (train, held_out) = (&fold.train.records()[0], &fold.held_out.records()[0]);
+            assert_eq!(train.scored() + held_out.scored(), record.scored());
+            for (row, y) in held_out.output().iter().enumerate() {
+                held[row] += usize::from(!y.is_nan());
+                assert!(y.is_nan() || train.output()[row].is_nan());
+            }
+            // From between: there are training rows before and after.
+            assert!(held_out.scored() * 6 > record.scored());
+        }
+        let expected = record.output().iter().map(|y| usize::from(!y.is_nan()));
+        assert!(held.iter().copied().eq(expected));
+    }
+
+    #[test]
+    fn the_median_of_outputs_is_that_of_each_row() {
+        let outputs = [vec![1.0, 5.0], vec![3.0, 4.0], vec![2.0, 9.0]];
+        assert_eq!(medians(&outputs), [2.0, 5.0]);
+        assert_eq!(medians(&outputs[..2]), [2.0, 4.5]);
+    }
+}
