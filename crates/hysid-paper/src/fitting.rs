@@ -35,6 +35,8 @@ pub const MEMBERS: usize = 8;
 pub struct Effort {
     /// Random networks of each seed.
     pub starts: usize,
+    /// Seeds of which a network is trained on each fold.
+    pub seeds_on_folds: usize,
     /// Iterations to compare penalties with, and those to choose from.
     pub iterations: &'static [usize],
     /// Penalties to choose from, the first of them where nothing is chosen.
@@ -42,8 +44,9 @@ pub struct Effort {
 }
 
 const FULL: Effort = Effort {
-    starts: 24,
-    iterations: &[60, 200],
+    starts: 16,
+    seeds_on_folds: 3,
+    iterations: &[60, 120],
     penalties: &[
         Regularisation { ridge: 1e-6, decay: 1e-7 },
         Regularisation { ridge: 1e-8, decay: 1e-9 },
@@ -51,9 +54,13 @@ const FULL: Effort = Effort {
     ],
 };
 
-/// Starts and iterations of a quick run, in which only the rate is chosen.
-const QUICK: Effort =
-    Effort { starts: 4, iterations: &[25], penalties: &[Regularisation { ridge: 1e-6, decay: 1e-7 }] };
+/// Starts and iterations of a quick run, in which only the inputs and the capacities are chosen.
+const QUICK: Effort = Effort {
+    starts: 2,
+    seeds_on_folds: 1,
+    iterations: &[25],
+    penalties: &[Regularisation { ridge: 1e-6, decay: 1e-7 }],
+};
 
 /// Starts and iterations of a classical model in a quick run; otherwise its own defaults.
 const QUICK_RIVAL: (usize, usize) = (8, 20);
