@@ -173,11 +173,15 @@ fn why(protocol: &Protocol, repetitions: &[Repetition]) -> String {
     let (alone, hybrid) = (pairs.iter().map(|pair| pair.0), pairs.iter().map(|pair| pair.1));
     let (Some(alone), Some(hybrid)) = (Spread::of(alone), Spread::of(hybrid)) else { return String::new() };
     let wins = pairs.iter().filter(|(alone, hybrid)| hybrid < alone).count();
+    let seeds = count(pairs.len(), "seed");
+    let (alone, hybrid) = (alone.shown(), hybrid.shown());
+    if 2 * wins > pairs.len() {
+        return format!(
+            "What the genetic algorithm is good for: after half of its epochs, as many as the hybrid has of them, the sub-gradient method alone is at {alone} % of std from its random network; the hybrid ends at {hybrid} %. With equally many sub-gradient epochs the hybrid is the lower in {wins} of {seeds}."
+        );
+    }
     format!(
-        "Why the hybrid does not do better than the sub-gradient method: it spends half of its epochs on the genetic algorithm, whose best individual is far from the end. After half of its epochs, as many as the hybrid has of them, the sub-gradient method alone is at {} % of std from its random network; the hybrid ends at {} %. With equally many sub-gradient epochs the hybrid is the lower in {wins} of {}.",
-        alone.shown(),
-        hybrid.shown(),
-        count(pairs.len(), "seed")
+        "Why the hybrid does not do better than the sub-gradient method: it spends half of its epochs on the genetic algorithm, whose best individual is far from the end. After half of its epochs, as many as the hybrid has of them, the sub-gradient method alone is at {alone} % of std from its random network; the hybrid ends at {hybrid} %. With equally many sub-gradient epochs the hybrid is the lower in {wins} of {seeds}."
     )
 }
 
