@@ -8,7 +8,7 @@ use hysid::diagnosis::DataIssueKind;
 ///
 /// If the diagnosis says that a single record does not begin as a virgin specimen does, it advises to blank the output
 /// of the first cycle. A virgin curve outside all later loops occurs once, and a model that is fitted to it explains it
-/// by the wrong means, such as deterioration.
+/// by something that returns.
 ///
 /// # Errors
 /// As the diagnosis.
