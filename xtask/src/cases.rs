@@ -19,14 +19,15 @@ pub use folders::Cases;
 pub use origin::origin;
 use page::Page;
 pub use request::Request;
-pub use table::{Reasons, aligned, row};
+pub use table::{Reasons, aligned, in_words, row};
 
 /// The options of `cargo xtask cases`.
 pub const OPTIONS: [&str; 5] = ["--models", "--out", "--time-limit", "--case-limit", "--program"];
 
 pub fn run(request: &Request) -> Result<()> {
     let cases = Cases::find(request, &["train.csv", "test.csv"])?;
-    let mut page = Page::new(origin("cases", request, &cases.version), cases.len());
+    let mut page =
+        Page::new(origin("cases", &request.typed, request.program.is_none(), &cases.version), cases.len());
     cases.ask(
         |folder, command| compare(folder, command, request),
         answer::parse,

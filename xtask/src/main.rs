@@ -1,6 +1,7 @@
-//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts | fuzz | soak |
-//! same-models | tidy`.
+//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts |
+//! verdict-battery | fuzz | soak | same-models | tidy`.
 
+mod arguments;
 mod bench;
 mod cases;
 mod check;
@@ -14,6 +15,7 @@ mod same_models;
 mod soak;
 mod test;
 mod tidy;
+mod verdict_battery;
 mod verdicts;
 
 use std::fmt;
@@ -52,6 +54,11 @@ Commands:
   verdicts DIR [--case-limit SECONDS] [--out FILE.md] [--program HYSID] [-- ARG..]
                  `hysid diagnose` on every subfolder of DIR that has train.csv, as a table of verdicts; otherwise as
                  `cases`
+  verdict-battery [--out FILE.md] [--seed NUMBER] [--laws LIST] [--disturbances LIST] [--program HYSID]
+            [--list-wrong FILE]
+                 `hysid diagnose` on records of laws with known properties and the disturbances of a laboratory, as
+                 tables of right and wrong verdicts. The same seed (1) gives the same records. With --list-wrong, a
+                 line of CSV for each wrong verdict, and its record in the folder FILE with the ending .records
 ";
 
 /// A command line that cannot be obeyed; the exit status is 2.
@@ -103,6 +110,9 @@ fn main() -> ExitCode {
         }
         ["verdicts", rest @ ..] => {
             cases::Request::parse(rest, &verdicts::OPTIONS).and_then(|request| verdicts::run(&request))
+        }
+        ["verdict-battery", rest @ ..] => {
+            verdict_battery::Request::parse(rest).and_then(|request| verdict_battery::run(&request))
         }
         _ => {
             eprint!("{USAGE}");

@@ -15,7 +15,7 @@ pub const OPTIONS: [&str; 3] = ["--out", "--case-limit", "--program"];
 
 pub fn run(request: &Request) -> Result<()> {
     let cases = Cases::find(request, &["train.csv"])?;
-    let mut page = Page::new(origin("verdicts", request, &cases.version));
+    let mut page = Page::new(origin("verdicts", &request.typed, request.program.is_none(), &cases.version));
     cases.ask(
         |folder, command| {
             command.arg("diagnose").arg(folder.join("train.csv")).args(["--json", "--no-report"]);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 
 use super::{Case, Request};
 use crate::Interrupted;
@@ -27,7 +27,7 @@ impl<'r> Cases<'r> {
     pub fn find(request: &'r Request, files: &[&str]) -> Result<Self> {
         let folders = case_folders(&request.folder, files)?;
         if let Some(out) = &request.out {
-            check_writable(out)?;
+            files::check_writable(out)?;
         }
         let program = match &request.program {
             Some(program) => program.clone(),
@@ -99,13 +99,4 @@ fn case_folders(folder: &Path, files: &[&str]) -> Result<Vec<PathBuf>> {
     ensure!(!folders.is_empty(), "{}: no subfolder has {}", folder.display(), files.join(" and "));
     folders.sort();
     Ok(folders)
-}
-
-/// Refuses, before long work, a file that could not be written.
-fn check_writable(path: &Path) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    if path.is_dir() || !folder.is_dir() {
-        bail!("{} cannot be written: name a file in a folder that is there", path.display());
-    }
-    Ok(())
 }

@@ -3,16 +3,16 @@
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::Request;
 use crate::workspace_root;
 
 /// Day, version and command, in Markdown. `version` is what the program says of itself.
-pub fn origin(command: &str, request: &Request, version: &str) -> String {
+/// `typed` are the arguments behind the command; `built` says that the program is the one built here.
+pub fn origin(command: &str, typed: &[String], built: bool, version: &str) -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
     // Of another program than the one built here the revision is unknown.
-    let revision = request.program.is_none().then(revision).flatten();
+    let revision = built.then(revision).flatten();
     let revision = revision.map_or_else(String::new, |revision| format!(" ({revision})"));
-    let typed: Vec<String> = request.typed.iter().map(|word| quoted(word)).collect();
+    let typed: Vec<String> = typed.iter().map(|word| quoted(word)).collect();
     let typed = typed.join(" ");
     format!("{}, {version}{revision}:\n\n```sh\ncargo xtask {command} {typed}\n```\n", date(seconds))
 }

@@ -83,7 +83,8 @@ mod tests {
     fn the_page_tells_where_it_comes_from_and_how_far_it_got() {
         let typed = ["my data", "--models", "pnn,xpnn", "--program", "hysid"];
         let request = Request::parse(&typed, &OPTIONS).unwrap();
-        let mut page = Page::new(origin("cases", &request, "hysid 9.8.7"), 2);
+        let mut page =
+            Page::new(origin("cases", &request.typed, request.program.is_none(), "hysid 9.8.7"), 2);
         let figures = Figures { test: Some(2.0), train: Some(1.0), seconds: Some(0.5), ..Figures::default() };
         let answer = |figures| Answer { model: "pnn".into(), figures };
         page.cases.push(Case { name: "a".into(), outcome: Ok(vec![answer(Ok(figures))]) });
@@ -105,7 +106,8 @@ mod tests {
     #[test]
     fn what_was_chosen_has_a_table_of_its_own() {
         let request = Request::parse(&["data"], &OPTIONS).unwrap();
-        let mut page = Page::new(origin("cases", &request, "hysid 9.8.7"), 2);
+        let mut page =
+            Page::new(origin("cases", &request.typed, request.program.is_none(), "hysid 9.8.7"), 2);
         let answer = |model: &str, structure: &str| {
             let figures = Figures { structure: Some(structure.into()), ..Figures::default() };
             Answer { model: model.into(), figures: Ok(figures) }

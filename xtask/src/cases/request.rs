@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 
-use crate::Usage;
+use crate::arguments::{option_and_value, usage};
 
 /// What is asked for.
 #[derive(Debug, Default, PartialEq)]
@@ -39,10 +39,7 @@ impl Request {
             if argument == "--" {
                 request.passed_on = rest.by_ref().map(str::to_owned).collect();
             } else if argument.starts_with('-') {
-                let (option, value) = match argument.split_once('=') {
-                    Some((option, value)) => (option, Some(value)),
-                    None => (argument, rest.next()),
-                };
+                let (option, value) = option_and_value(argument, &mut rest);
                 if !options.contains(&option) {
                     return usage(format!("option `{option}` is unknown"));
                 }
@@ -79,14 +76,11 @@ fn seconds(option: &str, value: &str) -> Result<f64> {
     }
 }
 
-fn usage<T>(what: String) -> Result<T> {
-    Err(Usage(what).into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::OPTIONS;
     use super::*;
+    use crate::Usage;
 
     #[test]
     fn options_stand_anywhere_and_the_rest_is_passed_on() {

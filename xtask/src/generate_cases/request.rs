@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use hysid::specimens::cases::KINDS;
 
-use crate::Usage;
+use crate::arguments::{option_and_value, usage};
 
 /// Most cases at once.
 const MOST: usize = 10_000;
@@ -32,10 +32,8 @@ impl Request {
             if argument == "--one-loop" {
                 one_loop = true;
             } else if argument.starts_with('-') {
-                let (option, value) = match argument.split_once('=') {
-                    Some((option, value)) => (option, value),
-                    None => (argument, rest.next().unwrap_or_default()),
-                };
+                let (option, value) = option_and_value(argument, &mut rest);
+                let value = value.unwrap_or_default();
                 match option {
                     "--count" => count = number(option, value, 1, MOST as u64)? as usize,
                     "--seed" => seed = number(option, value, 0, u64::MAX)?,
@@ -59,13 +57,10 @@ fn number(option: &str, value: &str, least: u64, most: u64) -> Result<u64> {
     }
 }
 
-fn usage<T>(what: String) -> Result<T> {
-    Err(Usage(what).into())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Usage;
 
     #[test]
     fn options_stand_anywhere() {
