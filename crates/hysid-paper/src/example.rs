@@ -271,12 +271,23 @@ impl Played<'_> {
                     percent(errors(&self.unseen, &unseen.simulated, |name| names.contains(&name)))
                 }
                 Figure::LargestUnseen => Some(100.0 * unseen.errors.max_abs_error / largest(&self.unseen)),
+                Figure::LargestUnseenBetween => self.largest_between(unseen),
                 Figure::TimesBelowTraining => Some(ratio(&rival?.train[seed].errors, &train.errors)),
                 Figure::TimesBelowUnseen => Some(ratio(&rival?.unseen[seed].errors, &unseen.errors)),
             }
         };
         let values: Option<Vec<f64>> = (0..of.train.len()).map(value).collect();
         Spread::of(values?)
+    }
+
+    /// Largest error on the unseen rows before the last training row, in percent of the largest output; `None` unless
+    /// training and unseen data are rows of one record.
+    fn largest_between(&self, unseen: &Run) -> Option<f64> {
+        let ([trained], [measured]) = (self.train.records(), self.unseen.records()) else { return None };
+        let end = trained.output().iter().rposition(|y| !y.is_nan())?;
+        let mut sums = ErrorSums::default();
+        sums.add(&measured.output()[..end], &unseen.simulated[0][..end]);
+        Some(100.0 * sums.errors(&self.unseen.names().output)?.max_abs_error / largest(&self.unseen))
     }
 
     fn target(&self, wanted: &Wanted) -> Target {

@@ -244,12 +244,12 @@ fn specimens_outside_the_generalized_law_follow_their_formulas() {
 
 /// Whole cycles are unseen, and together with those seen they are the whole test.
 #[test]
-fn the_second_of_three_cycles_of_the_joint_is_unseen() {
+fn every_third_cycle_of_the_joint_is_unseen() {
     let specimen = Specimen::named("reinforced-concrete-joint-cycles").unwrap();
     let (train, test) = (specimen.train(), specimen.test());
     let (seen, unseen) = (train.records()[0].output(), test.records()[0].output());
     assert!(seen.iter().zip(unseen).all(|(a, b)| a.is_nan() != b.is_nan()));
-    // Rows of cycles of 0.25 to 5 % drift, at 20 mm a percent and 1.6 mm a row, are what one of three has.
+    // Rows of cycles of 0.25 to 5 % drift, at 20 mm a percent and 1.6 mm a row, are what the third of three has.
     let share = test.scored() as f64 / test.rows() as f64;
     assert!((share - 1.0 / 3.0).abs() < 0.02, "{share}");
     let beginnings = unseen.windows(2).filter(|pair| pair[0].is_nan() && !pair[1].is_nan()).count();
