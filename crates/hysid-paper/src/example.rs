@@ -114,6 +114,10 @@ fn play<'a>(
                 let choice = Choice { has_rate: false, ..chosen[0].1.choice };
                 bench.networks("XPNN without x'", Family::Xpnn, choice, &train)?
             }
+            Opponent::WithUnseen => {
+                let all = with_unseen(&train, &unseen)?;
+                bench.networks("XPNN, fitted to unseen rows too", Family::Xpnn, chosen[0].1.choice, &all)?
+            }
             Opponent::Network(family) => {
                 let name = family.name().to_uppercase();
                 let of_family = bench.choose(family, case.folds)?;
@@ -137,6 +141,18 @@ fn play<'a>(
         contestants.push(bench.networks("XPNN, all rows", Family::Xpnn, choice, &whole)?);
     }
     Ok(Played { case, specimen, contestants, chosen, train, unseen, blanked })
+}
+
+/// The training records with the outputs of the unseen ones, which are the same records with other rows blank.
+fn with_unseen(train: &Dataset, unseen: &Dataset) -> Result<Dataset> {
+    let both = |(train, unseen): (&Record, &Record)| {
+        let outputs = train.output().iter().zip(unseen.output());
+        let outputs = outputs.map(|(&trained, &unseen)| if trained.is_nan() { unseen } else { trained });
+        let record = Record::new(train.name(), train.inputs().to_vec(), outputs.collect())?;
+        train.time().map_or(Ok(record.clone()), |time| record.with_time(time.to_vec()))
+    };
+    let records = train.records().iter().zip(unseen.records()).map(both).collect::<Result<_>>()?;
+    Dataset::new(train.names().clone(), records)
 }
 
 impl Bench<'_> {

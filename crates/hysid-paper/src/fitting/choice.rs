@@ -1,14 +1,14 @@
 //! The choice of input, penalties and iterations by cross-validation on training data.
 
 use hysid::Result;
-use hysid::data::record::{Dataset, Record};
+use hysid::data::record::Dataset;
 use hysid::network::Family;
 use hysid::options::network::Regularisation;
-use hysid::validation::{Fold, folds};
-use hysid_document::{Table, number};
+use hysid::validation::{Fold, folds, folds_of_cycles};
+use hysid_document::{Cell, Table, number};
 use rayon::prelude::*;
 
-use super::{Effort, effort, network, networks, seeds};
+use super::{Effort, effort, network, networks, seeds, training_error};
 use crate::conditions::{Observer, Settings};
 use crate::spread::median;
 
@@ -41,10 +41,13 @@ pub struct Choice {
     pub iterations: usize,
 }
 
-/// A way of training that was tried, and its error on each fold in percent of std of what was held out.
+/// A way of training that was tried.
 #[derive(Debug, Clone)]
 struct Trial {
     choice: Choice,
+    /// Error of each fold on its training data, in percent of std.
+    training: Vec<f64>,
+    /// Error on what was held out, in percent of its std.
     percents: Vec<f64>,
 }
 
@@ -74,9 +77,9 @@ pub fn choose(
     observer: &dyn Observer,
 ) -> Result<Chosen> {
     let Effort { iterations, penalties, .. } = effort(settings);
-    let folds = match (data.records(), kind) {
-        ([record], FoldKind::Between) => between(data, record)?,
-        _ => folds(data, FOLDS),
+    let folds = match kind {
+        FoldKind::Between => folds_of_cycles(data, FOLDS),
+        FoldKind::After => folds(data, FOLDS),
     };
     let can_have_rate = family.uses_rate() && data.has_time();
     let differs_in_rate = data.records().len() > 1;
@@ -112,31 +115,6 @@ pub fn choose(
     let of_iterations = iterations.iter().map(|&iterations| Choice { iterations, ..best });
     best = bench.best(of_iterations.collect())?;
     Ok(Chosen { choice: best, trials: bench.trials, why_rate })
-}
-
-/// Folds of a single record that are held out from between: its cycles, dealt to the folds in turn. A cycle begins
-/// where the input rises through its first value.
-fn between(data: &Dataset, record: &Record) -> Result<Vec<Fold>> {
-    let x = &record.inputs()[0];
-    let mut cycle = 0;
-    let fold_of_row: Vec<usize> = (0..record.len())
-        .map(|row| {
-            cycle += usize::from(row > 0 && x[row - 1] < x[0] && x[row] >= x[0]);
-            cycle % FOLDS
-        })
-        .collect();
-    let part = |keeps: &dyn Fn(usize) -> bool| {
-        let record = record.clone().scored_where(|row| keeps(fold_of_row[row]));
-        Dataset::new(data.names().clone(), vec![record])
-    };
-    let fold = |fold: usize| -> Result<Fold> {
-        Ok(Fold {
-            name: format!("every fifth cycle, from cycle {}", fold + 1),
-            train: part(&|of_row| of_row != fold)?,
-            held_out: part(&|of_row| of_row == fold)?,
-        })
-    };
-    (0..FOLDS).map(fold).collect()
 }
 
 /// What candidates are tried on.
@@ -176,24 +154,27 @@ impl Bench<'_> {
         if let Some(trial) = self.trials.iter().find(|trial| trial.choice == choice) {
             return Ok(trial.percents.clone());
         }
-        let percents: Vec<f64> =
-            self.folds.par_iter().map(|fold| self.percent(fold, choice)).collect::<Result<_>>()?;
+        let errors: Vec<(f64, f64)> =
+            self.folds.par_iter().map(|fold| self.errors(fold, choice)).collect::<Result<_>>()?;
+        let (training, percents): (Vec<f64>, Vec<f64>) = errors.into_iter().unzip();
         self.observer.say(&format!(
             "  {}: {} on five folds {} % of std",
             self.what,
             choice.words(),
             number(mean(&percents), 3)
         ));
-        self.trials.push(Trial { choice, percents: percents.clone() });
+        self.trials.push(Trial { choice, training, percents: percents.clone() });
         Ok(percents)
     }
 
-    fn percent(&self, fold: &Fold, choice: Choice) -> Result<f64> {
+    /// Errors on the training data and on what is held out.
+    fn errors(&self, fold: &Fold, choice: Choice) -> Result<(f64, f64)> {
         let Effort { seeds_on_folds, .. } = effort(self.settings);
         let seeds: Vec<u64> = seeds(self.settings).take(seeds_on_folds).collect();
         let of_seed = |place: u64| network(self.family, choice, seeds[place as usize], 0);
         let models = networks(&fold.train, of_seed, seeds.len(), self.observer)?;
-        Ok(models[0].evaluate(&fold.held_out)?.nrmse_std_percent.unwrap_or(f64::INFINITY))
+        let held_out = models[0].evaluate(&fold.held_out)?.nrmse_std_percent;
+        Ok((training_error(&models[0]), held_out.unwrap_or(f64::INFINITY)))
     }
 }
 
@@ -237,46 +218,25 @@ impl Chosen {
     /// What was tried, with the errors on the folds; `None` if there was nothing to choose from.
     pub fn table(&self, heading: &str) -> Option<Table> {
         let folds = self.trials.first()?.percents.len();
-        let columns = ["tried".to_string(), "mean".into()].into_iter();
+        let columns = ["tried", "training", "mean"].map(String::from).into_iter();
         let columns = columns.chain((1..=folds).map(|fold| format!("fold {fold}")));
         let row = |trial: &Trial| {
             let is_chosen = trial.choice == self.choice;
             let name = trial.choice.words() + if is_chosen { " (chosen)" } else { "" };
             let percents = trial.percents.iter().map(|&percent| percent.into());
-            [name.into(), mean(&trial.percents).into()].into_iter().chain(percents).collect()
+            let means = [mean(&trial.training), mean(&trial.percents)].map(Cell::from);
+            std::iter::once(name.into()).chain(means).chain(percents).collect()
         };
-        let heading =
-            format!("{heading}: error on five folds of the training data, % of std, geometric mean");
+        let heading = format!(
+            "{heading}: error on what five folds of the training data hold out, % of std, with geometric means of that and of the error on the rest"
+        );
         Some(Table::new(columns).headed(heading).with_rows(self.trials.iter().map(row)))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use hysid::specimens::Specimen;
-
     use super::*;
-
-    #[test]
-    fn folds_between_hold_every_scored_row_out_once() {
-        let specimen = Specimen::named("reinforced-concrete-joint-cycles").unwrap();
-        let data = specimen.train();
-        let record = &data.records()[0];
-        let folds = between(&data, record).unwrap();
-        assert_eq!(folds.len(), FOLDS);
-        let mut held = vec![0; record.len()];
-        for fold in &folds {
-            let (train, held_out) = (&fold.train.records()[0], &fold.held_out.records()[0]);
-            assert_eq!(train.scored() + held_out.scored(), record.scored());
-            for (row, y) in held_out.output().iter().enumerate() {
-                held[row] += usize::from(!y.is_nan());
-                assert!(y.is_nan() || train.output()[row].is_nan());
-            }
-            assert!(held_out.scored() * 10 > record.scored(), "{}: {}", fold.name, held_out.scored());
-        }
-        let expected = record.output().iter().map(|y| usize::from(!y.is_nan()));
-        assert!(held.iter().copied().eq(expected));
-    }
 
     #[test]
     fn the_median_of_outputs_is_that_of_each_row() {
