@@ -249,7 +249,7 @@ pub static EXAMPLES: [Example; 7] = [
             opponents: &[],
             wanted: &[paper(Figure::UnseenMse, 2.79), ours(Figure::Training, 0.5), ours(Figure::Unseen, 2.0)],
         }],
-        causes: &[],
+        causes: &[PENALTY],
     },
     Example {
         name: "example6",
@@ -309,7 +309,7 @@ pub static EXAMPLES: [Example; 7] = [
 ];
 
 /// Why unseen cycles of the joint have larger errors than trained ones.
-const THIRD_CYCLES: &str = "Why the largest error on the unseen third cycles is above the paper's 3.2 %: the XPNN can represent all cycles, as the row fitted to the unseen rows too shows. From the first two cycles at each drift the networks take different courses of the third, as the ranges of the seeds show: the first cycle differs from the second by its first visit to a new drift and by damage together, and two cycles do not tell these apart. With the law of the specimen, which has a course of damage built in, the same rows are enough.";
+const THIRD_CYCLES: &str = "Why the largest error on the unseen third cycles is above the paper's 3.2 %: the XPNN can represent all cycles, as the row fitted to the unseen rows too shows. What is missing is the third cycle: the first differs from the second by its first visit to a new drift and by damage together, and two cycles do not tell these apart. With the law of the specimen, which has a course of damage built in, the same rows are enough. Separate runs with the same choice, as medians of three seeds of the median of eight networks: 3.9 % with four cycles at each drift of which three are trained, against 4.4 % here; 5.8 % with 20 stops. The median of the 24 best of 72 starts has 4.4 % as well. More starts and larger networks therefore do not help, more cycles do.";
 
 /// What a forecast beyond trained damage can be.
 const FORECAST: &str = "What a forecast beyond the trained damage can be: the last 30 % of the test reach a drift and a damage that no training row has. A network has learnt how the force falls with the slip of its stops up to the end of training, and nothing says how it falls beyond: its forecast is an extrapolation of that course, and networks that fit the training data equally well differ from each other there, as the ranges of the seeds show. The law of the specimen, Bouc-Wen with the degradation and pinching of Baber and Noori, is fitted to the same rows: it has the right course of damage built in, so that a few parameters, found from the beginning, are enough for all that follows. A forecast of a degrading specimen is as good as the law of damage that is assumed, not as good as the fit.";
@@ -318,4 +318,7 @@ const FORECAST: &str = "What a forecast beyond the trained damage can be: the la
 const OWN_LAW: &str = "On a specimen that is itself a GPIM the GPIM is the law with unknown values, and its error is only that of their search. The XPNN approximates that law by a sum of tanh functions of stops, on the paths that it was trained on. That the XPNN beats the GPIM is therefore a property of the specimen: it holds for those outside the GPIM's class.";
 
 /// Why other frequency content needs other training data.
-const ELLIPSES: &str = "Why sines do not tell of other frequency content: on a sine of one amplitude x and x' lie on an ellipse, one for each frequency, so that every input x comes with one magnitude of the rate alone. Between and inside these ellipses nothing is trained. The sum of three tones passes through the inside all the time. Eight short records of other sums of tones beside a period of each sine bring the error down by an order of magnitude; the case rate-dependent-actuator-tones shows it. The paper's 0.16 % is not reached.";
+const ELLIPSES: &str = "Why sines do not tell of other frequency content: on a sine of one amplitude x and x' lie on an ellipse, one for each frequency, so that every input x comes with one magnitude of the rate alone. Between and inside these ellipses nothing is trained. The sum of three tones passes through the inside all the time. Eight short records of other sums of tones beside a period of each sine bring the error down by an order of magnitude; the case rate-dependent-actuator-tones shows it. The paper's 0.16 % is not reached. Nor is its training error on sines: the table of what was tried has the training errors of weaker penalties and more iterations, and in a separate run the best of six networks of one seed with 20 stops and 40 tanh neurons ended at 0.039 %, that of the size used here at 0.046 %.";
+
+/// Why the training error of concrete is above the target.
+const PENALTY: &str = "Why the training error is above 0.5 %: the table of what was tried shows that weaker penalties bring it below, and that they raise the error on the folds. The strongest penalty is chosen by the folds.";
