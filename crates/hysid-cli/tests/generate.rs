@@ -4,7 +4,7 @@ mod workbench;
 
 use workbench::{Ran, Workbench};
 
-const SPECIMENS: [&str; 11] = [
+const SPECIMENS: [&str; 12] = [
     "ferromagnet",
     "reinforced-concrete-joint",
     "reinforced-concrete-joint-cycles",
@@ -15,6 +15,7 @@ const SPECIMENS: [&str; 11] = [
     "concrete",
     "piezo-actuator",
     "rate-dependent-actuator",
+    "rate-dependent-actuator-tones",
     "magnetostrictive-actuator",
 ];
 

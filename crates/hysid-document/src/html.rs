@@ -2,7 +2,7 @@
 
 use crate::chart::{self, Chart};
 use crate::escape::escape;
-use crate::part::{Card, Item, Page, Part};
+use crate::part::{Card, Item, Page, Part, anchor};
 use crate::table::{Cell, Table};
 use crate::text::{Badge, Piece, Text};
 
@@ -34,7 +34,11 @@ fn part(part: &Part) -> String {
         Part::Lead(words) => format!("<p class=\"verdict\">{}</p>\n", text(words)),
         Part::Section(_, content) if content.is_empty() => String::new(),
         Part::Section(heading, content) => {
-            format!("<section>\n<h2>{}</h2>\n{}</section>\n", escape(heading), parts(content))
+            let id = escape(&anchor(heading));
+            format!("<section id=\"{id}\">\n<h2>{}</h2>\n{}</section>\n", escape(heading), parts(content))
+        }
+        Part::Contents(headings) => {
+            format!("<nav>\n<ul>\n{}</ul>\n</nav>\n", headings.iter().map(|it| entry(it)).collect::<String>())
         }
         Part::Heading(heading) => format!("<h3>{}</h3>\n", text(heading)),
         Part::Paragraph(words) => format!("<p>{}</p>\n", text(words)),
@@ -93,6 +97,11 @@ fn note(content: &str) -> String {
 fn item(item: &Item) -> String {
     let class = if item.is_warning { " class=\"warnings\"" } else { "" };
     format!("<li{class}>{}</li>\n", text(&item.text))
+}
+
+/// A line of a table of contents.
+fn entry(heading: &str) -> String {
+    format!("<li><a href=\"#{}\">{}</a></li>\n", escape(&anchor(heading)), escape(heading))
 }
 
 fn definition((name, value): &(String, String)) -> String {

@@ -1,6 +1,6 @@
 //! Documents as Markdown. Charts are left out.
 
-use crate::part::{Card, Page, Part};
+use crate::part::{Card, Page, Part, anchor};
 use crate::table::{Cell, Table};
 use crate::text::{Piece, Text};
 
@@ -17,6 +17,10 @@ fn parts(parts: &[Part]) -> String {
 fn part(part: &Part) -> String {
     match part {
         Part::Section(heading, content) => format!("## {heading}\n\n{}", parts(content)),
+        Part::Contents(headings) => {
+            let entry = |heading: &String| format!("- [{heading}](#{})\n", anchor(heading));
+            headings.iter().map(entry).collect::<String>() + "\n"
+        }
         Part::Heading(heading) => format!("### {}\n\n", text(heading)),
         Part::Lead(words) | Part::Paragraph(words) | Part::Note(words) => format!("{}\n\n", text(words)),
         Part::Command(command) => format!("```\n{command}\n```\n\n"),

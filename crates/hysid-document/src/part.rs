@@ -23,6 +23,8 @@ pub enum Part {
     Lead(Text),
     /// A section with its heading; a section without parts is not shown.
     Section(String, Vec<Part>),
+    /// A table of contents: the headings of these sections of the page, each a link to it.
+    Contents(Vec<String>),
     /// A heading within a section.
     Heading(Text),
     /// A paragraph.
@@ -69,6 +71,17 @@ pub struct Card {
     pub parts: Vec<Part>,
 }
 
+/// The target of links to a section, made of its heading as GitHub makes it of a heading in Markdown: small
+/// letters and digits, hyphens for spaces, nothing else.
+pub(crate) fn anchor(heading: &str) -> String {
+    let letter = |letter: char| match letter {
+        ' ' => Some('-'),
+        '-' | '_' => Some(letter),
+        letter => letter.is_alphanumeric().then_some(letter),
+    };
+    heading.to_lowercase().chars().filter_map(letter).collect()
+}
+
 impl Part {
     /// A section of these parts.
     pub fn section(heading: impl Into<String>, parts: impl Into<Vec<Part>>) -> Self {
@@ -106,6 +119,7 @@ impl Part {
         match self {
             Part::List(items) => items.iter().map(|item| item.text.clone()).collect(),
             Part::Verdicts(verdicts) => verdicts.clone(),
+            Part::Contents(headings) => headings.iter().map(|heading| heading.as_str().into()).collect(),
             Part::Definitions(pairs) => {
                 pairs.iter().map(|(name, value)| format!("{name}: {value}").into()).collect()
             }

@@ -1,6 +1,6 @@
 //! What an experiment comes to: a chapter of text, tables and charts, as data.
 
-use hysid_document::{Cell, Chart, Part, Table};
+use hysid_document::{Chart, Part, Table};
 use serde::{Deserialize, Serialize};
 
 /// The result of an experiment.
@@ -39,6 +39,55 @@ pub struct FurtherFile {
     pub header: Option<&'static str>,
 }
 
+/// Whose target it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// The paper claims it, with this number.
+    Paper,
+    /// The paper claims it in words; the number is ours.
+    Words,
+    /// Ours: the paper does not claim it.
+    Ours,
+}
+
+impl Source {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Words => "paper, in words",
+            Self::Ours => "Hysid",
+        }
+    }
+}
+
+/// Was a target met?
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// By the median of the seeds.
+    Met,
+    /// Not by one network, but by the median of several.
+    MetBySeveral,
+    /// Missed.
+    Missed,
+    /// The other model is worse than a constant, so that a ratio to its error has no meaning.
+    OtherDiverged,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::MetBySeveral => "met by several only",
+            Self::Missed => "missed",
+            Self::OtherDiverged => "other model diverged",
+        }
+    }
+}
+
 /// A figure that was to be reached.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Target {
@@ -46,12 +95,16 @@ pub struct Target {
     pub specimen: String,
     /// Which of its figures.
     pub figure: String,
+    /// Whose target it is.
+    pub source: Source,
     /// What was asked for.
     pub wanted: String,
-    /// What was measured.
-    pub measured: Cell,
+    /// What one network reached: median and range of the seeds.
+    pub one: String,
+    /// What the median of several networks reached, likewise.
+    pub several: Option<String>,
     /// Was it reached?
-    pub is_met: bool,
+    pub verdict: Verdict,
 }
 
 /// Begins the heading of every table whose figures are of a specimen.
@@ -59,18 +112,28 @@ pub fn stands_in(specimen: &str, of: &str) -> String {
     format!("Synthetic specimen {specimen} in place of the paper's measured data ({of})")
 }
 
-/// The targets of all these chapters as a table; `None` if there are none.
-pub fn targets(chapters: &[Chapter]) -> Option<Table> {
-    let mut table = Table::new(["experiment", "figure", "target", "measured", "verdict"])
-        .headed("Targets and results. Synthetic specimens replace the paper's measured data");
+/// The targets of all these chapters that are the paper's claims, or those that are not, as a table; `None` if there
+/// are none.
+pub fn targets(chapters: &[Chapter], of_paper: bool) -> Option<Table> {
+    let heading = match of_paper {
+        true => "The paper's claims and what was measured",
+        false => "Hysid's own targets, which the paper does not claim, and what was measured",
+    };
+    let columns =
+        ["experiment", "figure", "claimed by", "target", "one network", "median of networks", "verdict"];
+    let mut table = Table::new(columns).headed(format!(
+        "{heading}: median of the seeds, lowest to highest in brackets. Synthetic specimens replace the paper's measured data"
+    ));
     for chapter in chapters {
-        for target in &chapter.targets {
+        for target in chapter.targets.iter().filter(|target| (target.source != Source::Ours) == of_paper) {
             table.push([
                 format!("{}, {}", chapter.name, target.specimen).into(),
                 target.figure.as_str().into(),
+                target.source.words().into(),
                 target.wanted.as_str().into(),
-                target.measured.clone(),
-                if target.is_met { "met".into() } else { "missed".into() },
+                target.one.as_str().into(),
+                target.several.as_deref().unwrap_or("–").into(),
+                target.verdict.words().into(),
             ]);
         }
     }

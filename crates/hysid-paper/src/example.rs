@@ -1,22 +1,28 @@
 //! The engine that runs any of the paper's examples: fits, errors, figures, targets.
 
+mod beginning;
 pub mod catalogue;
 mod figures;
+mod tables;
 
 use hysid::Result;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
-use hysid::model::Model;
+use hysid::model::{Model, history};
 use hysid::network::Family;
-use hysid::options::network::FitOptions;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::options::{FitSpec, ModelName};
 use hysid::specimens::Specimen;
-use hysid_document::{Cell, Part, Table, capitalised, convergence, count, number, unit};
+use hysid_document::{Part, capitalised, convergence, number};
 
-use crate::chapter::{Chapter, Target, stands_in};
+use crate::chapter::{Chapter, Target, Verdict};
 use crate::conditions::{Observer, Settings};
-use crate::fitting;
-use catalogue::{Case, Example, Figure, Opponent};
+use crate::fitting::{self, Choice, Chosen, FoldKind, MEMBERS, medians};
+use crate::spread::Spread;
+use catalogue::{Case, Example, Figure, Opponent, Wanted};
+
+/// A model with an error above this, in percent of the output's standard deviation, is worse than a constant.
+const DIVERGED: f64 = 100.0;
 
 /// What a model makes of a set of data.
 struct Run {
@@ -25,12 +31,14 @@ struct Run {
     errors: Errors,
 }
 
-/// A model on both sets of a specimen.
+/// A model on both sets of a specimen, from each seed.
 struct Contestant {
     name: String,
-    model: Model,
-    train: Run,
-    unseen: Run,
+    parameters: usize,
+    train: Vec<Run>,
+    unseen: Vec<Run>,
+    /// Training of the first seed's model.
+    history: Vec<history::Run>,
 }
 
 /// A case that has been run.
@@ -39,12 +47,18 @@ struct Played<'a> {
     specimen: &'static Specimen,
     train: Dataset,
     unseen: Dataset,
-    /// The XPNN, then its rival, if there is one.
-    contestants: Vec<Contestant>,
-    /// Error on data held out of the training data, without the rate and, if there is time, with it.
-    validation: Vec<f64>,
-    /// The XPNN has the rate as an input.
-    has_rate: bool,
+    /// Rows at the beginning of the training data whose outputs no model is fitted to.
+    blanked: usize,
+    /// The XPNN, then the other models.
+    contestants: Vec<Trained>,
+    /// How the networks were trained, with their names.
+    chosen: Vec<(String, Chosen)>,
+}
+
+/// A kind of model as one model, and as the median of several if it begins at random.
+struct Trained {
+    one: Contestant,
+    several: Option<Contestant>,
 }
 
 /// Runs an example.
@@ -53,6 +67,7 @@ pub fn chapter(example: &Example, settings: Settings, observer: &dyn Observer) -
     let played: Vec<Played> = played.collect::<Result<_>>()?;
     let mut parts = vec![Part::paragraph(format!("The paper reports {}", example.paper))];
     parts.extend(played.iter().flat_map(|played| played.parts(example)));
+    parts.extend(example.causes.iter().map(|&cause| Part::paragraph(cause)));
     parts.push(Part::Note(fitting::words(settings)));
     Ok(Chapter {
         name: example.name.into(),
@@ -69,6 +84,15 @@ fn spaced(name: &str) -> String {
     name.replace("example", "example ")
 }
 
+/// What a case is run with.
+struct Bench<'a> {
+    what: String,
+    train: &'a Dataset,
+    unseen: &'a Dataset,
+    settings: Settings,
+    observer: &'a dyn Observer,
+}
+
 fn play<'a>(
     example: &Example,
     case: &'a Case,
@@ -76,44 +100,131 @@ fn play<'a>(
     observer: &dyn Observer,
 ) -> Result<Played<'a>> {
     let specimen = Specimen::named(case.specimen).expect("the specimen is in the catalogue");
-    let (train, unseen) = (specimen.train(), specimen.test());
+    let whole = specimen.train();
+    let (train, blanked) = beginning::trained_on(whole.clone())?;
+    let unseen = specimen.test();
     let what = format!("{}, {}", example.name, case.specimen);
-    let fit =
-        |request: FitSpec| -> Result<Model> { Ok(fitting::fit(&what, &train, &request, observer)?.model) };
-    let xpnn = fitting::network(Family::Xpnn, &train, settings);
-    let mut candidates = vec![fit(FitSpec::Network(FitOptions { rate: None, ..xpnn.clone() }))?];
-    if xpnn.rate.is_some() {
-        candidates.push(fit(FitSpec::Network(xpnn))?);
+    let bench = Bench { what, train: &train, unseen: &unseen, settings, observer };
+    let xpnn = bench.choose(Family::Xpnn, case.folds)?;
+    let mut contestants = vec![bench.networks("XPNN", Family::Xpnn, xpnn.choice, &train)?];
+    let mut chosen = vec![("XPNN".to_string(), xpnn)];
+    for opponent in case.opponents {
+        let contestant = match *opponent {
+            Opponent::WithoutRate => {
+                let choice = Choice { has_rate: false, ..chosen[0].1.choice };
+                bench.networks("XPNN without x'", Family::Xpnn, choice, &train)?
+            }
+            Opponent::WithUnseen => {
+                let all = with_unseen(&train, &unseen)?;
+                bench.networks("XPNN, fitted to unseen rows too", Family::Xpnn, chosen[0].1.choice, &all)?
+            }
+            Opponent::Network(family) => {
+                let name = family.name().to_uppercase();
+                let of_family = bench.choose(family, case.folds)?;
+                let trained = bench.networks(&name, family, of_family.choice, &train)?;
+                chosen.push((name, of_family));
+                trained
+            }
+            Opponent::GeneralizedPrandtlIshlinskii => {
+                let model = ModelName::Classical(ClassicalModel::GeneralizedPrandtlIshlinskii);
+                bench.law("GPIM", |seed| FitSpec::of(model, None, seed))?
+            }
+            Opponent::DegradingBoucWen => bench.law("Bouc-Wen with degradation", |seed| {
+                let law = ClassicalOptions::of(ClassicalModel::BoucWen);
+                FitSpec::Classical(ClassicalOptions { degradation: true, seed, ..law })
+            })?,
+        };
+        contestants.push(contestant);
     }
-    let validation: Vec<f64> = candidates.iter().map(validation).collect();
-    // Records at several rates need the rate; within one slow record it tells no more than the direction.
-    let is_better = |validation: &[f64]| validation[1] < validation[0];
-    let has_rate = validation.len() > 1 && (train.records().len() > 1 || is_better(&validation));
-    let mut models = vec![("XPNN".to_string(), candidates[usize::from(has_rate)].clone())];
-    let rival = match case.opponent {
-        Opponent::Nobody => None,
-        Opponent::WithoutRate => Some(("XPNN without x'".to_string(), candidates.swap_remove(0))),
-        Opponent::Network(family) => {
-            let model = fit(FitSpec::Network(fitting::network(family, &train, settings)))?;
-            Some((family.name().to_uppercase(), model))
-        }
-        Opponent::Law(law) => {
-            let request = FitSpec::of(ModelName::Classical(law), None, settings.seed);
-            Some(("GPIM".to_string(), fit(fitting::rival(request, settings))?))
-        }
-    };
-    models.extend(rival);
-    let contestant = |(name, model): (String, Model)| {
-        Ok(Contestant { train: run(&model, &train)?, unseen: run(&model, &unseen)?, name, model })
-    };
-    let contestants = models.into_iter().map(contestant).collect::<Result<_>>()?;
-    Ok(Played { case, specimen, train, unseen, contestants, validation, has_rate })
+    if blanked > 0 {
+        let choice = chosen[0].1.choice;
+        contestants.push(bench.networks("XPNN, all rows", Family::Xpnn, choice, &whole)?);
+    }
+    Ok(Played { case, specimen, contestants, chosen, train, unseen, blanked })
 }
 
-/// Error on what was held out of the training data, in % of std.
-fn validation(model: &Model) -> f64 {
-    let errors = model.provenance().validation.as_ref();
-    errors.and_then(|errors| errors.nrmse_std_percent).unwrap_or(f64::INFINITY)
+/// The training records with the outputs of the unseen ones, which are the same records with other rows blank.
+fn with_unseen(train: &Dataset, unseen: &Dataset) -> Result<Dataset> {
+    let both = |(train, unseen): (&Record, &Record)| {
+        let outputs = train.output().iter().zip(unseen.output());
+        let outputs = outputs.map(|(&trained, &unseen)| if trained.is_nan() { unseen } else { trained });
+        let record = Record::new(train.name(), train.inputs().to_vec(), outputs.collect())?;
+        train.time().map_or(Ok(record.clone()), |time| record.with_time(time.to_vec()))
+    };
+    let records = train.records().iter().zip(unseen.records()).map(both).collect::<Result<_>>()?;
+    Dataset::new(train.names().clone(), records)
+}
+
+impl Bench<'_> {
+    fn choose(&self, family: Family, kind: FoldKind) -> Result<Chosen> {
+        let what = format!("{}, {}", self.what, family.name());
+        fitting::choose(&what, self.train, family, kind, self.settings, self.observer)
+    }
+
+    /// One network of each seed, fitted to these data, and the median of several; errors on the training data are those on
+    /// the rows that all models are fitted to.
+    fn networks(&self, name: &str, family: Family, choice: Choice, fitted_to: &Dataset) -> Result<Trained> {
+        let starts = fitting::effort(self.settings).starts;
+        let members = MEMBERS.min(starts);
+        let mut one = Contestant::new(name);
+        let mut several = Contestant::new(&format!("{name}, median of {members}"));
+        for seed in fitting::seeds(self.settings) {
+            let of_start = |start: u64| fitting::network(family, choice, seed, start);
+            let models =
+                self.timed(name, seed, || fitting::networks(fitted_to, of_start, starts, self.observer))?;
+            let best = &models[..members];
+            one.parameters = best[0].parameters();
+            several.parameters = best.iter().map(Model::parameters).sum();
+            if one.history.is_empty() {
+                one.history.clone_from(&best[0].provenance().runs);
+            }
+            for (data, is_train) in [(self.train, true), (self.unseen, false)] {
+                let runs: Vec<Run> = best.iter().map(|model| run(model, data)).collect::<Result<_>>()?;
+                let together = median_of(&runs, data);
+                several.add(is_train, together);
+                one.add(is_train, runs.into_iter().next().expect("there is at least one start"));
+            }
+        }
+        Ok(Trained { one, several: Some(several) })
+    }
+
+    /// A law, fitted from each seed.
+    fn law(&self, name: &str, request: impl Fn(u64) -> FitSpec) -> Result<Trained> {
+        let mut one = Contestant::new(name);
+        for seed in fitting::seeds(self.settings) {
+            let request = fitting::rival(request(seed), self.settings);
+            let models =
+                self.timed(name, seed, || Ok(vec![fitting::fit(self.train, &request, self.observer)?]))?;
+            one.parameters = models[0].parameters();
+            one.add(true, run(&models[0], self.train)?);
+            one.add(false, run(&models[0], self.unseen)?);
+        }
+        Ok(Trained { one, several: None })
+    }
+
+    /// Fits models, the best first, and says so.
+    fn timed(&self, name: &str, seed: u64, fit: impl FnOnce() -> Result<Vec<Model>>) -> Result<Vec<Model>> {
+        let began = self.observer.clock();
+        let models = fit()?;
+        self.observer.say(&format!(
+            "  {}, seed {seed}: {name} {} % of std, {:.1} s",
+            self.what,
+            number(fitting::training_error(&models[0]), 3),
+            (self.observer.clock() - began).as_secs_f64()
+        ));
+        Ok(models)
+    }
+}
+
+impl Contestant {
+    fn new(name: &str) -> Self {
+        let name = name.to_string();
+        Self { name, parameters: 0, train: Vec::new(), unseen: Vec::new(), history: Vec::new() }
+    }
+
+    fn add(&mut self, is_train: bool, run: Run) {
+        if is_train { self.train.push(run) } else { self.unseen.push(run) }
+    }
 }
 
 fn run(model: &Model, data: &Dataset) -> Result<Run> {
@@ -121,6 +232,17 @@ fn run(model: &Model, data: &Dataset) -> Result<Run> {
         data.records().iter().map(|record| model.simulate(record)).collect::<Result<_>>()?;
     let errors = errors(data, &simulated, |_| true).expect("specimens have outputs");
     Ok(Run { simulated, errors })
+}
+
+/// The medians, row by row, of several runs.
+fn median_of(runs: &[Run], data: &Dataset) -> Run {
+    let of_record = |record: usize| {
+        let outputs: Vec<Vec<f64>> = runs.iter().map(|run| run.simulated[record].clone()).collect();
+        medians(&outputs)
+    };
+    let simulated: Vec<Vec<f64>> = (0..data.records().len()).map(of_record).collect();
+    let errors = errors(data, &simulated, |_| true).expect("specimens have outputs");
+    Run { simulated, errors }
 }
 
 /// Errors over the records of these names.
@@ -140,69 +262,105 @@ fn largest(data: &Dataset) -> f64 {
     low.abs().max(high.abs())
 }
 
+/// How many times another model's error is above that of the XPNN; infinite if the other is worse than a constant.
+fn ratio(other: &Errors, xpnn: &Errors) -> f64 {
+    let has_diverged = !other.nrmse_std_percent.is_some_and(|percent| percent <= DIVERGED);
+    if has_diverged { f64::INFINITY } else { other.mse / xpnn.mse }
+}
+
 impl Played<'_> {
-    fn xpnn(&self) -> &Contestant {
+    fn xpnn(&self) -> &Trained {
         &self.contestants[0]
     }
 
-    fn rival(&self) -> Option<&Contestant> {
-        self.contestants.get(1)
+    /// A figure of a contestant over the seeds, and of the rival if it is a ratio; `None` if there is nothing that it
+    /// could be of.
+    fn figure(&self, figure: Figure, of: &Contestant, rival: Option<&Contestant>) -> Option<Spread> {
+        let percent = |errors: Option<Errors>| errors.and_then(|errors| errors.nrmse_std_percent);
+        let value = |seed: usize| -> Option<f64> {
+            let (train, unseen) = (&of.train[seed], &of.unseen[seed]);
+            match figure {
+                Figure::Training => train.errors.nrmse_std_percent,
+                Figure::Unseen => unseen.errors.nrmse_std_percent,
+                Figure::UnseenMse => Some(unseen.errors.mse),
+                Figure::UnseenRecords(names) => {
+                    percent(errors(&self.unseen, &unseen.simulated, |name| names.contains(&name)))
+                }
+                Figure::LargestUnseen => Some(100.0 * unseen.errors.max_abs_error / largest(&self.unseen)),
+                Figure::LargestUnseenBetween => self.largest_between(unseen),
+                Figure::TimesBelowTraining => Some(ratio(&rival?.train[seed].errors, &train.errors)),
+                Figure::TimesBelowUnseen => Some(ratio(&rival?.unseen[seed].errors, &unseen.errors)),
+            }
+        };
+        let values: Option<Vec<f64>> = (0..of.train.len()).map(value).collect();
+        Spread::of(values?)
     }
 
-    /// The value of a figure; `None` if there is nothing that it could be of.
-    fn figure(&self, figure: Figure) -> Option<f64> {
+    /// Largest error on the unseen rows before the last training row, in percent of the largest output; `None` unless
+    /// training and unseen data are rows of one record.
+    fn largest_between(&self, unseen: &Run) -> Option<f64> {
+        let ([trained], [measured]) = (self.train.records(), self.unseen.records()) else { return None };
+        let end = trained.output().iter().rposition(|y| !y.is_nan())?;
+        let mut sums = ErrorSums::default();
+        sums.add(&measured.output()[..end], &unseen.simulated[0][..end]);
+        Some(100.0 * sums.errors(&self.unseen.names().output)?.max_abs_error / largest(&self.unseen))
+    }
+
+    fn target(&self, wanted: &Wanted) -> Target {
+        let rival = self.contestants.get(1);
         let xpnn = self.xpnn();
-        match figure {
-            Figure::Training => xpnn.train.errors.nrmse_std_percent,
-            Figure::Unseen => xpnn.unseen.errors.nrmse_std_percent,
-            Figure::UnseenRecords(names) => {
-                errors(&self.unseen, &xpnn.unseen.simulated, |name| names.contains(&name))?.nrmse_std_percent
-            }
-            Figure::LargestUnseen => Some(100.0 * xpnn.unseen.errors.max_abs_error / largest(&self.unseen)),
-            Figure::TimesBelowTraining => Some(self.rival()?.train.errors.mse / xpnn.train.errors.mse),
-            Figure::TimesBelowUnseen => Some(self.rival()?.unseen.errors.mse / xpnn.unseen.errors.mse),
+        let one = self.figure(wanted.figure, &xpnn.one, rival.map(|rival| &rival.one));
+        let several = xpnn.several.as_ref().and_then(|several| {
+            let rival = rival.map(|rival| rival.several.as_ref().unwrap_or(&rival.one));
+            self.figure(wanted.figure, several, rival)
+        });
+        let is_met = |spread: Option<Spread>| spread.is_some_and(|spread| wanted.is_met_by(spread.median));
+        let has_diverged = wanted.figure.is_ratio() && one.is_some_and(|spread| spread.median.is_infinite());
+        Target {
+            specimen: self.specimen.name.into(),
+            figure: wanted.figure.words(self.contestants.get(1).map(|rival| rival.one.name.as_str())),
+            source: wanted.source,
+            wanted: wanted.words(),
+            one: one.map_or_else(|| "–".into(), Spread::shown),
+            several: several.map(Spread::shown),
+            verdict: match (has_diverged, is_met(one), is_met(several)) {
+                (true, _, _) => Verdict::OtherDiverged,
+                (_, true, _) => Verdict::Met,
+                (_, false, true) => Verdict::MetBySeveral,
+                (_, false, false) => Verdict::Missed,
+            },
         }
     }
 
     fn targets(&self) -> Vec<Target> {
-        let target = |wanted: &catalogue::Wanted| {
-            let measured = self.figure(wanted.figure);
-            let (bound, is_met) = match wanted.figure.is_ratio() {
-                true => ("at least", measured.is_some_and(|measured| measured >= wanted.limit)),
-                false => ("at most", measured.is_some_and(|measured| measured <= wanted.limit)),
-            };
-            Target {
-                specimen: self.specimen.name.into(),
-                figure: wanted.figure.words(),
-                wanted: format!("{bound} {}", wanted.limit),
-                measured: measured.into(),
-                is_met,
-            }
-        };
-        self.case.wanted.iter().map(target).collect()
+        self.case.wanted.iter().map(|wanted| self.target(wanted)).collect()
     }
 
     /// The case in a sentence.
     fn verdict(&self) -> String {
-        let percent =
-            |run: &Run| run.errors.nrmse_std_percent.map_or("–".to_string(), |percent| number(percent, 2));
-        let xpnn = self.xpnn();
+        let percent = |figure: Figure, of: &Contestant| {
+            self.figure(figure, of, None).map_or("–".to_string(), |spread| number(spread.median, 2))
+        };
+        let xpnn = &self.xpnn().one;
         let mut text = format!(
             "{}: the XPNN's error is {} % of std in training and {} % on unseen data",
             self.specimen.name,
-            percent(&xpnn.train),
-            percent(&xpnn.unseen)
+            percent(Figure::Training, xpnn),
+            percent(Figure::Unseen, xpnn)
         );
         let records: Vec<&str> = self.unseen.records().iter().map(Record::name).collect();
         if records.len() > 1 {
             text += &format!(" ({})", records.join(", "));
         }
-        if let Some(rival) = self.rival() {
+        if let Some(several) = &self.xpnn().several {
+            text += &format!("; the median of several networks has {} %", percent(Figure::Unseen, several));
+        }
+        for Trained { one: rival, .. } in &self.contestants[1..] {
             text += &format!(
-                ", that of {} {} % and {} %",
+                ", {} {} % and {} %",
                 rival.name,
-                percent(&rival.train),
-                percent(&rival.unseen)
+                percent(Figure::Training, rival),
+                percent(Figure::Unseen, rival)
             );
         }
         text + "."
@@ -216,7 +374,10 @@ impl Played<'_> {
             Part::Table(self.errors_table(example)),
         ];
         parts.extend(self.records_table(example).map(Part::Table));
-        parts.push(Part::note(self.choice_of_rate()));
+        for (name, chosen) in &self.chosen {
+            parts.push(Part::note(chosen.words(name)));
+        }
+        parts.extend((self.blanked > 0).then(|| Part::note(beginning::words(self.blanked))));
         parts.push(Part::note(format!(
             "Training: {}. Unseen: {}. Published: {}. Designed: {}.",
             specimen.training, specimen.testing, specimen.published, specimen.designed
@@ -231,90 +392,43 @@ impl Played<'_> {
             (&self.unseen, self.lines(|contestant| &contestant.unseen)),
         ];
         parts.push(Part::chart(figures::relative_errors(&sets)));
-        parts.extend(convergence::chart(&self.xpnn().model.provenance().runs).map(Part::chart));
+        parts.extend(convergence::chart(&self.xpnn().one.history).map(Part::chart));
+        let tables = self.chosen.iter().filter_map(|(name, chosen)| {
+            chosen.table(&self.heading(example, &format!("choice for {name}"))).map(Part::Table)
+        });
+        let tables: Vec<Part> = tables.collect();
+        if !tables.is_empty() {
+            parts.push(Part::Folded(format!("What was tried for {}", specimen.name), tables));
+        }
         parts
     }
 
-    /// Outputs of all contestants on a set, with their names.
-    fn lines<'p>(&'p self, set: impl Fn(&'p Contestant) -> &'p Run) -> Vec<figures::Line<'p>> {
-        let line = |contestant: &'p Contestant| figures::Line {
-            name: &contestant.name,
-            simulated: &set(contestant).simulated,
+    /// Outputs of the XPNN and its rival from the first seed on a set, with their names.
+    fn lines<'p>(&'p self, set: impl Fn(&'p Contestant) -> &'p Vec<Run>) -> Vec<figures::Line<'p>> {
+        let line = |trained: &'p Trained| figures::Line {
+            name: &trained.one.name,
+            simulated: &set(&trained.one)[0].simulated,
         };
-        self.contestants.iter().map(line).collect()
+        self.contestants.iter().take(2).map(line).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors of so many percent of the standard deviation.
+    fn errors_of(percent: f64) -> Errors {
+        let mut sums = ErrorSums::default();
+        let error = percent / 100.0;
+        sums.add(&[1.0, -1.0, 1.0, -1.0], &[1.0 + error, -1.0 + error, 1.0 - error, -1.0 - error]);
+        sums.errors("y").unwrap()
     }
 
-    /// Why the XPNN has the rate, or has not.
-    fn choice_of_rate(&self) -> String {
-        let [without, with] = self.validation.as_slice() else {
-            return "The record has no time, so the XPNN's input is x alone.".into();
-        };
-        if self.train.records().len() > 1 {
-            return "The records differ in rate, so the XPNN has x and x' as inputs.".into();
-        }
-        format!(
-            "The XPNN has {}: on data held out of the training data its error was {} % of std without x' and {} % with it.",
-            if self.has_rate { "x and x' as inputs" } else { "x alone as input" },
-            number(*without, 3),
-            number(*with, 3)
-        )
-    }
-
-    fn heading(&self, example: &Example, of: &str) -> String {
-        format!("{}: {of}", stands_in(self.specimen.name, &spaced(example.name)))
-    }
-
-    fn errors_table(&self, example: &Example) -> Table {
-        let unit = unit::of(&self.train.names().output);
-        let columns = [
-            "model".to_string(),
-            "parameters".into(),
-            "data".into(),
-            format!("MSE ({unit})²"),
-            "NRMSE (% of std)".into(),
-            "largest error (% of largest output)".into(),
-        ];
-        let mut table = Table::new(columns).headed(self.heading(example, "errors of free runs"));
-        for contestant in &self.contestants {
-            for (set, data, run) in
-                [("training", &self.train, &contestant.train), ("unseen", &self.unseen, &contestant.unseen)]
-            {
-                table.push([
-                    format!("{}, {set}", contestant.name).into(),
-                    contestant.model.parameters().into(),
-                    format!(
-                        "{} in {}",
-                        count(run.errors.samples, "sample"),
-                        count(run.errors.records, "record")
-                    )
-                    .into(),
-                    run.errors.mse.into(),
-                    run.errors.nrmse_std_percent.into(),
-                    (100.0 * run.errors.max_abs_error / largest(data)).into(),
-                ]);
-            }
-        }
-        table
-    }
-
-    /// Errors on each unseen record, if there are several.
-    fn records_table(&self, example: &Example) -> Option<Table> {
-        let records = self.unseen.records();
-        if records.len() < 2 {
-            return None;
-        }
-        let names =
-            self.contestants.iter().map(|contestant| format!("{}, NRMSE (% of std)", contestant.name));
-        let row = |name: &str| {
-            let of = |contestant: &Contestant| {
-                let errors = errors(&self.unseen, &contestant.unseen.simulated, |other| other == name);
-                Cell::from(errors.and_then(|errors| errors.nrmse_std_percent))
-            };
-            std::iter::once(name.into()).chain(self.contestants.iter().map(of)).collect()
-        };
-        let table = Table::new(std::iter::once("unseen record".to_string()).chain(names))
-            .headed(self.heading(example, "unseen records one by one"))
-            .with_rows(records.iter().map(|record| row(record.name())));
-        Some(table)
+    #[test]
+    fn a_rival_that_is_worse_than_a_constant_has_no_ratio() {
+        let xpnn = errors_of(2.0);
+        assert!((ratio(&errors_of(20.0), &xpnn) - 100.0).abs() < 1e-9);
+        assert_eq!(ratio(&errors_of(150.0), &xpnn), f64::INFINITY);
     }
 }

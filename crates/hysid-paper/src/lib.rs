@@ -31,9 +31,10 @@ mod example;
 mod experiment;
 mod fitting;
 mod nds;
+mod spread;
 mod table2;
 mod training;
 
-pub use chapter::{Chapter, Content, FurtherFile, Target, targets};
+pub use chapter::{Chapter, Content, FurtherFile, Source, Target, Verdict, targets};
 pub use conditions::{Observer, Settings};
 pub use experiment::Experiment;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, number};
 
-use crate::chapter::Chapter;
+use crate::chapter::{Chapter, Source, Target, Verdict};
 
 /// A neuron: the stop of `weight x + rate_weight x'` with threshold 1, which deteriorates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,8 +138,39 @@ pub fn chapter() -> Chapter {
                         continues from one to the next.",
             ),
         ],
-        targets: Vec::new(),
+        targets: vec![target()],
         files: Vec::new(),
+    }
+}
+
+/// By the paper: has each demonstration a static loop (K is not 0), a rate-dependent part (P is not 0), an end?
+const CLAIMED: [(bool, bool, bool); 6] = [
+    (true, false, false),
+    (true, true, false),
+    (true, false, true),
+    (true, true, true),
+    (false, false, false),
+    (false, true, false),
+];
+
+/// The demonstrations that have the K, the P and the end that the paper claims.
+fn target() -> Target {
+    let holds = |((neuron, _), claimed): &((Neuron, &str), (bool, bool, bool))| {
+        let (zero, slow) = (neuron.width(0.0), neuron.width(RATES[0]));
+        let is_wide = zero.is_some_and(|zero| zero.abs() > 1e-9);
+        let has_rate = zero.zip(slow).is_some_and(|(zero, slow)| (slow - zero).abs() > 1e-9);
+        (is_wide, has_rate, neuron.life(RATES[0]).is_some()) == *claimed
+    };
+    let holding = DEMONSTRATIONS.into_iter().zip(CLAIMED).filter(holds).count();
+    let all = DEMONSTRATIONS.len();
+    Target {
+        specimen: "one neuron".into(),
+        figure: "demonstrations with the K, P and end of life claimed".into(),
+        source: Source::Paper,
+        wanted: format!("{all} of {all}"),
+        one: format!("{holding} of {all}"),
+        several: None,
+        verdict: if holding == all { Verdict::Met } else { Verdict::Missed },
     }
 }
 
@@ -250,6 +281,11 @@ mod tests {
             assert!((life - cycles).abs() < 2.0 / ROWS as f64, "{life}, {cycles}");
         }
         assert_eq!(DEMONSTRATIONS[0].0.life(0.1), None);
+    }
+
+    #[test]
+    fn all_demonstrations_are_as_the_paper_claims() {
+        assert_eq!((target().one.as_str(), target().verdict), ("6 of 6", Verdict::Met));
     }
 
     #[test]

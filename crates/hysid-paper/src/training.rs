@@ -72,6 +72,21 @@ struct Repetition {
     seconds_to_match: Option<f64>,
 }
 
+impl Repetition {
+    /// The training by this trainer.
+    fn of(&self, trainer: Trainer) -> Option<&Training> {
+        self.trainings.iter().find(|training| training.trainer == trainer)
+    }
+}
+
+impl Training {
+    /// Lowest error up to an epoch, in percent of the output's standard deviation.
+    fn percent_at(&self, epoch: usize) -> Option<f64> {
+        let moment = self.moments.iter().rfind(|moment| moment.epoch <= epoch)?;
+        Some(moment.nrmse_percent)
+    }
+}
+
 impl Protocol {
     /// The whole protocol, or a tenth of its epochs.
     fn new(first_seed: u64, quick: bool) -> Self {

@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// All specimens, in the order of the paper's examples.
-static ALL: [&Specimen; 11] = [
+static ALL: [&Specimen; 12] = [
     &ferromagnet::SPECIMEN,
     &reinforced_concrete_joint::SPECIMEN,
     &reinforced_concrete_joint::CYCLES,
@@ -18,6 +18,7 @@ static ALL: [&Specimen; 11] = [
     &concrete::SPECIMEN,
     &piezo_actuator::SPECIMEN,
     &rate_dependent_actuator::SPECIMEN,
+    &rate_dependent_actuator::TONES,
     &magnetostrictive_actuator::SPECIMEN,
 ];
 

@@ -67,7 +67,9 @@ impl RateDependentActuator {
     }
 }
 
-pub(super) static SPECIMEN: Specimen = Specimen {
+pub(super) static SPECIMEN: Specimen = ACTUATOR;
+
+const ACTUATOR: Specimen = Specimen {
     name: "rate-dependent-actuator",
     example: "example 6",
     summary: "actuator whose loops widen with speed: a Prandtl-Ishlinskii law with thresholds that grow with the rate",
@@ -77,9 +79,51 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                blank outputs, from the virgin state, then two that count",
     testing: "sines of 10 V at 25 and at 75 Hz, likewise, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
-    train: || FREQUENCIES.into_iter().map(sine).collect(),
-    test: || Ok(vec![sine(25.0)?, sine(75.0)?, three_tones()?]),
+    train: || FREQUENCIES.into_iter().map(|frequency| sine(frequency, PERIODS)).collect(),
+    test: || Ok(vec![sine(25.0, PERIODS)?, sine(75.0, PERIODS)?, three_tones()?]),
 };
+
+/// The same actuator, with sums of tones among its training data.
+///
+/// On a sine the input and its rate lie on an ellipse, one for each frequency: pairs between these ellipses
+/// occur in no sine, but in every sum of tones.
+pub(super) static TONES: Specimen = Specimen {
+    name: "rate-dependent-actuator-tones",
+    summary: "the same rate-dependent actuator, trained on sums of tones too",
+    training: "the ten sines of rate-dependent-actuator, of which one period counts, and eight sums of three tones \
+               between 5 and 80 Hz that reach 10 V at most, 0.12 s each, from the virgin state",
+    train: || {
+        let sines = FREQUENCIES.into_iter().map(|frequency| sine(frequency, 2));
+        sines.chain(MIXTURES.iter().enumerate().map(mixture)).collect()
+    },
+    ..ACTUATOR
+};
+
+/// Frequencies in Hz and amplitudes in V of the sums of tones to train on; none is that of the test.
+const MIXTURES: [[(f64, f64); 3]; 8] = [
+    [(5.0, 5.0), (20.0, 3.0), (70.0, 2.0)],
+    [(10.0, 3.0), (35.0, 3.0), (55.0, 4.0)],
+    [(5.0, 6.0), (40.0, 2.0), (80.0, 2.0)],
+    [(15.0, 4.0), (30.0, 4.0), (65.0, 2.0)],
+    [(10.0, 2.0), (20.0, 5.0), (60.0, 3.0)],
+    [(15.0, 3.0), (45.0, 2.0), (50.0, 5.0)],
+    [(5.0, 3.0), (40.0, 5.0), (70.0, 2.0)],
+    [(10.0, 7.0), (30.0, 2.0), (80.0, 1.0)],
+];
+
+/// The golden ratio, whose multiples are phases that do not repeat.
+const GOLDEN: f64 = 1.618_033_988_749_895;
+
+/// A sum of tones of training.
+fn mixture((index, tones): (usize, &[(f64, f64); 3])) -> Result<Record> {
+    let tone = |(place, &(frequency, amplitude)): (usize, &(f64, f64))| Tone {
+        amplitude,
+        frequency,
+        phase: std::f64::consts::TAU * (GOLDEN * (3 * index + place) as f64).fract(),
+    };
+    let tones: Vec<Tone> = tones.iter().enumerate().map(tone).collect();
+    record(&format!("tones {}", index + 1), &tones, 1.0 / 3000.0, 360, 0)
+}
 
 /// Frequencies to train on, in Hz.
 const FREQUENCIES: [f64; 10] = [1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 80.0, 100.0];
@@ -93,10 +137,11 @@ const PERIODS: usize = 3;
 /// Steps of the simulation from row to row.
 const STEPS_PER_ROW: usize = 20;
 
-fn sine(frequency: f64) -> Result<Record> {
+/// So many periods of a sine, the first without output.
+fn sine(frequency: f64, periods: usize) -> Result<Record> {
     let tone = Tone::sine(10.0, frequency);
     let step = 1.0 / (frequency * ROWS_PER_PERIOD as f64);
-    record(&format!("{frequency} Hz"), &[tone], step, PERIODS * ROWS_PER_PERIOD, ROWS_PER_PERIOD)
+    record(&format!("{frequency} Hz"), &[tone], step, periods * ROWS_PER_PERIOD, ROWS_PER_PERIOD)
 }
 
 /// The tones repeat after 0.2 s; twice that at 3 kHz.

@@ -60,6 +60,27 @@ pub fn folds(data: &Dataset, most: usize) -> Vec<Fold> {
     cuts(data, most).iter().map(|cut| cut.fold(data)).collect()
 }
 
+/// Folds of a single record by its cycles, dealt to `count` folds in turn: data to predict that lie between the training
+/// data. A cycle begins where the first input rises through its first value. Several records are divided as by
+/// [`folds`].
+pub fn folds_of_cycles(data: &Dataset, count: usize) -> Vec<Fold> {
+    let [record] = data.records() else { return folds(data, count) };
+    let x = &record.inputs()[0];
+    let mut cycle = 0;
+    let fold_of_row: Vec<usize> = (0..record.len())
+        .map(|row| {
+            cycle += usize::from(row > 0 && x[row - 1] < x[0] && x[row] >= x[0]);
+            cycle % count
+        })
+        .collect();
+    let fold = |fold: usize| Fold {
+        name: format!("cycles {}, {}, ...", fold + 1, fold + 1 + count),
+        train: data.of_record(record.clone().scored_where(|row| fold_of_row[row] != fold)),
+        held_out: data.of_record(record.clone().scored_where(|row| fold_of_row[row] == fold)),
+    };
+    (0..count).map(fold).filter(has_enough).collect()
+}
+
 /// The folds by which candidates are chosen: those of several records; of a single one the forecasts from most of it
 /// and the block from its middle. The others choose no better and cost as much (docs/accuracy.md).
 pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
@@ -117,11 +138,12 @@ fn cuts(data: &Dataset, most: usize) -> Vec<Cut> {
         [alone] => of_record(alone[0], &data.records()[alone[0]]),
         several => of_records(data, several, most),
     };
-    let is_enough = |cut: &Cut| {
-        let fold = cut.fold(data);
-        fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
-    };
-    cuts.into_iter().filter(is_enough).collect()
+    cuts.into_iter().filter(|cut| has_enough(&cut.fold(data))).collect()
+}
+
+/// Enough to fit to and to judge on.
+fn has_enough(fold: &Fold) -> bool {
+    fold.train.check_identifiable(FEWEST_ROWS).is_ok() && fold.held_out.scored() > 0
 }
 
 /// Folds of several measurements.
@@ -305,6 +327,25 @@ mod tests {
         for fold in &folds {
             assert_eq!(fold.train.records().len() + fold.held_out.records().len(), 5);
         }
+    }
+
+    #[test]
+    fn every_cycle_is_held_out_once() {
+        let all = data(vec![record("r", 400, 1.0)]);
+        let folds = folds_of_cycles(&all, 5);
+        assert_eq!(folds.len(), 5);
+        let scored =
+            |set: &Dataset| set.records()[0].output().iter().map(|y| !y.is_nan()).collect::<Vec<_>>();
+        let mut held = vec![0; all.rows()];
+        for fold in &folds {
+            let (trained, held_out) = (scored(&fold.train), scored(&fold.held_out));
+            assert!(trained.iter().zip(&held_out).all(|(trained, held)| trained != held));
+            // 400 rows of 21 each are 19 cycles.
+            let beginnings = held_out.windows(2).filter(|pair| !pair[0] && pair[1]).count();
+            assert!((3..=4).contains(&beginnings), "{}: {beginnings}", fold.name);
+            held.iter_mut().zip(held_out).for_each(|(count, is_held)| *count += usize::from(is_held));
+        }
+        assert!(held.iter().all(|&count| count == 1));
     }
 
     #[test]

@@ -254,6 +254,8 @@ fn every_third_cycle_of_the_joint_is_unseen() {
     assert!((share - 1.0 / 3.0).abs() < 0.02, "{share}");
     let beginnings = unseen.windows(2).filter(|pair| pair[0].is_nan() && !pair[1].is_nan()).count();
     assert_eq!(beginnings, 9);
+    // The test ends with an unseen cycle.
+    assert!(!unseen[unseen.len() - 1].is_nan());
 }
 
 #[test]

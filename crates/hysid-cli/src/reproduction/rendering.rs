@@ -1,8 +1,8 @@
 //! Chapters as documents and as CSV.
 
 use anyhow::Result;
-use hysid_document::{Cell, Page, Part, Piece, Table, Text, capitalised};
-use hysid_paper::{Chapter, targets};
+use hysid_document::{Cell, Item, Page, Part, Piece, Table, Text, capitalised};
+use hysid_paper::{Chapter, Target, targets};
 
 /// Header line of [`csv`].
 pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
@@ -10,19 +10,24 @@ pub const CSV_HEADER: &str = "experiment,table,row,column,value\n";
 /// A page of one chapter. `made` says when and by what.
 pub fn page(made: Text, chapter: &Chapter) -> Page {
     let mut parts = vec![lead(chapter), Part::Note(made)];
-    parts.extend(targets_section(std::slice::from_ref(chapter)));
+    parts.extend(targets_sections(std::slice::from_ref(chapter)));
     parts.push(Part::section("Results", chapter.parts.as_slice()));
     Page { title: capitalised(&chapter.title), parts }
 }
 
-/// A page of all chapters, with a table of targets before them.
+/// A page of all chapters, with a table of contents and tables of targets before them.
 pub fn together(made: Text, chapters: &[Chapter]) -> Page {
-    let mut parts = vec![Part::Note(made)];
-    parts.extend(targets_section(chapters));
-    parts.extend(chapters.iter().map(|chapter| {
+    let mut sections = targets_sections(chapters);
+    sections.extend(chapters.iter().map(|chapter| {
         let content = [&[lead(chapter)], chapter.parts.as_slice()].concat();
         Part::section(format!("{}: {}", chapter.name, chapter.title), content)
     }));
+    let headings = sections.iter().filter_map(|part| match part {
+        Part::Section(heading, _) => Some(heading.clone()),
+        _ => None,
+    });
+    let mut parts = vec![Part::Note(made), Part::Contents(headings.collect())];
+    parts.extend(sections);
     Page { title: "The paper reproduced".into(), parts }
 }
 
@@ -30,8 +35,38 @@ fn lead(chapter: &Chapter) -> Part {
     Part::Lead(chapter.verdict.as_str().into())
 }
 
-fn targets_section(chapters: &[Chapter]) -> Option<Part> {
-    targets(chapters).map(|targets| Part::section("Targets", [Part::Table(targets)]))
+/// The paper's claims, then Hysid's own targets.
+fn targets_sections(chapters: &[Chapter]) -> Vec<Part> {
+    let section = |(heading, of_paper): (&str, bool)| {
+        targets(chapters, of_paper).map(|targets| Part::section(heading, [Part::Table(targets)]))
+    };
+    [("Claims of the paper", true), ("Targets of Hysid", false)].into_iter().filter_map(section).collect()
+}
+
+/// The targets as a terminal shows them, which has no room for their tables.
+pub fn targets_list(chapters: &[Chapter]) -> Vec<Part> {
+    let item = |(chapter, target): (&Chapter, &Target)| {
+        let several =
+            target.several.as_ref().map_or(String::new(), |it| format!("; median of networks {it}"));
+        let text = format!(
+            "{}: {}, {}, {}: {} ({}), one network {}{several}",
+            target.verdict.words(),
+            chapter.name,
+            target.specimen,
+            target.figure,
+            target.wanted,
+            target.source.words(),
+            target.one,
+        );
+        Item { text: text.into(), is_warning: false }
+    };
+    let all = chapters.iter().flat_map(|chapter| chapter.targets.iter().map(move |target| (chapter, target)));
+    let items: Vec<Item> = all.map(item).collect();
+    if items.is_empty() {
+        return Vec::new();
+    }
+    let heading = "Targets: medians of the seeds, lowest to highest in brackets";
+    vec![Part::heading(heading), Part::List(items)]
 }
 
 /// When, by what and how the chapters were made; `conditions` is what follows the command.
@@ -44,7 +79,7 @@ pub fn made(conditions: &str) -> Text {
 /// What a terminal shows of a chapter: headings, tables and targets, then the verdict.
 pub fn summary(chapter: &Chapter) -> Vec<Part> {
     let shown = chapter.parts.iter().filter(|part| matches!(part, Part::Table(_) | Part::Heading(_)));
-    let targets = targets(std::slice::from_ref(chapter)).map(Part::Table);
+    let targets = targets_list(std::slice::from_ref(chapter));
     let heading = Part::heading(chapter.title.as_str());
     std::iter::once(heading).chain(shown.cloned()).chain(targets).chain([lead(chapter)]).collect()
 }
@@ -56,7 +91,8 @@ pub fn csv(chapters: &[Chapter]) -> Result<String> {
         for table in chapter.parts.iter().flat_map(Part::tables) {
             write_table(&mut writer, &chapter.name, table)?;
         }
-        if let Some(mut targets) = targets(std::slice::from_ref(chapter)) {
+        let both = [true, false].map(|of_paper| targets(std::slice::from_ref(chapter), of_paper));
+        for mut targets in both.into_iter().flatten() {
             // Specimen and figure together tell the rows of this table apart.
             targets.columns.remove(0);
             for row in &mut targets.rows {

@@ -5,9 +5,9 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use hysid_document::{Page, Part, Text, markdown, plain};
+use hysid_document::{Page, Text, markdown, plain};
 use hysid_files::{Destination, GENERATOR};
-use hysid_paper::{Chapter, Content, Experiment, Observer, Settings, targets};
+use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
 
 use super::storage::{self, Finished};
 use super::{Outputs, date, rendering};
@@ -129,7 +129,7 @@ fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
     let seconds: f64 = finished.iter().map(|one| one.seconds).sum();
     let quick = if settings.quick { " A quick run, with a fraction of the effort." } else { "" };
     rendering::made(&format!(
-        ", on {dates}, seed {}; {seconds:.0} s in total over all experiments. The measured data of the \
+        ", on {dates}, seed {}; {seconds:.0} s by the clock in total over all experiments, beside whatever else ran. The measured data of the \
          paper are not public: synthetic specimens replace them.{quick}{further}",
         settings.seed
     ))
@@ -162,9 +162,9 @@ fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -
     };
     let made = made(finished, settings, &further);
     write_all(outputs.rendered(TOGETHER), &rendering::together(made, &chapters), &chapters)?;
-    let targets = targets(&chapters).map(|table| plain::rendered(&[Part::Table(table)]) + "\n");
+    let targets = plain::rendered(&rendering::targets_list(&chapters));
     let page = files::shown(outputs.page(TOGETHER).path());
-    results(&(targets.unwrap_or_default() + &format!("page    {page}\n")))
+    results(&format!("{targets}\npage    {page}\n"))
 }
 
 fn write_all([html, text, tables]: [Destination; 3], page: &Page, chapters: &[Chapter]) -> Result<()> {

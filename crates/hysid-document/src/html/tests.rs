@@ -37,6 +37,7 @@ fn all_parts() -> Vec<Part> {
     ];
     let card = Card { anchor: HOSTILE.into(), heading: text(), parts: content.clone() };
     vec![
+        Part::Contents(vec![HOSTILE.into()]),
         Part::section(HOSTILE, content.clone()),
         Part::Cards(vec![card]),
         Part::Folded(HOSTILE.into(), content),
@@ -57,6 +58,26 @@ fn a_section_without_content_is_not_shown() {
     assert_eq!(parts(&[Part::section("Empty", [])]), "");
 }
 
+/// Every line of the contents leads to its section, in HTML and, as GitHub makes targets of headings, in Markdown.
+#[test]
+fn contents_lead_to_their_sections() {
+    let heading = "example1: the paper's Example 1, 10_Hz";
+    let document = Page {
+        title: "Title".into(),
+        parts: vec![
+            Part::Contents(vec![heading.into()]),
+            Part::section(heading, [Part::paragraph("content")]),
+        ],
+    };
+    let target = "example1-the-papers-example-1-10_hz";
+    let html = page(&document, BEGINNING);
+    assert!(html.contains(&format!("<a href=\"#{target}\">")), "{html}");
+    assert!(html.contains(&format!("<section id=\"{target}\">")), "{html}");
+    let text = markdown::page(&document);
+    assert!(text.contains(&format!("- [{heading}](#{target})\n")), "{text}");
+    assert_eq!(plain::rendered(&document.parts[..1]), format!("- {heading}\n"));
+}
+
 #[test]
 fn a_row_that_ends_early_ends_in_words() {
     let mut table = Table::new(["model", "error", "seconds"]);
@@ -71,7 +92,7 @@ fn a_row_that_ends_early_ends_in_words() {
 fn markdown_and_plain_text_have_every_part_but_charts() {
     let page = Page { title: "Title".into(), parts: all_parts() };
     let text = markdown::page(&page);
-    assert!(text.starts_with("# Title\n\n## ") && !text.contains("svg"), "{text}");
+    assert!(text.starts_with("# Title\n\n- [") && text.contains("\n## ") && !text.contains("svg"), "{text}");
     assert!(!text.replace("\\<", "").contains("<script"), "{text}");
     let text = plain::rendered(&page.parts);
     assert!(text.contains("−1.2 %") && !text.contains('\u{1b}') && !text.contains("svg"), "{text}");

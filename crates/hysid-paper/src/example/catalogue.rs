@@ -1,7 +1,9 @@
 //! The paper's examples as data: specimens, rivals, what the paper reports and what is to be reached.
 
 use hysid::network::Family;
-use hysid::options::classical::ClassicalModel;
+
+use crate::chapter::Source;
+use crate::fitting::FoldKind;
 
 /// An example of the paper.
 #[derive(Debug)]
@@ -14,6 +16,8 @@ pub struct Example {
     pub paper: &'static str,
     /// What stands in for these.
     pub cases: &'static [Case],
+    /// Why targets are missed, as far as the cases show it: a paragraph each.
+    pub causes: &'static [&'static str],
 }
 
 /// A specimen and who is fitted to it beside the XPNN.
@@ -23,8 +27,10 @@ pub struct Case {
     pub specimen: &'static str,
     /// Why it is there.
     pub shows: &'static str,
-    /// Fitted to the same data.
-    pub opponent: Opponent,
+    /// Where its unseen data lie.
+    pub folds: FoldKind,
+    /// Fitted to the same data; ratios are to the first of them.
+    pub opponents: &'static [Opponent],
     /// What is to be reached.
     pub wanted: &'static [Wanted],
 }
@@ -32,14 +38,16 @@ pub struct Case {
 /// Who is compared with the XPNN.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Opponent {
-    /// Nobody.
-    Nobody,
     /// Another network with as many stops.
     Network(Family),
-    /// A classical model.
-    Law(ClassicalModel),
+    /// The paper's rival of examples 3 and 4.
+    GeneralizedPrandtlIshlinskii,
+    /// The law of Bouc and Wen with the degradation and pinching of Baber and Noori.
+    DegradingBoucWen,
     /// The XPNN without the rate.
     WithoutRate,
+    /// The XPNN fitted to the unseen rows too: what it can represent.
+    WithUnseen,
 }
 
 /// A figure and its limit.
@@ -49,6 +57,8 @@ pub struct Wanted {
     pub figure: Figure,
     /// At most this for an error, at least this for a ratio.
     pub limit: f64,
+    /// Whose target it is.
+    pub source: Source,
 }
 
 /// A figure of a case.
@@ -58,10 +68,14 @@ pub enum Figure {
     Training,
     /// NRMSE of the unseen data in % of std.
     Unseen,
-    /// The same of those records alone.
+    /// MSE of the unseen data in the square of the output's unit.
+    UnseenMse,
+    /// NRMSE of these unseen records alone in % of std.
     UnseenRecords(&'static [&'static str]),
     /// Largest error on unseen data in % of the largest output.
     LargestUnseen,
+    /// The same on the unseen rows before the last training row of the same record.
+    LargestUnseenBetween,
     /// How many times the rival's MSE is above that of the XPNN, on the training data.
     TimesBelowTraining,
     /// The same on the unseen data.
@@ -74,92 +88,127 @@ impl Figure {
         matches!(self, Self::TimesBelowTraining | Self::TimesBelowUnseen)
     }
 
-    /// In words.
-    pub fn words(self) -> String {
+    /// In words; a ratio is one to this rival.
+    pub fn words(self, rival: Option<&str>) -> String {
+        let rival = rival.unwrap_or("other model");
         match self {
             Self::Training => "training, % of std".into(),
             Self::Unseen => "unseen, % of std".into(),
+            Self::UnseenMse => "unseen, MSE".into(),
             Self::UnseenRecords(names) => format!("unseen {}, % of std", names.join(" and ")),
             Self::LargestUnseen => "largest unseen error, % of largest".into(),
-            Self::TimesBelowTraining => "MSE ratio, other model / XPNN, training".into(),
-            Self::TimesBelowUnseen => "MSE ratio, other model / XPNN, unseen".into(),
+            Self::LargestUnseenBetween => "largest unseen error between training rows, % of largest".into(),
+            Self::TimesBelowTraining => format!("MSE ratio, {rival} / XPNN, training"),
+            Self::TimesBelowUnseen => format!("MSE ratio, {rival} / XPNN, unseen"),
         }
     }
 }
 
-const fn wanted(figure: Figure, limit: f64) -> Wanted {
-    Wanted { figure, limit }
+impl Wanted {
+    /// The limit in words.
+    pub fn words(&self) -> String {
+        format!("{} {}", if self.figure.is_ratio() { "at least" } else { "at most" }, self.limit)
+    }
+
+    /// Is this within the limit?
+    pub fn is_met_by(&self, value: f64) -> bool {
+        if self.figure.is_ratio() { value >= self.limit } else { value <= self.limit }
+    }
+}
+
+const fn paper(figure: Figure, limit: f64) -> Wanted {
+    Wanted { figure, limit, source: Source::Paper }
+}
+
+const fn words(figure: Figure, limit: f64) -> Wanted {
+    Wanted { figure, limit, source: Source::Words }
+}
+
+const fn ours(figure: Figure, limit: f64) -> Wanted {
+    Wanted { figure, limit, source: Source::Ours }
 }
 
 const GPNN: Opponent = Opponent::Network(Family::Gpnn);
-const GPIM: Opponent = Opponent::Law(ClassicalModel::GeneralizedPrandtlIshlinskii);
+const GPIM: Opponent = Opponent::GeneralizedPrandtlIshlinskii;
 
-/// At most 0.5 % in training and 2 % on unseen data.
-const CLOSE: &[Wanted] = &[wanted(Figure::Training, 0.5), wanted(Figure::Unseen, 2.0)];
+/// Agreement, which the paper claims in words: at most 0.5 % in training and 2 % on unseen data.
+const CLOSE: &[Wanted] = &[words(Figure::Training, 0.5), words(Figure::Unseen, 2.0)];
 
-/// At most the paper's 3.2 % of the largest load, and 10 times below the rival.
-const JOINT: &[Wanted] = &[
-    wanted(Figure::LargestUnseen, 3.2),
-    wanted(Figure::TimesBelowTraining, 10.0),
-    wanted(Figure::TimesBelowUnseen, 10.0),
-];
-
-/// 40 times below the rival: the paper's 0.654 to 0.016.
-const FORTY: &[Wanted] = &[wanted(Figure::TimesBelowTraining, 40.0), wanted(Figure::TimesBelowUnseen, 40.0)];
+/// A model of fewer errors than a specimen's own law: the paper claims that the XPNN beats the GPIM.
+const BETTER_THAN_ITS_LAW: &[Wanted] =
+    &[words(Figure::TimesBelowTraining, 1.0), words(Figure::TimesBelowUnseen, 1.0)];
 
 /// The seven examples.
 pub static EXAMPLES: [Example; 7] = [
     Example {
         name: "example1",
         title: "ferromagnetic material",
-        paper: "excellent agreement with measured data (its abstract); no number for this example is known \
-                to us.",
+        paper: "excellent agreement with measured data (its abstract); no number for this example is known to us.",
         cases: &[Case {
             specimen: "ferromagnet",
             shows: "minor loops within minor loops",
-            opponent: Opponent::Nobody,
+            folds: FoldKind::After,
+            opponents: &[],
             wanted: CLOSE,
         }],
+        causes: &[],
     },
     Example {
         name: "example2",
         title: "beam-column joint of reinforced concrete",
-        paper: "prediction errors up to 3.2 % of the load (printed without the sign); training MSE from 41 to 0.004 by the genetic algorithm and 0.0001 by the gradient; GPNN 99.47 and 140.13. These MSE cannot all be in one unit: with the output weights by least squares none can begin above the output's variance.",
+        paper: "prediction errors up to 3.2 % of the load (printed without the sign); training MSE from 41 to 0.004 by the genetic algorithm and 0.0001 by the gradient; GPNN 99.47 and 140.13. These MSE cannot all be in one unit: with the output weights by least squares none can begin above the output's variance. Which data were unseen is not known to us.",
         cases: &[
             Case {
                 specimen: "reinforced-concrete-joint-cycles",
-                shows: "unseen cycles between training cycles: their damage is within the trained range, \
-                        the cycles themselves are new",
-                opponent: GPNN,
-                wanted: JOINT,
+                shows: "unseen cycles between training cycles, except the last one, which comes after all training \
+                        rows and has more damage than any of them",
+                folds: FoldKind::Between,
+                opponents: &[GPNN, Opponent::DegradingBoucWen, Opponent::WithUnseen],
+                wanted: &[
+                    paper(Figure::LargestUnseen, 3.2),
+                    words(Figure::TimesBelowTraining, 1.0),
+                    words(Figure::TimesBelowUnseen, 1.0),
+                    ours(Figure::LargestUnseenBetween, 3.2),
+                    ours(Figure::TimesBelowTraining, 10.0),
+                    ours(Figure::TimesBelowUnseen, 10.0),
+                ],
             },
             Case {
                 specimen: "reinforced-concrete-joint",
                 shows: "the last 30 % of the time unseen: drift and damage exceed those in training, so \
                         this is an extrapolation",
-                opponent: GPNN,
-                wanted: JOINT,
+                folds: FoldKind::After,
+                opponents: &[GPNN, Opponent::DegradingBoucWen],
+                wanted: &[
+                    ours(Figure::LargestUnseen, 3.2),
+                    ours(Figure::TimesBelowTraining, 10.0),
+                    ours(Figure::TimesBelowUnseen, 10.0),
+                ],
             },
         ],
+        causes: &[THIRD_CYCLES, FORECAST],
     },
     Example {
         name: "example3",
         title: "Terfenol-D actuator at low speed",
-        paper: "MSE 0.016 against 0.654 of the GPIM.",
+        paper: "MSE 0.016 against 0.654 of the GPIM, a ratio of 41; that this holds on unseen data it does not say.",
         cases: &[
             Case {
                 specimen: "terfenol-rod",
                 shows: "asymmetric loops of a specimen that is not a GPIM",
-                opponent: GPIM,
-                wanted: FORTY,
+                folds: FoldKind::After,
+                opponents: &[GPIM],
+                wanted: &[paper(Figure::TimesBelowTraining, 40.0), ours(Figure::TimesBelowUnseen, 40.0)],
             },
             Case {
                 specimen: "terfenol-actuator",
                 shows: "a specimen that is a GPIM, which favours the GPIM",
-                opponent: GPIM,
-                wanted: &[],
+                folds: FoldKind::After,
+                opponents: &[GPIM],
+                wanted: BETTER_THAN_ITS_LAW,
             },
         ],
+        causes: &[OWN_LAW],
     },
     Example {
         name: "example4",
@@ -170,16 +219,24 @@ pub static EXAMPLES: [Example; 7] = [
             Case {
                 specimen: "two-wire-actuator",
                 shows: "asymmetric loops of a specimen that is not a GPIM",
-                opponent: GPIM,
-                wanted: FORTY,
+                folds: FoldKind::After,
+                opponents: &[GPIM],
+                wanted: &[
+                    words(Figure::TimesBelowTraining, 1.0),
+                    words(Figure::TimesBelowUnseen, 1.0),
+                    ours(Figure::TimesBelowTraining, 40.0),
+                    ours(Figure::TimesBelowUnseen, 40.0),
+                ],
             },
             Case {
                 specimen: "shape-memory-actuator",
                 shows: "a specimen that is a GPIM, which favours the GPIM",
-                opponent: GPIM,
-                wanted: &[],
+                folds: FoldKind::After,
+                opponents: &[GPIM],
+                wanted: BETTER_THAN_ITS_LAW,
             },
         ],
+        causes: &[OWN_LAW],
     },
     Example {
         name: "example5",
@@ -188,33 +245,52 @@ pub static EXAMPLES: [Example; 7] = [
         cases: &[Case {
             specimen: "concrete",
             shows: "softening and permanent strain",
-            opponent: Opponent::Nobody,
-            wanted: CLOSE,
+            folds: FoldKind::After,
+            opponents: &[],
+            wanted: &[paper(Figure::UnseenMse, 2.79), ours(Figure::Training, 0.5), ours(Figure::Unseen, 2.0)],
         }],
+        causes: &[PENALTY],
     },
     Example {
         name: "example6",
         title: "rate-dependent actuators",
-        paper: "on the synthetic set MSE 7e-5 in training and 0.002 on unseen data, 778 without the rate; \
-                for the piezo set, in which 50 and 200 Hz were not trained on, no number is known to us.",
+        paper: "on the synthetic set MSE 7e-5 in training and 0.002 on unseen data of other frequencies, 778 without \
+                the rate; for the piezo set, in which 50 and 200 Hz were not trained on, no number is known to us. At \
+                an output variance above 778 these are at most 0.03 % and 0.16 % of std.",
         cases: &[
             Case {
                 specimen: "rate-dependent-actuator",
-                shows: "the synthetic set, of a rate-dependent Prandtl-Ishlinskii law. The paper's 7e-5 and 0.002 at an output variance above 778 are about 0.03 % and 0.16 % of std",
-                opponent: Opponent::WithoutRate,
+                shows: "the synthetic set, of a rate-dependent Prandtl-Ishlinskii law, trained on pure sines",
+                folds: FoldKind::After,
+                opponents: &[Opponent::WithoutRate],
                 wanted: &[
-                    wanted(Figure::Training, 0.05),
-                    wanted(Figure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
-                    wanted(Figure::TimesBelowTraining, 50.0),
+                    paper(Figure::Training, 0.03),
+                    paper(Figure::UnseenRecords(&["three tones"]), 0.16),
+                    words(Figure::TimesBelowTraining, 50.0),
+                    ours(Figure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
+                ],
+            },
+            Case {
+                specimen: "rate-dependent-actuator-tones",
+                shows: "the same, trained on sums of tones too",
+                folds: FoldKind::After,
+                opponents: &[Opponent::WithoutRate],
+                wanted: &[
+                    paper(Figure::Training, 0.03),
+                    paper(Figure::UnseenRecords(&["three tones"]), 0.16),
+                    words(Figure::TimesBelowTraining, 50.0),
+                    ours(Figure::UnseenRecords(&["25 Hz", "75 Hz"]), 0.5),
                 ],
             },
             Case {
                 specimen: "piezo-actuator",
                 shows: "the piezo set: 50 and 200 Hz unseen",
-                opponent: Opponent::WithoutRate,
-                wanted: &[],
+                folds: FoldKind::After,
+                opponents: &[Opponent::WithoutRate],
+                wanted: CLOSE,
             },
         ],
+        causes: &[ELLIPSES],
     },
     Example {
         name: "example7",
@@ -224,8 +300,25 @@ pub static EXAMPLES: [Example; 7] = [
         cases: &[Case {
             specimen: "magnetostrictive-actuator",
             shows: "hysteresis between a lag and a resonance; 50 and 200 Hz unseen",
-            opponent: Opponent::Nobody,
+            folds: FoldKind::After,
+            opponents: &[],
             wanted: CLOSE,
         }],
+        causes: &[],
     },
 ];
+
+/// Why unseen cycles of the joint have larger errors than trained ones.
+const THIRD_CYCLES: &str = "Why the largest error on the unseen third cycles is above the paper's 3.2 %: the XPNN can represent all cycles, as the row fitted to the unseen rows too shows, and with the law of the specimen, which has a course of damage built in, the rows of the first two cycles are enough. For an XPNN they are not. A likely reason: the first cycle differs from the second by its first visit to a new drift and by damage together, and two cycles do not tell these apart. Separate runs, as medians of three seeds of the median of eight networks: 5.8 % with 20 stops instead of 4.4 %; 3.9 % with four cycles at each drift, of which three are trained. The median of the 24 best of 72 starts has 4.4 % as well. More starts and more stops do not help; more cycles help a little.";
+
+/// What a forecast beyond trained damage can be.
+const FORECAST: &str = "What a forecast beyond the trained damage can be: the last 30 % of the test reach a drift and a damage that no training row has. A network has learnt how the force falls with the slip of its stops up to the end of training, and nothing says how it falls beyond: its forecast is an extrapolation of that course, and networks that fit the training data equally well differ from each other there, as the ranges of the seeds show. The law of the specimen, Bouc-Wen with the degradation and pinching of Baber and Noori, is fitted to the same rows: it has the right course of damage built in, so that a few parameters, found from the beginning, are enough for all that follows. A forecast of a degrading specimen is as good as the law of damage that is assumed, not as good as the fit.";
+
+/// Why an XPNN does not beat a GPIM on a GPIM.
+const OWN_LAW: &str = "On a specimen that is itself a GPIM the GPIM is the law with unknown values, and its error is only that of their search. The XPNN approximates that law by a sum of tanh functions of stops, on the paths that it was trained on. That the XPNN beats the GPIM is therefore a property of the specimen: it holds for those outside the GPIM's class.";
+
+/// Why other frequency content needs other training data.
+const ELLIPSES: &str = "Why sines do not tell of other frequency content: on a sine of one amplitude x and x' lie on an ellipse, one for each frequency, so that every input x comes with one magnitude of the rate alone. Between and inside these ellipses nothing is trained. The sum of three tones passes through the inside all the time. Eight short records of other sums of tones beside a period of each sine bring the error down by an order of magnitude; the case rate-dependent-actuator-tones shows it. The paper's 0.16 % is not reached. Nor is its training error on sines: the table of what was tried has the training errors of weaker penalties and more iterations, and in a separate run the best of six networks of one seed with 20 stops and 40 tanh neurons ended at 0.039 %, that of the size used here at 0.046 %.";
+
+/// Why the training error of concrete is above the target.
+const PENALTY: &str = "Why the training error is above 0.5 %: the table of what was tried shows that weaker penalties bring it below, and that they raise the error on the folds. The strongest penalty is chosen by the folds.";

@@ -5,7 +5,8 @@ use hysid::significant::Significant;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number};
 
 use super::{EPOCHS, Moment, Protocol, Repetition, TRAINERS, Training};
-use crate::chapter::{Chapter, Content, FurtherFile, stands_in};
+use crate::chapter::{Chapter, Content, FurtherFile, Source, Target, Verdict, stands_in};
+use crate::spread::Spread;
 
 /// Heading of every table: what the figures are of.
 fn heading(protocol: &Protocol) -> String {
@@ -48,6 +49,7 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
         Part::Table(table(protocol, repetitions, "lowest to highest of the seeds", |(low, _, high)| {
             format!("{} to {}", number(low, 3), number(high, 3)).into()
         })),
+        Part::paragraph(why(protocol, repetitions)),
         Part::paragraph(matched(repetitions)),
         Part::note(WORDS),
     ];
@@ -68,7 +70,7 @@ pub fn chapter(protocol: &Protocol, repetitions: &[Repetition]) -> Chapter {
         title: "trainers compared".into(),
         verdict: claim(repetitions),
         parts,
-        targets: Vec::new(),
+        targets: targets(protocol, repetitions),
         files: files.map(|(name, content)| (name.to_string(), content)).into(),
     }
 }
@@ -121,12 +123,66 @@ fn table(
 
 /// Lowest, median and highest.
 fn range(values: &[f64]) -> (f64, f64, f64) {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    let median =
-        if sorted.len() % 2 == 1 { sorted[middle] } else { 0.5 * (sorted[middle - 1] + sorted[middle]) };
-    (sorted[0], median, sorted[sorted.len() - 1])
+    let Spread { low, median, high } = Spread::of(values.iter().copied()).unwrap_or(Spread {
+        low: f64::NAN,
+        median: f64::NAN,
+        high: f64::NAN,
+    });
+    (low, median, high)
+}
+
+/// The paper's claims on its hybrid.
+pub(super) fn targets(protocol: &Protocol, repetitions: &[Repetition]) -> Vec<Target> {
+    let target = |figure: &str, limit: f64, source: Source, ratio: &dyn Fn(&Repetition) -> Option<f64>| {
+        let ratios: Option<Vec<f64>> = repetitions.iter().map(ratio).collect();
+        let spread = ratios.and_then(Spread::of);
+        let is_met = spread.is_some_and(|spread| spread.median >= limit);
+        Target {
+            specimen: protocol.specimen.name.into(),
+            figure: figure.into(),
+            source,
+            wanted: format!("at least {limit}"),
+            one: spread.map_or_else(|| "–".into(), Spread::shown),
+            several: None,
+            verdict: if is_met { Verdict::Met } else { Verdict::Missed },
+        }
+    };
+    let times = |other: Trainer| {
+        move |repetition: &Repetition| {
+            Some(repetition.of(other)?.train.mse / repetition.of(Trainer::Hybrid)?.train.mse)
+        }
+    };
+    vec![
+        target("MSE ratio, genetic algorithm / hybrid", 1.0, Source::Words, &times(Trainer::Genetic)),
+        target("MSE ratio, sub-gradient method / hybrid", 1.0, Source::Words, &times(Trainer::Subgradient)),
+        target("MSE ratio, end of the hybrid's first phase / end", 40.0, Source::Paper, &|repetition| {
+            let hybrid = repetition.of(Trainer::Hybrid)?;
+            let first = hybrid.percent_at(protocol.epochs / 2)?;
+            Some((first / hybrid.train.nrmse_std_percent?).powi(2))
+        }),
+    ]
+}
+
+/// The cause, by experiment: what the same number of sub-gradient epochs comes to without the genetic algorithm before.
+fn why(protocol: &Protocol, repetitions: &[Repetition]) -> String {
+    let of_seed = |repetition: &Repetition| -> Option<(f64, f64)> {
+        let (hybrid, alone) = (repetition.of(Trainer::Hybrid)?, repetition.of(Trainer::Subgradient)?);
+        Some((alone.percent_at(protocol.epochs / 2)?, hybrid.train.nrmse_std_percent?))
+    };
+    let pairs: Vec<(f64, f64)> = repetitions.iter().filter_map(of_seed).collect();
+    let (alone, hybrid) = (pairs.iter().map(|pair| pair.0), pairs.iter().map(|pair| pair.1));
+    let (Some(alone), Some(hybrid)) = (Spread::of(alone), Spread::of(hybrid)) else { return String::new() };
+    let wins = pairs.iter().filter(|(alone, hybrid)| hybrid < alone).count();
+    let seeds = count(pairs.len(), "seed");
+    let (alone, hybrid) = (alone.shown(), hybrid.shown());
+    if 2 * wins > pairs.len() {
+        return format!(
+            "What the genetic algorithm is good for: after half of its epochs, as many as the hybrid has of them, the sub-gradient method alone is at {alone} % of std from its random network; the hybrid ends at {hybrid} %. With equally many sub-gradient epochs the hybrid is the lower in {wins} of {seeds}."
+        );
+    }
+    format!(
+        "Why the hybrid does not do better than the sub-gradient method: it spends half of its epochs on the genetic algorithm, whose best individual is far from the end. After half of its epochs, as many as the hybrid has of them, the sub-gradient method alone is at {alone} % of std from its random network; the hybrid ends at {hybrid} %. With equally many sub-gradient epochs the hybrid is the lower in {wins} of {seeds}."
+    )
 }
 
 fn median_mse(repetitions: &[Repetition], trainer: Trainer) -> f64 {

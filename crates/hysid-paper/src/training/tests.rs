@@ -65,6 +65,17 @@ fn the_sentence_says_what_the_figures_say() {
     assert!(claim(&[[1.0, 1.0, 2.0, 1.0]]).contains("does not hold here"));
 }
 
+/// Ratios of the MSE: squares of those of the percents.
+#[test]
+fn targets_are_those_of_the_paper_on_its_hybrid() {
+    let protocol = Protocol::new(1, true);
+    let found = page::targets(&protocol, &[repetition_of([4.0, 0.5, 1.0, 1.0], None)]);
+    let found: Vec<(&str, crate::chapter::Verdict)> =
+        found.iter().map(|target| (target.one.as_str(), target.verdict)).collect();
+    use crate::chapter::Verdict::{Met, Missed};
+    assert_eq!(found, [("16", Met), ("0.25", Missed), ("1", Missed)]);
+}
+
 #[test]
 fn levenberg_marquardt_is_timed_against_the_hybrid() {
     let percents = [4.0, 2.0, 1.0, 1.0];
