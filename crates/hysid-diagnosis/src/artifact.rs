@@ -6,7 +6,7 @@ use hysid_core::data::unit;
 use hysid_core::significant::Significant;
 
 use super::branch::BranchSet;
-use super::{DiagnosisOptions, Finding, Property, Verdict};
+use super::{DiagnosisOptions, Finding, Property, Verdict, cycles};
 
 /// Properties whose verdict an artifact can turn into "no".
 const AFFECTED: [Property; 5] = [
@@ -155,7 +155,7 @@ pub(crate) fn withhold(
     let mut explanations: Vec<Explanation> = Vec::new();
     let tested = |artifact: Artifact, open: &[Finding]| -> Option<Vec<(Finding, Finding)>> {
         let data = artifact.removed_from(survey.data, survey.height())?;
-        let corrected = BranchSet::new(&data, options);
+        let corrected = cycles::survey(&data, options);
         Some(open.iter().map(|finding| (finding.clone(), test(&corrected, finding.property))).collect())
     };
     for list in Artifact::candidates(survey) {

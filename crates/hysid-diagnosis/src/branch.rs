@@ -4,7 +4,6 @@ mod opening;
 
 use std::ops::Range;
 
-use super::cycles::slow_noise;
 use super::noise::{self, Noise, resolution};
 use super::significance;
 use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
@@ -206,7 +205,7 @@ pub(crate) struct BranchSet<'a> {
     pub branches: Vec<Branch>,
     /// How far each stands open to the next of its record, in their order.
     pub openings: Vec<Opening>,
-    /// Deviation by which the output moves from cycle to cycle.
+    /// Deviation by which the output moves from cycle to cycle; 0 unless [`survey`](crate::cycles::survey) measured it.
     pub slow_noise: f64,
     /// True if the rows include the turning points themselves, as where a path was simulated.
     pub turns_on_rows: bool,
@@ -245,7 +244,7 @@ impl<'a> BranchSet<'a> {
         }
         let output = data.output_range();
         let openings = openings(&branches, &output_noise);
-        let mut set = Self {
+        Self {
             data,
             input,
             output,
@@ -257,9 +256,7 @@ impl<'a> BranchSet<'a> {
             openings,
             slow_noise: 0.0,
             turns_on_rows: false,
-        };
-        set.slow_noise = slow_noise(&set);
-        set
+        }
     }
 
     /// Range of the output.

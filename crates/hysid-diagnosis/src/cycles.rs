@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 use serde::Serialize;
 
-use super::Piece;
 use super::branch::{Branch, BranchSet};
 use super::significance::{self, MEDIAN_OF_NORMAL};
+use super::{DiagnosisOptions, Piece};
+use hysid_core::data::record::Dataset;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
 const CLOSED: f64 = 0.02;
@@ -169,10 +170,16 @@ const FEWEST_TIPS: usize = 6;
 /// The scatter of few tips may be so many times as large.
 const UNSURE: f64 = 1.5;
 
+/// Looks through the data, with the noise that only repeated cycles show.
+pub(crate) fn survey<'d>(data: &'d Dataset, options: &DiagnosisOptions) -> BranchSet<'d> {
+    let survey = BranchSet::new(data, options);
+    BranchSet { slow_noise: slow_noise(&survey), ..survey }
+}
+
 /// Deviation by which the output at the tips of repeated cycles moves from one to the next, beyond a steady course (by
 /// second differences) and the noise of the tips themselves: noise and drift slower than a branch. 0 where cycles are not
 /// repeated often enough.
-pub(crate) fn slow_noise(survey: &BranchSet) -> f64 {
+fn slow_noise(survey: &BranchSet) -> f64 {
     let cycles = cycles(survey);
     let (mut scatter, mut variances) = (Vec::new(), Vec::new());
     for group in repeated(survey, &cycles) {

@@ -41,7 +41,6 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-use branch::BranchSet;
 pub use cycles::Cycle;
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
@@ -215,10 +214,10 @@ impl Diagnosis {
     /// Data that nothing can be said about: a constant input or output, hardly any rows.
     pub fn of(data: &Dataset, options: &DiagnosisOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let measured = BranchSet::new(data, options);
+        let measured = cycles::survey(data, options);
         // What a clipped channel or a spike shows is not the output of the specimen.
         let sound = doctor::without_defects(&measured);
-        let survey = sound.as_ref().map(|data| BranchSet::new(data, options));
+        let survey = sound.as_ref().map(|data| cycles::survey(data, options));
         let survey = survey.as_ref().unwrap_or(&measured);
         let cycles = cycles::cycles(survey);
         let (rate, delay) = rate_dependence::test(survey);

@@ -117,16 +117,16 @@ fn fastest(survey: &BranchSet) -> f64 {
 
 /// The part of each row of each record; none for rows whose memory is not known.
 fn parts(survey: &BranchSet) -> Vec<Vec<Option<usize>>> {
-    let records = survey.data.records();
-    let mut parts: Vec<Vec<Option<usize>>> = records.iter().map(|record| vec![None; record.len()]).collect();
     let all = survey.branches.len();
-    for record in 0..records.len() {
-        let first = survey.branches.partition_point(|branch| branch.record < record);
-        for (number, branch) in survey.of_record(record).iter().enumerate().skip(FIRST) {
-            parts[record][branch.rows.clone()].fill(Some((first + number) * PARTS / all));
+    let of_record = |(number, record): (usize, &Record)| {
+        let mut parts = vec![None; record.len()];
+        let first = survey.branches.partition_point(|branch| branch.record < number);
+        for (place, branch) in survey.of_record(number).iter().enumerate().skip(FIRST) {
+            parts[branch.rows.clone()].fill(Some((first + place) * PARTS / all));
         }
-    }
-    parts
+        parts
+    };
+    survey.data.records().iter().enumerate().map(of_record).collect()
 }
 
 /// Sums of the products of all columns and the output.
