@@ -136,7 +136,9 @@ fn specimens_are_not_complained_of_without_reason() {
         // Loops that wear out stay open.
         let true_of_it: &[DataIssueKind] = match specimen.name {
             "reinforced-concrete-joint" | "reinforced-concrete-joint-cycles" => &[UnclosedLoops],
-            "rate-dependent-actuator" | "rate-dependent-actuator-tones" => &[LagChangesWithSpeed],
+            "rate-dependent-actuator" => &[LagChangesWithSpeed],
+            // Records of 0.12 s begin virgin, and later loops do not return there.
+            "rate-dependent-actuator-tones" => &[LagChangesWithSpeed, NotVirgin],
             "piezo-actuator" => &[LagChangesWithSpeed],
             "magnetostrictive-actuator" => &[Lag],
             // Under its bias its virgin curve begins below all later loops.
