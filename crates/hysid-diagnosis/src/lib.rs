@@ -223,6 +223,9 @@ impl Diagnosis {
         let (rate, delay) = rate_dependence::test(survey);
         // Branches of different speed say nothing about memory where the speed matters, or may matter.
         let equal_speed = data.has_time() && rate.verdict != Verdict::No;
+        let wear = deterioration::test(survey, &cycles);
+        // Memory that fades keeps loops open at first, but loses no energy.
+        let may_fade = equal_speed && wear.verdict != Verdict::Yes;
         let at_rest =
             static_hysteresis::test_of_measured(survey, rate.verdict, || doctor::longest_lag(survey));
         let has_loops = at_rest.verdict != Verdict::No;
@@ -235,8 +238,8 @@ impl Diagnosis {
             masing::test(survey, equal_speed),
             odd_symmetry::test(survey, equal_speed),
             saturation::test(survey),
-            deterioration::test(survey, &cycles),
-            loop_closure::test(survey, &cycles, equal_speed),
+            wear,
+            loop_closure::test(survey, &cycles, may_fade),
         ];
         if doctor::is_clipped(&measured) {
             artifact::withhold_partial(&mut properties);
@@ -247,7 +250,7 @@ impl Diagnosis {
                 Property::Congruency => congruency::test(corrected, equal_speed, has_loops),
                 Property::Masing => masing::test(corrected, equal_speed),
                 Property::OddSymmetry => odd_symmetry::test(corrected, equal_speed),
-                _ => loop_closure::test(corrected, &cycles::cycles(corrected), equal_speed),
+                _ => loop_closure::test(corrected, &cycles::cycles(corrected), may_fade),
             });
         let turning_rows = survey.turning_rows();
         Ok(Self {

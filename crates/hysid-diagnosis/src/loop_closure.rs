@@ -19,8 +19,8 @@ const MOST: usize = 400;
 
 const EXPERIMENT: &str = "repeat a loop three times or more";
 
-/// Tests for closed loops.
-pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: bool) -> Finding {
+/// Tests for closed loops; `may_fade` where the memory may fade with time.
+pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], may_fade: bool) -> Finding {
     let groups = repeated(survey, cycles);
     let judged = |cycles_after: &dyn Fn(&[&'c Cycle]) -> Vec<&'c Cycle>| {
         let later: Vec<&Cycle> = groups.iter().flat_map(|group| cycles_after(group)).collect();
@@ -35,7 +35,7 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], equal_speed: boo
     };
     // Where the speed matters and memory may fade, so may every period that follows another loop, and the one after.
     for before in [1, 2] {
-        if equal_speed && judgement.verdict == Verdict::No {
+        if may_fade && judgement.verdict == Verdict::No {
             let settled = judged(&|group| settled(survey, group, before));
             judgement.verdict = settled.map_or(Verdict::NotTestable, |(settled, _)| settled.verdict);
         }
