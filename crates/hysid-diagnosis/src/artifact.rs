@@ -6,6 +6,7 @@ use hysid_core::data::unit;
 use hysid_core::significant::Significant;
 
 use super::branch::BranchSet;
+use super::interpolation::at_row;
 use super::{DiagnosisOptions, Finding, Property, Verdict, cycles};
 
 /// Properties whose verdict an artifact can turn into "no".
@@ -113,15 +114,8 @@ impl Artifact {
 /// The record with its outputs as many rows earlier: the inputs are taken later, because they are the smoother ones.
 fn later_inputs(record: &Record, rows: f64) -> Option<Record> {
     let count = record.len();
-    let shifted = |column: &[f64]| -> Vec<f64> {
-        let at = |row: usize| {
-            let place = (row as f64 - rows).clamp(0.0, (count - 1) as f64);
-            let below = (place as usize).min(count.saturating_sub(2));
-            let share = place - below as f64;
-            column[below] + share * (column.get(below + 1).unwrap_or(&column[below]) - column[below])
-        };
-        (0..count).map(at).collect()
-    };
+    let shifted =
+        |column: &[f64]| -> Vec<f64> { (0..count).map(|row| at_row(column, row as f64 - rows)).collect() };
     // Rows whose input would lie before the beginning or after the end say nothing.
     let lost = rows.abs().ceil() as usize;
     let kept = |row: usize| if rows > 0.0 { row >= lost } else { row + lost < count };
@@ -142,6 +136,10 @@ pub(crate) fn withhold(
     findings: &mut [Finding],
     test: impl Fn(&BranchSet, Property) -> Finding,
 ) -> Vec<Explanation> {
+    let wears = findings.iter().any(|f| f.property == Property::Deterioration && f.verdict == Verdict::Yes);
+    // Loops that lose energy do not close, with or without an artifact.
+    let may_be_artifact =
+        |property: Property| AFFECTED.contains(&property) && !(property == Property::LoopClosure && wears);
     // A difference without noise that is not testable may be so because of an artifact, too.
     let is_open = |finding: &&Finding| {
         let differs = match finding.verdict {
@@ -149,7 +147,7 @@ pub(crate) fn withhold(
             Verdict::No => true,
             Verdict::NotTestable => is_clear(finding),
         };
-        differs && AFFECTED.contains(&finding.property)
+        differs && may_be_artifact(finding.property)
     };
     let mut open: Vec<Finding> = findings.iter().filter(is_open).cloned().collect();
     let mut explanations: Vec<Explanation> = Vec::new();

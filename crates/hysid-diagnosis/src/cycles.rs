@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::branch::{Branch, BranchSet};
 use super::significance::{self, MEDIAN_OF_NORMAL};
+use super::static_hysteresis::FULL;
 use super::{DiagnosisOptions, Piece};
 use hysid_core::data::record::Dataset;
 
@@ -55,6 +56,11 @@ impl Cycle {
     /// Swing of the input.
     pub fn swing(&self) -> f64 {
         self.input.1 - self.input.0
+    }
+
+    /// True if it is no line: its area is a relevant share of its bounding box.
+    pub(crate) fn is_open(&self) -> bool {
+        self.area > FULL * self.swing() * self.height()
     }
 
     /// The rows of the cycle.

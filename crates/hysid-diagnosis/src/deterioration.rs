@@ -5,7 +5,6 @@
 use super::branch::BranchSet;
 use super::cycles::repeated;
 use super::significance;
-use super::static_hysteresis::FULL;
 use super::{Cycle, Evidence, Finding, Picture, PictureCurve, Property, Verdict};
 use hysid_core::significant::Significant;
 
@@ -112,21 +111,8 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
     // Loops that cross themselves lose no energy on the whole, but have an area.
     let crosses = first.energy.abs() < 0.3 * first.area;
     let energy = |cycle: &Cycle| if crosses { cycle.area } else { cycle.energy.abs() };
-    let mut slopes = Vec::with_capacity(n * (n - 1) / 2);
-    let mut falls = 0.0;
-    for i in 0..n {
-        for j in i + 1..n {
-            let change = energy(cycles[j]) - energy(cycles[i]);
-            slopes.push(change / (j - i) as f64);
-            falls -= if change.abs() > 0.0 { change.signum() } else { 0.0 };
-        }
-    }
     // A line that noise or drift opens has nothing to lose.
-    let box_area = first.swing() * first.height();
-    if first.area < FULL * box_area {
-        (slopes, falls) = (vec![0.0], 0.0);
-    }
-    let slope = significance::median(&mut slopes);
+    let (slope, falls) = if first.is_open() { slope_and_falls(&cycles, energy) } else { (0.0, 0.0) };
     let scale = energy(first);
     let deviation = first.energy_deviation.hypot(cycles[n - 1].energy_deviation) / scale;
     let size = n as f64;
@@ -138,6 +124,21 @@ fn trend<'c>(survey: &BranchSet, group: &[&'c Cycle], largest: f64) -> Option<Tr
         cycles,
         repetitions,
     })
+}
+
+/// Median slope of the energies over the number of the cycle, and falls less rises, over all pairs.
+fn slope_and_falls(cycles: &[&Cycle], energy: impl Fn(&Cycle) -> f64) -> (f64, f64) {
+    let n = cycles.len();
+    let mut slopes = Vec::with_capacity(n * (n - 1) / 2);
+    let mut falls = 0.0;
+    for i in 0..n {
+        for j in i + 1..n {
+            let change = energy(cycles[j]) - energy(cycles[i]);
+            slopes.push(change / (j - i) as f64);
+            falls -= if change.abs() > 0.0 { change.signum() } else { 0.0 };
+        }
+    }
+    (significance::median(&mut slopes), falls)
 }
 
 /// Energy over the number of the cycle, each kind of loop by itself.

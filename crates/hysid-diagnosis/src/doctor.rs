@@ -15,6 +15,8 @@ mod sampling;
 mod spikes;
 mod start;
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::artifact::Explanation;
@@ -166,8 +168,7 @@ pub fn before_a_fit(data: &Dataset) -> Result<Vec<DataIssue>> {
 }
 
 /// The data without the outputs that an instrument clipped, and without spikes; `None` where there are none.
-pub(crate) fn without_defects(survey: &BranchSet) -> Option<Dataset> {
-    let clipped = clipping::clipped_rows(survey);
+pub(crate) fn without_defects(survey: &BranchSet, clipped: &[(usize, Range<usize>)]) -> Option<Dataset> {
     let spikes = spikes::spikes(survey);
     if clipped.is_empty() && spikes.is_empty() {
         return None;
@@ -181,9 +182,9 @@ pub(crate) fn without_defects(survey: &BranchSet) -> Option<Dataset> {
     Dataset::new(survey.data.names().clone(), records.collect()).ok()
 }
 
-/// True if an instrument clipped outputs.
-pub(crate) fn is_clipped(survey: &BranchSet) -> bool {
-    !clipping::clipped_rows(survey).is_empty()
+/// The records and rows whose output an instrument clipped.
+pub(crate) fn clipped_outputs(survey: &BranchSet) -> Vec<(usize, Range<usize>)> {
+    clipping::clipped_rows(survey)
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input

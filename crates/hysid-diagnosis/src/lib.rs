@@ -22,6 +22,7 @@ mod congruency;
 pub mod cycles;
 mod deterioration;
 mod doctor;
+mod interpolation;
 mod loop_closure;
 mod masing;
 mod minimum;
@@ -216,7 +217,8 @@ impl Diagnosis {
         data.check_identifiable(FEWEST_ROWS)?;
         let measured = cycles::survey(data, options);
         // What a clipped channel or a spike shows is not the output of the specimen.
-        let sound = doctor::without_defects(&measured);
+        let clipped = doctor::clipped_outputs(&measured);
+        let sound = doctor::without_defects(&measured, &clipped);
         let survey = sound.as_ref().map(|data| cycles::survey(data, options));
         let survey = survey.as_ref().unwrap_or(&measured);
         let cycles = cycles::cycles(survey);
@@ -241,7 +243,7 @@ impl Diagnosis {
             wear,
             loop_closure::test(survey, &cycles, may_fade),
         ];
-        if doctor::is_clipped(&measured) {
+        if !clipped.is_empty() {
             artifact::withhold_partial(&mut properties);
         }
         let explanations =

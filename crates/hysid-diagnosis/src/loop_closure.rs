@@ -4,7 +4,7 @@
 //! `|y(t + T) - y(t)| / R`                                                          theory.md (10.10)
 
 use super::branch::BranchSet;
-use super::comparison::{Comparison, GAP, judge};
+use super::comparison::{Comparison, judge};
 use super::cycles::repeated;
 use super::{Cycle, Finding, Property, Verdict};
 
@@ -41,13 +41,18 @@ pub(crate) fn test<'c>(survey: &BranchSet, cycles: &'c [Cycle], may_fade: bool) 
         }
     }
     // Loops that close may yet be different loops each time.
-    if judgement.verdict == Verdict::Yes && moves(survey, &groups) {
+    let moving = judgement.verdict == Verdict::Yes && moves(survey, &groups);
+    if moving {
         judgement.verdict = Verdict::NotTestable;
     }
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
         Verdict::Yes => format!("repeated loops close, within {percent:.2} % of the output's range"),
         Verdict::No => format!("a repeated loop stays open by {percent:.1} % of the output's range"),
+        Verdict::NotTestable if moving => format!(
+            "repeated loops close, within {percent:.2} % of the output's range, but the last begins at another output \
+             than the first"
+        ),
         Verdict::NotTestable => {
             format!(
                 "a repeated loop is open by {percent:.1} % of the output's range: noise or an initial transient may cause this"
@@ -102,15 +107,12 @@ fn gap(survey: &BranchSet, cycle: &Cycle) -> Option<Comparison> {
     } else {
         0.0
     };
-    let height = survey.height();
-    let apart = survey.rows_between(out, after, x);
+    let wander = survey.wander(survey.rows_between(out, after, x));
+    let readings = Comparison::of_readings(survey.height(), [first, last], wander);
     Some(Comparison {
-        index: (last.y - first.y).abs() / height,
-        deviation: first.deviation.hypot(last.deviation).hypot(survey.wander(apart)) / height,
-        bend: (first.bend + last.bend + own) / height,
-        freedom: GAP,
-        other: 0.0,
+        bend: readings.bend + own / survey.height(),
         pieces: vec![cycle.piece()],
         curves: vec![survey.curve("there", out), survey.curve("back", back)],
+        ..readings
     })
 }

@@ -29,9 +29,6 @@ const FAR_APART: f64 = 2.0;
 /// Speeds within this factor are taken together.
 const TOGETHER: f64 = 1.15;
 
-/// Branches of the same speed may differ by so much less than those of another.
-const CLEAR: f64 = 2.0;
-
 /// A delay that explains a difference leaves less than this share of it.
 const EXPLAINED: f64 = 0.4;
 
@@ -382,7 +379,7 @@ fn compare(survey: &BranchSet, speeds: &Speeds) -> Option<Comparison> {
         deviation: (variance / places).sqrt().hypot(survey.wander(rows)) / height,
         bend: (bend / places).sqrt() / height,
         freedom: SHAPE,
-        other: (0.5 * CLEAR * own).max(FASTER * wear).max(settling) / height,
+        other: own.max(FASTER * wear).max(settling) / height,
         pieces: [speeds.slow[0], speeds.fast[0]].into_iter().map(|branch| survey.piece(branch)).collect(),
         curves: vec![survey.curve("slow", speeds.slow[0]), survey.curve("fast", speeds.fast[0])],
     })

@@ -141,8 +141,7 @@ fn wear(probe: &Probe) -> Result<Finding> {
         let data = data(vec![probe.run("repeated loops", &path.x, speed)?])?;
         let survey = survey(&data);
         let cycles = cycles(&survey);
-        let open = |cycle: &Cycle| cycle.area > static_hysteresis::FULL * cycle.swing() * cycle.height();
-        if !cycles.first().is_some_and(open) {
+        if !cycles.first().is_some_and(Cycle::is_open) {
             let statement = "there is no loop large enough to shrink";
             return Ok(Finding::not_testable(Property::Deterioration, statement, LARGER));
         }

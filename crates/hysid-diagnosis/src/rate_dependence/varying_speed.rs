@@ -8,10 +8,12 @@
 use hysid_core::data::record::Record;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::operator::play::follow;
+use hysid_core::operator::relaxation::{advance, decay};
 use hysid_core::operator::stop::elongation;
 use hysid_core::stop_check::StopCheck;
 
 use crate::branch::BranchSet;
+use crate::interpolation::at_row;
 
 /// Branches at least, without the first two of each record, whose memory is that of an unknown beginning.
 const FEWEST: usize = 12;
@@ -193,13 +195,6 @@ fn held_out(parts: &[Products], chosen: &[usize]) -> Option<Vec<f64>> {
     (0..parts.len()).map(of_part).collect()
 }
 
-/// Exact solution of `s' = x' - s/τ` after a step in which the input moves by `way` at a constant rate; `share` is the step over
-/// `τ`.
-fn fade(s: f64, way: f64, share: f64) -> f64 {
-    let kept = (-share).exp();
-    kept * s + way * if share > 0.0 { (1.0 - kept) / share } else { 1.0 }
-}
-
 /// Adds the rows of a record, with its output taken so many rows earlier.
 fn add(
     survey: &BranchSet,
@@ -215,12 +210,7 @@ fn add(
     };
     let (input, output) = (&record.inputs()[0], record.output());
     let middle = 0.5 * (survey.input.0 + survey.input.1);
-    let scaled = |row: usize| {
-        let place = (row as f64 - lag).clamp(0.0, (input.len() - 1) as f64);
-        let below = (place as usize).min(input.len().saturating_sub(2));
-        let x = input[below] + (place - below as f64) * (input[below + 1] - input[below]);
-        2.0 * (x - middle) / survey.width()
-    };
+    let scaled = |row: usize| 2.0 * (at_row(input, row as f64 - lag) - middle) / survey.width();
     let threshold = |stop: f64| (stop + 0.5) / STOPS as f64;
     // Speeds and relaxation times for the scaled input.
     let scale = 2.0 / survey.width();
@@ -235,12 +225,12 @@ fn add(
                 *play = follow(*play, u, threshold(stop as f64 + 0.5 * between as f64));
             }
         }
-        let (step, way) = (time[row] - time[row.saturating_sub(1)], u - before);
+        let (step, change) = (time[row] - time[row.saturating_sub(1)], u - before);
         for (relaxed, time) in relaxed.iter_mut().zip(times) {
-            *relaxed = fade(*relaxed, way, step / time);
+            *relaxed = advance(*relaxed, change, decay(step, time));
         }
         for (faded, path) in faded.iter_mut().zip(PATHS) {
-            *faded = fade(*faded, way, way.abs() / path);
+            *faded = advance(*faded, change, decay(change.abs(), path));
         }
         before = u;
         let Some(part) = parts[row].filter(|_| row % stride == 0 && !output[row].is_nan()) else { continue };

@@ -3,6 +3,7 @@
 
 use hysid_core::data::record::Record;
 use hysid_core::linear_algebra::Symmetric;
+use hysid_core::operator::relaxation::{advance, decay};
 use hysid_core::stop_check::StopCheck;
 
 use crate::branch::BranchSet;
@@ -84,13 +85,11 @@ impl Products {
         let scale = 2.0 / survey.width();
         let middle = 0.5 * (survey.input.0 + survey.input.1);
         let speed = survey.width() / (stamps[stamps.len() - 1] - stamps[0]) * stamps.len() as f64;
-        let mut relaxed = x[0];
+        let mut relaxation = 0.0;
         for row in 0..x.len().min(MOST_ROWS) {
             if row > 0 {
                 let (step, change) = (stamps[row] - stamps[row - 1], x[row] - x[row - 1]);
-                // Exact for an input that is linear between rows.
-                let kept = (-step / time).exp();
-                relaxed = kept * relaxed + x[row] - kept * x[row - 1] - change * (1.0 - kept) * time / step;
+                relaxation = advance(relaxation, change, decay(step, time));
             }
             if !on_branches[row] || y[row].is_nan() {
                 continue;
@@ -105,7 +104,7 @@ impl Products {
                 u * u * u,
                 row as f64 / x.len() as f64,
                 rate,
-                scale * (relaxed - middle),
+                scale * relaxation,
                 (y[row] - survey.output.0) / survey.height(),
             ];
             for (sums, a) in self.sums.iter_mut().zip(columns) {

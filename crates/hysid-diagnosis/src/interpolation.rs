@@ -1,0 +1,24 @@
+//! Values of a column between its rows.
+
+/// The value of a column at a row that need not be whole, on the line between its neighbours; the first or the last value
+/// beyond the ends. `column` is not empty.
+pub(crate) fn at_row(column: &[f64], row: f64) -> f64 {
+    let last = column.len() - 1;
+    let place = row.clamp(0.0, last as f64);
+    let below = (place as usize).min(last.saturating_sub(1));
+    let above = (below + 1).min(last);
+    column[below] + (place - below as f64) * (column[above] - column[below])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_row;
+
+    #[test]
+    fn a_straight_line_is_met_between_rows_and_kept_beyond_its_ends() {
+        let line = [1.0, 3.0, 5.0];
+        let at = [-2.0, 0.0, 0.25, 1.5, 2.0, 7.0].map(|row| at_row(&line, row));
+        assert_eq!(at, [1.0, 1.0, 1.5, 4.0, 5.0, 5.0]);
+        assert_eq!(at_row(&[4.0], 0.5), 4.0);
+    }
+}
