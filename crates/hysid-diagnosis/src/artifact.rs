@@ -56,10 +56,8 @@ pub(crate) struct Explanation {
 impl Artifact {
     /// Those that are tried: one list for each kind and direction, the smallest first.
     fn candidates(survey: &BranchSet) -> Vec<Vec<Self>> {
-        let mut rows: Vec<usize> = survey.branches.iter().map(|branch| branch.rows.len()).collect();
-        rows.sort_unstable();
-        let typical = rows.get(rows.len() / 2).copied().unwrap_or(0) as f64;
-        let lags: Vec<f64> = LAGS.into_iter().filter(|lag| *lag <= LONGEST_LAG * typical).collect();
+        let longest = LONGEST_LAG * survey.typical_rows() as f64;
+        let lags: Vec<f64> = LAGS.into_iter().filter(|lag| *lag <= longest).collect();
         let both_ways = [1.0, -1.0].into_iter();
         let of_way = |way: f64| {
             let lags = lags.iter().map(|lag| Self::Lag(way * lag)).collect();

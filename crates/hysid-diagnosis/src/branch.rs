@@ -531,6 +531,9 @@ const SAME_SPEED: f64 = 1.25;
 /// The speed at a place is that within this share of the input's range.
 const NEAR: f64 = 0.0025;
 
+/// With noise in the input, so many of its deviations more.
+const NEAR_IN_NOISE: f64 = 6.0;
+
 /// True if two speeds are taken as one.
 pub(crate) fn is_one_speed(a: f64, b: f64) -> bool {
     a.max(b) <= SAME_SPEED * a.min(b)
@@ -554,13 +557,20 @@ impl BranchSet<'_> {
         }
     }
 
+    /// Number of rows of a typical branch, the median; 0 without branches.
+    pub fn typical_rows(&self) -> usize {
+        let mut rows: Vec<usize> = self.branches.iter().map(|branch| branch.rows.len()).collect();
+        rows.sort_unstable();
+        rows.get(rows.len() / 2).copied().unwrap_or(0)
+    }
+
     /// Speed of the input near a place, over a short way and three rows at least; `None` without time.
     pub fn speed_at(&self, branch: &Branch, place: f64) -> Option<f64> {
         let record = &self.data.records()[branch.record];
         let time = &record.time()?[branch.rows.clone()];
         let x = &record.inputs()[0][branch.rows.clone()];
         let sign = if branch.rises() { 1.0 } else { -1.0 };
-        let reach = NEAR * self.width() + 2.0 * self.input_noise.deviation();
+        let reach = NEAR * self.width() + NEAR_IN_NOISE * self.input_noise.deviation();
         let first = x.partition_point(|x| sign * x < sign * place - reach);
         let last = x.partition_point(|x| sign * x <= sign * place + reach);
         let first = first.saturating_sub(1).min(x.len().saturating_sub(3));

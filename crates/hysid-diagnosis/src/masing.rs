@@ -19,6 +19,9 @@ const SAME_LENGTH: f64 = 0.9;
 /// Branches that are compared at most.
 const MOST: usize = 200;
 
+/// The rule holds for all branches only if at least this share of them can be compared.
+const MOST_OF_THEM: f64 = 0.25;
+
 /// Places along a branch.
 const PLACES: usize = 40;
 
@@ -50,15 +53,17 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
     let mut parts: Vec<OwnPart> =
         survey.branches.iter().filter_map(|branch| own_part(survey, branch)).collect();
     parts.sort_by(|a, b| b.length.total_cmp(&a.length));
-    let comparisons: Vec<Comparison> = match parts.split_first() {
+    let (candidates, comparisons) = match parts.split_first() {
         Some((longest, others)) => {
             let shorter = others.iter().filter(|part| part.length < SAME_LENGTH * longest.length);
             let allowed = shorter.filter(|part| !equal_speed || one_course_of_speed(survey, longest, part));
             let parts: Vec<&OwnPart> = allowed.collect();
             let step = parts.len().div_ceil(MOST).max(1);
-            parts.into_iter().step_by(step).filter_map(|part| compare(survey, longest, part)).collect()
+            let candidates = parts.len().div_ceil(step);
+            let compared = parts.into_iter().step_by(step).filter_map(|part| compare(survey, longest, part));
+            (candidates, compared.collect())
         }
-        None => Vec::new(),
+        None => (0, Vec::new()),
     };
     if comparisons.len() < 2 {
         let statement = format!(
@@ -67,7 +72,11 @@ pub(crate) fn test(survey: &BranchSet, equal_speed: bool) -> Finding {
         );
         return Finding::not_testable(Property::Masing, statement, EXPERIMENT);
     }
-    let judgement = judge(&comparisons, EFFECT).expect("there are comparisons");
+    let mut judgement = judge(&comparisons, EFFECT).expect("there are comparisons");
+    if judgement.verdict == Verdict::Yes && (comparisons.len() as f64) < MOST_OF_THEM * candidates as f64 {
+        judgement.verdict = Verdict::NotTestable;
+        judgement.doubt = "noise or widely spaced rows hide most of the branches";
+    }
     let percent = 100.0 * judgement.index;
     let statement = match judgement.verdict {
         Verdict::Yes => format!("all branches lie on one curve, within {percent:.1} % of their height"),

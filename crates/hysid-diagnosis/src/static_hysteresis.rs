@@ -106,7 +106,7 @@ pub(crate) fn test(survey: &BranchSet, rate: Verdict, longest_lag: impl FnOnce()
         )
     } else if next.is_some() && index < REMAINS * area {
         (Verdict::No, "the loops vanish as the speed goes to 0".to_string())
-    } else if next.is_some() && !known {
+    } else if next.is_some() && (!known || index < threshold) {
         (
             Verdict::NotTestable,
             format!(

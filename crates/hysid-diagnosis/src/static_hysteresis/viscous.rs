@@ -1,6 +1,8 @@
 //! Whether loops may be those of a spring with dashpots: a curve of the input, its rate and one relaxation of it, all
 //! linear in the memory. Such a law has no loop at rest, and at one speed its loops look like any other.
 
+use std::f64::consts::SQRT_2;
+
 use hysid_core::data::record::Record;
 use hysid_core::linear_algebra::Symmetric;
 use hysid_core::operator::relaxation::{advance, decay};
@@ -26,6 +28,13 @@ const NOISE: f64 = 1.3;
 /// So many rows around a turning point are left out: an output that is late by as many is that of the branch before.
 const NEAR_A_TURN: usize = 3;
 
+/// Rows before and after one, at most, over which its rate is taken, and the share of the rows of a branch that they may be.
+const MOST_BESIDE: usize = 8;
+const OF_A_BRANCH: f64 = 0.05;
+
+/// Noise in the rate below this share of it does not matter.
+const IN_THE_RATE: f64 = 0.03;
+
 /// Records with more rows are not looked at beyond them.
 const MOST_ROWS: usize = 100_000;
 
@@ -34,8 +43,9 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let records: Vec<&Record> = survey.data.records().iter().collect();
     let longest =
         records.iter().filter_map(|r| Some(r.time()?[r.len() - 1] - r.time()?[0])).fold(0.0, f64::max);
+    let beside = rows_beside(survey);
     let on_branches: Vec<Vec<bool>> =
-        (0..records.len()).map(|record| between_turns(survey, record)).collect();
+        (0..records.len()).map(|record| between_turns(survey, record, beside.max(NEAR_A_TURN))).collect();
     let step = survey.time_step();
     if step <= 0.0 || longest <= 2.0 * step {
         return false;
@@ -44,7 +54,7 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     let products = |time: f64| {
         let mut products = Products::new();
         for (record, on_branches) in records.iter().zip(&on_branches) {
-            products.add(survey, record, on_branches, time);
+            products.add(survey, record, on_branches, beside, time);
         }
         products
     };
@@ -56,11 +66,20 @@ pub(super) fn may_be_viscous(survey: &BranchSet) -> bool {
     least.sqrt() <= (EXPLAINED * without_memory.sqrt()).max(noise)
 }
 
-/// Rows of a record that are not near a turning point.
-fn between_turns(survey: &BranchSet, record: usize) -> Vec<bool> {
+/// Rows before and after one over which its rate is taken: as many as the noise of the input needs.
+fn rows_beside(survey: &BranchSet) -> usize {
+    let travel: f64 = survey.branches.iter().map(|branch| branch.travel()).sum();
+    let rows: usize = survey.branches.iter().map(|branch| branch.rows.len()).sum();
+    let step = travel / rows as f64;
+    let needed = survey.input_noise.deviation() / (IN_THE_RATE * step * SQRT_2);
+    (needed.min(OF_A_BRANCH * survey.typical_rows() as f64) as usize).clamp(1, MOST_BESIDE)
+}
+
+/// Rows of a record that are more than so many rows away from a turning point.
+fn between_turns(survey: &BranchSet, record: usize, near: usize) -> Vec<bool> {
     let mut between = vec![false; survey.data.records()[record].len()];
-    for branch in survey.of_record(record).iter().filter(|branch| branch.rows.len() > 2 * NEAR_A_TURN) {
-        between[branch.rows.start + NEAR_A_TURN..branch.rows.end - NEAR_A_TURN].fill(true);
+    for branch in survey.of_record(record).iter().filter(|branch| branch.rows.len() > 2 * near) {
+        between[branch.rows.start + near..branch.rows.end - near].fill(true);
     }
     between
 }
@@ -77,7 +96,7 @@ impl Products {
     }
 
     /// Adds the rows of a record whose input relaxes in a time.
-    fn add(&mut self, survey: &BranchSet, record: &Record, on_branches: &[bool], time: f64) {
+    fn add(&mut self, survey: &BranchSet, record: &Record, on_branches: &[bool], beside: usize, time: f64) {
         let Some(stamps) = record.time() else {
             return;
         };
@@ -94,7 +113,7 @@ impl Products {
             if !on_branches[row] || y[row].is_nan() {
                 continue;
             }
-            let (before, after) = (row - 1, row + 1);
+            let (before, after) = (row - beside, row + beside);
             let rate = (x[after] - x[before]) / (stamps[after] - stamps[before]) / speed;
             let u = scale * (x[row] - middle);
             let columns = [
