@@ -151,10 +151,13 @@ fn simplest(found: &Found) -> (Option<ModelName>, &'static str) {
                       differ; generalized-prandtl-ishlinskii has fewer parameters, if its envelopes fit";
         return (rival(ClassicalModel::Preisach), reason);
     }
-    (
-        rival(ClassicalModel::PrandtlIshlinskii),
-        "all branches are one curve, scaled, so a weighted sum of plays is enough (as a network: pnn)",
-    )
+    let reason = if found.masing == Yes {
+        "all branches are one curve, scaled, so a weighted sum of plays is enough (as a network: pnn)"
+    } else {
+        "these data show no property that a weighted sum of plays cannot represent, but they do not show that it is \
+         enough; compare it with more general models on data that were not used for the fit (command compare)"
+    };
+    (rival(ClassicalModel::PrandtlIshlinskii), reason)
 }
 
 /// A law with few parameters that holds what only networks hold otherwise. Whether its shape fits, only a fit
@@ -278,6 +281,7 @@ mod tests {
         assert_eq!(advice.statement.len(), 8, "{:?}", advice.statement);
         assert!(advice.statement[1..].iter().all(|text| text.starts_with("not testable with these data: ")));
         assert_eq!(advice.needs_rate, NotTestable);
+        assert!(advice.statement[0].contains("do not show that it is enough"), "{:?}", advice.statement);
         // What would not change the model is not mentioned.
         let advice = advise(
             &findings([Yes, Yes, NotTestable, NotTestable, NotTestable, NotTestable, NotTestable]),

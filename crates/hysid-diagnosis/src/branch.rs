@@ -4,7 +4,7 @@ mod opening;
 
 use std::ops::Range;
 
-use super::noise::{self, Noise, resolution};
+use super::noise::{self, Noise, Run, resolution};
 use super::significance;
 use super::smoothing::{Parabola, Place, Points, Smoothed, choose_window, smooth_where_straight};
 use super::{DiagnosisOptions, PictureCurve, Piece};
@@ -227,9 +227,12 @@ impl<'a> BranchSet<'a> {
         for (number, record) in data.records().iter().enumerate() {
             follow(number, record, smallest_reversal, (reached, BETWEEN_ROWS * width), &mut branches);
         }
-        let of_branch = |branch: &Branch| &data.records()[branch.record].inputs()[0][branch.rows.clone()];
-        let input_noise = Noise::of(branches.iter().map(of_branch));
-        let output_noise = output_noise(data, &branches);
+        let input_noise = Noise::of(branches.iter().map(|branch| {
+            let (values, output) = channels(data, branch);
+            Run { values, beside: if is_scored(output) { output } else { &[] } }
+        }));
+        let scored = branches.iter().map(|branch| channels(data, branch)).filter(|(_, y)| is_scored(y));
+        let output_noise = Noise::of(scored.map(|(beside, values)| Run { values, beside }));
         let reading = Reader {
             data,
             by_rows: input_noise.deviation() > JITTERS * width,
@@ -516,13 +519,15 @@ impl Reader<'_> {
     }
 }
 
-fn output_noise(data: &Dataset, branches: &[Branch]) -> Noise {
-    let scored = |branch: &Branch| {
-        let output = &data.records()[branch.record].output()[branch.rows.clone()];
-        !output.iter().any(|y| y.is_nan())
-    };
-    let runs = branches.iter().filter(|branch| scored(branch));
-    Noise::of(runs.map(|branch| &data.records()[branch.record].output()[branch.rows.clone()]))
+/// Input and output of a branch.
+fn channels<'d>(data: &'d Dataset, branch: &Branch) -> (&'d [f64], &'d [f64]) {
+    let record = &data.records()[branch.record];
+    (&record.inputs()[0][branch.rows.clone()], &record.output()[branch.rows.clone()])
+}
+
+/// True if all rows have an output.
+fn is_scored(output: &[f64]) -> bool {
+    !output.iter().any(|y| y.is_nan())
 }
 
 /// Branches whose speeds differ by no more than this factor are of the same speed.

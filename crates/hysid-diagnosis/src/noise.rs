@@ -10,7 +10,7 @@ mod resolution;
 
 use std::f64::consts::TAU;
 
-pub(crate) use differences::roughness;
+pub(crate) use differences::{Run, roughness};
 pub(crate) use resolution::resolution;
 
 /// Share of the variance above which noise is hum.
@@ -96,7 +96,7 @@ impl Noise {
 
     /// The noise of a channel, from its values in runs of rows on which the course is smooth: between two turning
     /// points. No difference is taken across their ends.
-    pub fn of<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Self {
+    pub fn of<'a>(runs: impl Iterator<Item = Run<'a>> + Clone) -> Self {
         differences::noise(runs)
     }
 

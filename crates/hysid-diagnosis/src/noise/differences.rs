@@ -49,6 +49,16 @@ const NEAR: [usize; 2] = [2, 3];
 /// Parts below this share of the variance are left out.
 const SMALLEST: f64 = 1e-3;
 
+/// Successive values of a channel.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Run<'a> {
+    /// The values.
+    pub values: &'a [f64],
+    /// Those of the channel that they follow, row by row: where they move together, and not evenly, neither of them is
+    /// noise. Empty if it is not known.
+    pub beside: &'a [f64],
+}
+
 /// The variance of a normalised difference.
 struct Difference {
     order: usize,
@@ -60,8 +70,9 @@ struct Difference {
 const FEWEST: usize = 8;
 
 /// Deviation of white noise by which neighbouring rows differ as much; 0 for hardly any values.
-pub(crate) fn roughness<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
-    let rows: usize = runs.clone().map(<[f64]>::len).sum();
+pub(crate) fn roughness<'a>(columns: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
+    let rows: usize = columns.clone().map(<[f64]>::len).sum();
+    let runs = columns.map(|values| Run { values, beside: &[] });
     if rows < FEWEST { 0.0 } else { least(&differences(runs, rows, 0), 1).sqrt() }
 }
 
@@ -73,8 +84,8 @@ fn least(differences: &[Difference], distance: usize) -> f64 {
 }
 
 /// The noise of a channel; none for hardly any values.
-pub(super) fn noise<'a>(runs: impl Iterator<Item = &'a [f64]> + Clone) -> Noise {
-    let rows: usize = runs.clone().map(<[f64]>::len).sum();
+pub(super) fn noise<'a>(runs: impl Iterator<Item = Run<'a>> + Clone) -> Noise {
+    let rows: usize = runs.clone().map(|run| run.values.len()).sum();
     if rows < FEWEST {
         return Noise::default();
     }
@@ -109,8 +120,8 @@ fn largest_walk(differences: &[Difference]) -> f64 {
 }
 
 /// Half of all rows are in runs at least so long.
-fn typical_length<'a>(runs: impl Iterator<Item = &'a [f64]>, rows: usize) -> usize {
-    let mut lengths: Vec<usize> = runs.map(<[f64]>::len).collect();
+fn typical_length<'a>(runs: impl Iterator<Item = Run<'a>>, rows: usize) -> usize {
+    let mut lengths: Vec<usize> = runs.map(|run| run.values.len()).collect();
     lengths.sort_unstable_by(|a, b| b.cmp(a));
     let mut before = 0;
     let passes_half = |length: &&usize| {
@@ -145,8 +156,10 @@ fn coefficients(order: usize) -> Vec<f64> {
     binomial.iter().map(|c| c / norm).collect()
 }
 
+/// The differences of each order and distance: of the values, or of what they are away from following the channel beside
+/// them along a straight line, whichever is less.
 fn differences<'a>(
-    runs: impl Iterator<Item = &'a [f64]> + Clone,
+    runs: impl Iterator<Item = Run<'a>> + Clone,
     rows: usize,
     length: usize,
 ) -> Vec<Difference> {
@@ -157,14 +170,23 @@ fn differences<'a>(
     let variance = |(order, distance): (usize, usize)| {
         let coefficients = coefficients(order);
         let span = order * distance;
-        let at = |run: &[f64], row: usize| {
-            coefficients.iter().enumerate().map(|(k, c)| c * run[row + k * distance]).sum::<f64>().abs()
+        let of = |values: &[f64], row: usize| -> f64 {
+            coefficients.iter().enumerate().map(|(k, c)| c * values[row + k * distance]).sum()
         };
-        let mut sizes: Vec<f64> = Vec::with_capacity(rows / stride);
-        for run in runs.clone() {
-            sizes.extend((0..run.len().saturating_sub(span)).step_by(stride).map(|row| at(run, row)));
+        let (mut sizes, mut sizes_apart) = (Vec::with_capacity(rows / stride), Vec::new());
+        for Run { values, beside } in runs.clone() {
+            for row in (0..values.len().saturating_sub(span)).step_by(stride) {
+                let own = of(values, row);
+                sizes.push(own.abs());
+                if !beside.is_empty() {
+                    let slope = (values[row + span] - values[row]) / (beside[row + span] - beside[row]);
+                    let apart = own - slope * of(beside, row);
+                    sizes_apart.push(if apart.is_nan() { f64::INFINITY } else { apart.abs() });
+                }
+            }
         }
-        let deviation = median(&mut sizes) / MEDIAN_OF_NORMAL;
+        let apart = if sizes_apart.is_empty() { f64::INFINITY } else { median(&mut sizes_apart) };
+        let deviation = median(&mut sizes).min(apart) / MEDIAN_OF_NORMAL;
         deviation.is_finite().then_some(Difference { order, distance, variance: deviation * deviation })
     };
     measured.filter_map(variance).collect()
@@ -256,7 +278,7 @@ mod tests {
     }
 
     fn noise_of(branches: &[Vec<f64>]) -> Noise {
-        Noise::of(branches.iter().map(Vec::as_slice))
+        Noise::of(branches.iter().map(|values| Run { values, beside: &[] }))
     }
 
     #[test]
@@ -300,6 +322,30 @@ mod tests {
     #[test]
     fn smooth_branches_have_hardly_any() {
         assert!(noise_of(&branches(|_| 0.0)).deviation() < 1e-4);
-        assert_eq!(Noise::of([[1.0, 2.0].as_slice()].into_iter()), Noise::default());
+        let two = Run { values: &[1.0, 2.0], beside: &[] };
+        assert_eq!(Noise::of(std::iter::once(two)), Noise::default());
+    }
+
+    #[test]
+    fn uneven_steps_of_the_input_are_no_noise_of_the_output() {
+        let mut generator = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(2);
+        let inputs: Vec<Vec<f64>> = (0..BRANCHES)
+            .map(|_| {
+                let step = |x: &mut f64, _| {
+                    *x += generator.random::<f64>() / ROWS as f64;
+                    Some(*x)
+                };
+                (0..ROWS).scan(0.0, step).collect()
+            })
+            .collect();
+        let outputs: Vec<Vec<f64>> =
+            inputs.iter().map(|x| x.iter().map(|x| 3.0 * x - 0.5 * x * x).collect()).collect();
+        let alone = noise_of(&outputs).deviation();
+        let beside = |own: &[Vec<f64>], other: &[Vec<f64>]| {
+            Noise::of(own.iter().zip(other).map(|(values, beside)| Run { values, beside })).deviation()
+        };
+        assert!(beside(&outputs, &inputs) < 0.05 * alone, "{} of {alone}", beside(&outputs, &inputs));
+        let alone = noise_of(&inputs).deviation();
+        assert!(beside(&inputs, &outputs) < 0.05 * alone, "{} of {alone}", beside(&inputs, &outputs));
     }
 }
