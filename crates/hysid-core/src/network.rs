@@ -70,7 +70,7 @@ use pulp::{Simd, WithSimd};
 use crate::error::{Error, Result};
 use crate::simd;
 use memory::{BLOCK, LARGEST_SCALED, MemoryLayer, Row};
-use readout::Readout;
+use readout::{Readout, SampleReadout};
 
 /// Largest magnitude of an output weight, which keeps a free run finite.
 const LARGEST_OUTPUT_WEIGHT: f64 = 1e50;
@@ -126,11 +126,15 @@ impl Network {
     /// A simulator in the virgin state.
     pub fn simulator(&self) -> Simulator {
         let memory = MemoryLayer::new(&self.architecture, &self.parameters);
+        let readout = Readout::new(&self.architecture, &self.parameters);
         Simulator {
             state: memory.virgin(),
             memory,
-            readout: Readout::new(&self.architecture, &self.parameters),
+            sample_readout: SampleReadout::new(&readout, &self.output),
+            readout,
             output: self.output.clone(),
+            inputs: vec![0.0; self.architecture.channels()],
+            neurons: vec![0.0; self.architecture.memory_neurons()],
             u: vec![Row([0.0; BLOCK]); self.architecture.channels()],
             z: vec![Row([0.0; BLOCK]); self.architecture.memory_neurons()],
             h: vec![Row([0.0; BLOCK]); self.architecture.hidden],
@@ -145,8 +149,13 @@ impl Network {
 pub struct Simulator {
     memory: MemoryLayer,
     readout: Readout,
+    sample_readout: SampleReadout,
     output: Vec<f64>,
     state: MemoryState,
+    /// Inputs and outputs of the memory neurons in one row.
+    inputs: Vec<f64>,
+    neurons: Vec<f64>,
+    /// The same in a block of rows, and outputs of the tanh neurons.
     u: Vec<Row>,
     z: Vec<Row>,
     h: Vec<Row>,
@@ -186,17 +195,15 @@ impl Simulator {
 
     /// Simulates one sample and returns its scaled output: [`Simulator::run`] with one row.
     pub fn step(&mut self, u: &[f64], step: f64) -> f64 {
-        let mut y = [0.0];
-        assert_eq!(u.len(), self.u.len(), "one value for each channel");
-        simd::run(Step { simulator: self, u, step, y: &mut y[0] });
-        y[0]
+        assert_eq!(u.len(), self.inputs.len(), "one value for each channel");
+        simd::run(Step { simulator: self, u, step })
     }
 
     #[inline(always)]
     fn block<S: Simd>(&mut self, simd: S, steps: &Row, rows: usize, y: &mut Row) {
         self.memory.forward(simd, &mut self.state, &self.u, steps, rows, &mut self.z);
         self.readout.tanh_layer(simd, &self.z, rows, &mut self.h);
-        self.readout.output::<S>(&self.output, &self.z, &self.h, rows, y);
+        self.readout.output(simd, &self.output, &self.z, &self.h, rows, y);
     }
 }
 
@@ -241,21 +248,18 @@ struct Step<'a> {
     simulator: &'a mut Simulator,
     u: &'a [f64],
     step: f64,
-    y: &'a mut f64,
 }
 
 impl WithSimd for Step<'_> {
-    type Output = ();
+    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        for (block, &u) in self.simulator.u.iter_mut().zip(self.u) {
-            block[0] = limited(u);
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Simulator { memory, sample_readout, state, inputs, neurons, .. } = self.simulator;
+        for (input, &u) in inputs.iter_mut().zip(self.u) {
+            *input = limited(u);
         }
-        let mut steps = Row([0.0; BLOCK]);
-        steps[0] = self.step;
-        let mut output = Row([0.0; BLOCK]);
-        self.simulator.block(simd, &steps, 1, &mut output);
-        *self.y = output[0];
+        memory.step::<S>(state, inputs, self.step, neurons);
+        sample_readout.output(simd, neurons)
     }
 }

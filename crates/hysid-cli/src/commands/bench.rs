@@ -204,8 +204,8 @@ fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fitted, f64)> {
     let options = FitOptions { starts: 1, ..options.clone() };
     let mut iterations = 0usize;
     let began = Instant::now();
-    let fitted = fit(data, &options, &mut |_| {
-        iterations += 1;
+    let fitted = fit(data, &options, &mut |progress| {
+        iterations = progress.epoch;
         ControlFlow::Continue(())
     })?;
     Ok((fitted, 1e3 * began.elapsed().as_secs_f64() / iterations.max(1) as f64))
@@ -245,9 +245,10 @@ fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fitted) -> Resul
     let began = Instant::now();
     let (mut genetic_s, mut generations, mut epochs) = (0.0, 0usize, 0usize);
     fit(data, &hybrid, &mut |progress| {
-        epochs += 1;
+        // Progress is also reported within an epoch.
+        epochs = progress.epoch;
         if progress.method == Method::Genetic {
-            generations += 1;
+            generations = epochs;
             genetic_s = began.elapsed().as_secs_f64();
         }
         ControlFlow::Continue(())

@@ -84,7 +84,7 @@ impl TakeBlock for Sums<'_> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
         let Block { u, z, h, slopes, target } = block;
-        readout.output::<S>(self.output, z, h, rows, &mut self.residual);
+        readout.output(simd, self.output, z, h, rows, &mut self.residual);
         for (residual, target) in self.residual[..rows].iter_mut().zip(target) {
             *residual -= target;
         }

@@ -64,11 +64,11 @@ impl DerefMut for Row {
     }
 }
 
-/// Stops that advance together.
-const LANES: usize = 8;
+/// Neurons of a group, which advance together.
+pub(crate) const LANES: usize = 8;
 
-/// One number for each stop of a group.
-type Lanes = [f64; LANES];
+/// One number for each neuron of a group.
+pub(crate) type Lanes = [f64; LANES];
 
 /// Values of a group over a block, time-major.
 type Tile = [[Lanes; 1]; BLOCK];
@@ -216,7 +216,7 @@ impl MemoryLayer {
     ) {
         let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
         let (stops, stress) = rest.split_at_mut(self.stops);
-        self.begin::<S>(state, u);
+        self.begin::<S>(state, |c| u[c][0]);
         let mut done = 0;
         while done + 2 <= self.groups.len() {
             let groups = &self.groups[done..done + 2];
@@ -242,6 +242,36 @@ impl MemoryLayer {
         self.remember(state, u, rows);
     }
 
+    /// [`MemoryLayer::forward`] for one row, to the last bit: `u` has one value for each channel, and `z` receives one for
+    /// each neuron.
+    #[inline(always)]
+    pub fn step<S: Simd>(&self, state: &mut MemoryState, u: &[f64], time_step: f64, z: &mut [f64]) {
+        let (linear, rest) = z[..self.neurons()].split_at_mut(usize::from(self.linear.is_some()));
+        let (stops, stress) = rest.split_at_mut(self.stops);
+        self.begin::<S>(state, |c| u[c]);
+        let memory = state.play.iter_mut().zip(&mut state.slip);
+        for ((group, (play, slip)), z) in self.groups.iter().zip(memory).zip(stops.chunks_mut(LANES)) {
+            let v = drive::<S>(group, |c| u[c]);
+            let (mut plays, mut slips) = (*play, *slip);
+            let outputs = if self.deteriorating {
+                follow::<true>(v, &mut plays, &mut slips, &group.inverse_beta)
+            } else {
+                follow::<false>(v, &mut plays, &mut slips, &group.inverse_beta)
+            };
+            (*play, *slip) = (plays, slips);
+            z.copy_from_slice(&outputs[..z.len()]);
+        }
+        if let (Some(weights), Some(z)) = (&self.linear, linear.first_mut()) {
+            *z = weights.iter().zip(u).fold(0.0, |sum, (&weight, &u)| multiply_add::<S>(weight, u, sum));
+        }
+        for ((&(channel, tau), z), stress) in self.relaxation.iter().zip(stress).zip(&mut state.stress) {
+            let increment = u[channel] - state.last[channel];
+            *stress = relaxation::advance(*stress, increment, relaxation::decay(time_step, tau));
+            *z = *stress;
+        }
+        state.last.copy_from_slice(u);
+    }
+
     /// [`MemoryLayer::forward`] with all derivatives, theory.md (2.9) and (2.10). Outputs agree with
     /// `forward` to the last bit.
     #[inline(always)]
@@ -262,7 +292,7 @@ impl MemoryLayer {
         if !state.started {
             self.begin_slopes::<S>(sensitivity, u);
         }
-        self.begin::<S>(state, u);
+        self.begin::<S>(state, |c| u[c][0]);
         for (g, group) in self.groups.iter().enumerate() {
             let first = g * LANES;
             let memory = StopMemory {
@@ -286,13 +316,13 @@ impl MemoryLayer {
     /// Initializes the plays at the first row of a record; this movement is no slip, `s_0 = 0` (theory.md
     /// (1.5)).
     #[inline(always)]
-    fn begin<S: Simd>(&self, state: &mut MemoryState, u: &[Row]) {
+    fn begin<S: Simd>(&self, state: &mut MemoryState, first: impl Fn(usize) -> f64) {
         if state.started {
             return;
         }
         state.started = true;
         for (group, plays) in self.groups.iter().zip(&mut state.play) {
-            for (play, v) in plays.iter_mut().zip(drive::<S>(group, u, 0)) {
+            for (play, v) in plays.iter_mut().zip(drive::<S>(group, &first)) {
                 *play = play::follow(*play, v, 1.0);
             }
         }
@@ -302,7 +332,7 @@ impl MemoryLayer {
     #[inline(always)]
     fn begin_slopes<S: Simd>(&self, sensitivity: &mut Sensitivity, u: &[Row]) {
         for (group, slopes) in self.groups.iter().zip(&mut sensitivity.play) {
-            let v = drive::<S>(group, u, 0);
+            let v = drive::<S>(group, |c| u[c][0]);
             for (slopes, u) in slopes.iter_mut().zip(u) {
                 for (slope, v) in slopes.iter_mut().zip(v) {
                     *slope = if v.abs() > 1.0 { u[0] } else { 0.0 };
@@ -377,16 +407,43 @@ impl MemoryLayer {
     }
 }
 
-/// Input of each stop of a group at row `t`: `v = w·u`, one rounding order for every kernel.
+/// Input of each stop of a group in a row with the input `u` of each channel: `v = w·u`, one rounding order for every
+/// kernel.
 #[inline(always)]
-fn drive<S: Simd>(group: &Group, u: &[Row], t: usize) -> Lanes {
-    let mut v: Lanes = std::array::from_fn(|l| group.weights[0][l] * u[0][t]);
-    for (weights, u) in group.weights[1..].iter().zip(&u[1..]) {
+fn drive<S: Simd>(group: &Group, u: impl Fn(usize) -> f64) -> Lanes {
+    let x = u(0);
+    let mut v: Lanes = std::array::from_fn(|l| group.weights[0][l] * x);
+    for (c, weights) in group.weights.iter().enumerate().skip(1) {
+        let u = u(c);
         for l in 0..LANES {
-            v[l] = multiply_add::<S>(weights[l], u[t], v[l]);
+            v[l] = multiply_add::<S>(weights[l], u, v[l]);
         }
     }
     v
+}
+
+/// Moves the stops of a group to the inputs `v`, and returns their outputs.
+#[inline(always)]
+fn follow<const DETERIORATING: bool>(
+    v: Lanes,
+    play: &mut Lanes,
+    slip: &mut Lanes,
+    inverse_beta: &Lanes,
+) -> Lanes {
+    let mut outputs = [0.0; LANES];
+    // A plain loop, which becomes vectors; a closure for each lane does not.
+    for l in 0..LANES {
+        let before = play[l];
+        let after = play::follow(before, v[l], 1.0);
+        play[l] = after;
+        let mut output = stop::elongation(v[l], after);
+        if DETERIORATING {
+            slip[l] = deteriorating_stop::accumulate(slip[l], before, after);
+            output *= deteriorating_stop::remaining_strength(slip[l], inverse_beta[l]);
+        }
+        outputs[l] = output;
+    }
+    outputs
 }
 
 /// Advances `G` groups of stops through a block.
@@ -421,18 +478,7 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
                     *v = multiply_add::<S>(weight, u[t], *v);
                 }
             }
-            for l in 0..LANES {
-                let v = v[l];
-                let before = plays[g][l];
-                let after = play::follow(before, v, 1.0);
-                plays[g][l] = after;
-                let mut output = stop::elongation(v, after);
-                if DETERIORATING {
-                    slips[g][l] = deteriorating_stop::accumulate(slips[g][l], before, after);
-                    output *= deteriorating_stop::remaining_strength(slips[g][l], inverse_beta[g][l]);
-                }
-                tile[g][l] = output;
-            }
+            tile[g] = follow::<DETERIORATING>(v, &mut plays[g], &mut slips[g], &inverse_beta[g]);
         }
     }
     play.copy_from_slice(&plays);
@@ -495,7 +541,7 @@ fn advance_with_slopes<S: Simd>(
     let mut wear: Tile = [[[0.0; LANES]]; BLOCK];
     let mut moved: Tile = [[[0.0; LANES]]; BLOCK];
     for t in 0..rows {
-        let v = drive::<S>(group, u, t);
+        let v = drive::<S>(group, |c| u[c][t]);
         for l in 0..LANES {
             let v = v[l];
             let before = memory.play[l];

@@ -10,7 +10,7 @@
 
 use pulp::Simd;
 
-use crate::network::memory::{BLOCK, Row, whole_lanes};
+use crate::network::memory::{BLOCK, LANES, Lanes, Row};
 use crate::network::sweep::Block;
 use crate::network::tanh::tanh;
 use crate::network::{Architecture, Layout};
@@ -87,15 +87,18 @@ impl Readout {
 
     /// The output of the first `rows` rows of a block, in the scaled unit.
     #[inline(always)]
-    pub fn output<S: Simd>(&self, output: &[f64], z: &[Row], h: &[Row], rows: usize, y: &mut Row) {
+    pub fn output<S: Simd>(&self, simd: S, output: &[f64], z: &[Row], h: &[Row], rows: usize, y: &mut Row) {
         let (constant, hidden, direct) = self.split(output);
-        let y = &mut y[..whole_lanes(rows)];
-        y.fill(constant);
-        for (&c, h) in hidden.iter().zip(h) {
-            accumulate::<S>(c, &h.0, y);
+        let y = S::as_mut_simd_f64s(&mut y.0).0;
+        let vectors = rows.div_ceil(S::F64_LANES);
+        let mut first = 0;
+        while first + VECTORS <= vectors {
+            outputs::<S, VECTORS>(simd, constant, (hidden, h), (direct, z), first, y);
+            first += VECTORS;
         }
-        for (&d, z) in direct.iter().zip(z) {
-            accumulate::<S>(d, &z.0, y);
+        while first < vectors {
+            outputs::<S, 1>(simd, constant, (hidden, h), (direct, z), first, y);
+            first += 1;
         }
     }
 
@@ -189,17 +192,118 @@ fn weighted_sum_of_vectors<S: Simd, const K: usize, const V: usize>(
     first: usize,
     sums: &mut [&mut [S::f64s]; K],
 ) {
-    let mut total: [[S::f64s; V]; K] = std::array::from_fn(|k| [simd.splat_f64s(neurons[k].0); V]);
-    for (j, z) in z.iter().enumerate() {
-        let z = &S::as_simd_f64s(&z.0).0[first..first + V];
-        for k in 0..K {
-            let weight = simd.splat_f64s(neurons[k].1[j]);
-            for v in 0..V {
-                total[k][v] = simd.mul_add_e_f64s(weight, z[v], total[k][v]);
-            }
-        }
-    }
+    let biases: [[S::f64s; V]; K] = std::array::from_fn(|k| [simd.splat_f64s(neurons[k].0); V]);
+    let total = add_weighted(simd, z, neurons.map(|(_, weights)| weights), first, biases);
     for k in 0..K {
         sums[k][first..first + V].copy_from_slice(&total[k]);
     }
+}
+
+/// Outputs of `V` vectors of rows from the vector `first` on: the sum over the tanh neurons, and apart from it that over
+/// the memory neurons, which need not wait for it.
+#[inline(always)]
+fn outputs<S: Simd, const V: usize>(
+    simd: S,
+    constant: f64,
+    (hidden, h): (&[f64], &[Row]),
+    (direct, z): (&[f64], &[Row]),
+    first: usize,
+    y: &mut [S::f64s],
+) {
+    let [of_hidden] = add_weighted(simd, h, [hidden], first, [[simd.splat_f64s(constant); V]]);
+    let [of_memory] = add_weighted(simd, z, [direct], first, [[simd.splat_f64s(0.0); V]]);
+    for v in 0..V {
+        y[first + v] = simd.add_f64s(of_hidden[v], of_memory[v]);
+    }
+}
+
+/// Adds rows times weights to `K` totals of `V` vectors of rows, from the vector `first` on.
+#[inline(always)]
+fn add_weighted<S: Simd, const K: usize, const V: usize>(
+    simd: S,
+    rows: &[Row],
+    weights: [&[f64]; K],
+    first: usize,
+    mut total: [[S::f64s; V]; K],
+) -> [[S::f64s; V]; K] {
+    let count = weights.iter().map(|weights| weights.len()).fold(rows.len(), usize::min);
+    for (j, row) in rows[..count].iter().enumerate() {
+        let row = &S::as_simd_f64s(&row.0).0[first..first + V];
+        for k in 0..K {
+            let weight = simd.splat_f64s(weights[k][j]);
+            for v in 0..V {
+                total[k][v] = simd.mul_add_e_f64s(weight, row[v], total[k][v]);
+            }
+        }
+    }
+    total
+}
+
+/// The readout of one row at a time, whose lanes are tanh neurons. Its outputs are those of [`Readout`] to the last bit.
+#[derive(Debug, Clone)]
+pub(crate) struct SampleReadout {
+    memory: usize,
+    /// For each group of tanh neurons: their biases, then their weights of each memory neuron.
+    weights: Vec<Lanes>,
+    constant: f64,
+    of_hidden: Vec<f64>,
+    direct: Vec<f64>,
+    /// Outputs of the tanh neurons, in whole groups.
+    h: Vec<Lanes>,
+}
+
+impl SampleReadout {
+    /// Arranges the weights of a readout.
+    pub fn new(readout: &Readout, output: &[f64]) -> Self {
+        let (constant, of_hidden, direct) = readout.split(output);
+        let of_group = |first: usize| {
+            let lane = move |column: usize| -> Lanes {
+                std::array::from_fn(|l| {
+                    if first + l >= readout.hidden {
+                        return 0.0;
+                    }
+                    let (bias, weights) = readout.neuron(first + l);
+                    if column == 0 { bias } else { weights[column - 1] }
+                })
+            };
+            (0..=readout.memory).map(lane)
+        };
+        Self {
+            memory: readout.memory,
+            weights: (0..readout.hidden).step_by(LANES).flat_map(of_group).collect(),
+            constant,
+            of_hidden: of_hidden.to_vec(),
+            direct: direct.to_vec(),
+            h: vec![[0.0; LANES]; readout.hidden.div_ceil(LANES)],
+        }
+    }
+
+    /// The output for the outputs `z` of the memory neurons.
+    #[inline(always)]
+    pub fn output<S: Simd>(&mut self, simd: S, z: &[f64]) -> f64 {
+        let z = &z[..self.memory];
+        for (sums, weights) in self.h.iter_mut().zip(self.weights.chunks_exact(1 + self.memory)) {
+            *sums = weights[0];
+            let sums = S::as_mut_simd_f64s(sums).0;
+            for (weights, &z) in weights[1..].iter().zip(z) {
+                let z = simd.splat_f64s(z);
+                for (sum, &weight) in sums.iter_mut().zip(S::as_simd_f64s(weights).0) {
+                    *sum = simd.mul_add_e_f64s(weight, z, *sum);
+                }
+            }
+        }
+        let of_memory = dot::<S>(&self.direct, z, 0.0);
+        let h = self.h.as_flattened_mut();
+        // Of a length that the compiler does not know: it takes a loop over one group apart.
+        for h in h.iter_mut() {
+            *h = tanh::<S>(*h);
+        }
+        dot::<S>(&self.of_hidden, h, self.constant) + of_memory
+    }
+}
+
+/// `sum + a·b`.
+#[inline(always)]
+fn dot<S: Simd>(a: &[f64], b: &[f64], sum: f64) -> f64 {
+    a.iter().zip(b).fold(sum, |sum, (&a, &b)| multiply_add::<S>(a, b, sum))
 }
