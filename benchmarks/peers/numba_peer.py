@@ -104,23 +104,21 @@ ROUND = 6755399441055744.0 + 1023.0
 
 @njit(fastmath=FAST, error_model="numpy")
 def tanh(x):
-    """That of crates/hysid/src/network/tanh.rs. math.tanh is a call for each number, in no lanes."""
+    """That of crates/hysid-core/src/network/tanh.rs. math.tanh is a call for each number, in no lanes."""
     a = min(abs(x), 20.0)
     rounded = a * (2.0 * 1.4426950408889634) + ROUND
-    r = 2.0 * a - (rounded - ROUND) * 0.6931471805599453
-    cubic = 2.5095554677111112e-8
-    cubic = cubic * r + 2.761380686153829e-7
-    cubic = cubic * r + 2.755728006701698e-6
-    cubic = cubic * r + 2.4801536388690766e-5
-    cubic = cubic * r + 0.0001984126985433861
-    cubic = cubic * r + 0.0013888888905881542
-    cubic = cubic * r + 0.008333333333332155
-    cubic = cubic * r + 0.04166666666665136
-    cubic = cubic * r + 0.16666666666666666
-    exp_m1 = (cubic * r + 0.5) * r * r + r
+    s = a - (rounded - ROUND) * (0.5 * 0.6931471805599453)
+    square = s * s
+    cubic = 0.0034639177836130425
+    cubic = cubic * square - 0.008858936176728246
+    cubic = cubic * square + 0.021869421825241465
+    cubic = cubic * square - 0.05396825349959849
+    cubic = cubic * square + 0.13333333333212813
+    cubic = cubic * square - 0.3333333333333328
+    t = square * s * cubic + s
     power = float_of(bits_of(rounded) << 52)
-    e = power * exp_m1 + (power - 1.0)
-    return float_of(bits_of(e / (e + 2.0)) | (bits_of(x) & SIGN))
+    quotient = ((power + 1.0) * t + (power - 1.0)) / ((power - 1.0) * t + (power + 1.0))
+    return float_of(bits_of(quotient) | (bits_of(x) & SIGN))
 
 
 @njit

@@ -362,4 +362,10 @@ fn bench_tells_value_unit_and_setting() {
         assert_eq!(sorted(keys(speed)), ["setting", "unit", "value"]);
         assert!(speed["value"].as_f64().unwrap() > 0.0);
     }
+    // A generation is 50 evaluations on all threads, and a gradient takes longer than a value: progress reports within an
+    // epoch are not counted as epochs.
+    let value = |name: &str| bench[name]["value"].as_f64().unwrap();
+    assert!(1e3 * value("genetic_generation_ms") > 0.5 * value("genetic_evaluation_us"), "{bench}");
+    assert!(1e3 * value("levenberg_marquardt_iteration_ms") > value("genetic_evaluation_us"), "{bench}");
+    assert!(value("subgradient_iteration_us") > 0.5 * value("subgradient_us"), "{bench}");
 }

@@ -8,8 +8,13 @@ use pulp::{Simd, WithSimd};
 use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
 
-/// Rows of a [`Batch`]: its columns stay in the second-level cache.
-const BATCH: usize = 256;
+/// Fewest and most rows of a [`Batch`]. With few columns it has more rows, so that the sums of its tiles are reduced less
+/// often.
+const FEWEST_ROWS: usize = 256;
+const MOST_ROWS: usize = 512;
+
+/// Numbers of a batch that stay in the second-level cache, if it has more than the fewest rows.
+const IN_CACHE: usize = 12 * 1024;
 
 /// Columns of a [`Batch`] come in multiples of this, the edge of the kernel's tiles.
 const TILE: usize = 4;
@@ -18,6 +23,8 @@ const TILE: usize = 4;
 #[derive(Debug, Clone)]
 pub struct Batch {
     columns: usize,
+    /// Rows that there is room for in all, a multiple of 64.
+    capacity: usize,
     rows: usize,
     data: Vec<f64>,
 }
@@ -25,18 +32,20 @@ pub struct Batch {
 impl Batch {
     /// An empty batch of so many columns.
     pub fn new(columns: usize) -> Self {
-        Self { columns, rows: 0, data: vec![0.0; columns.next_multiple_of(TILE) * BATCH] }
+        let stride = columns.next_multiple_of(TILE);
+        let capacity = (IN_CACHE / stride.max(1) / 64 * 64).clamp(FEWEST_ROWS, MOST_ROWS);
+        Self { columns, capacity, rows: 0, data: vec![0.0; stride * capacity] }
     }
 
     /// Rows that there is room for.
     pub fn free(&self) -> usize {
-        BATCH - self.rows
+        self.capacity - self.rows
     }
 
     /// Appends rows, given by columns; there must be room for them.
     #[inline(always)]
-    pub fn append(&mut self, columns: &[impl AsRef<[f64]>], rows: usize) {
-        for (column, values) in self.data.chunks_exact_mut(BATCH).zip(columns) {
+    pub fn append<'c, C: AsRef<[f64]> + 'c>(&mut self, columns: impl Iterator<Item = &'c C>, rows: usize) {
+        for (column, values) in self.data.chunks_exact_mut(self.capacity).zip(columns) {
             column[self.rows..self.rows + rows].copy_from_slice(&values.as_ref()[..rows]);
         }
         self.rows += rows;
@@ -48,7 +57,7 @@ impl Batch {
     }
 
     fn zero_rest(&mut self) {
-        for column in self.data.chunks_exact_mut(BATCH) {
+        for column in self.data.chunks_exact_mut(self.capacity) {
             column[self.rows..].fill(0.0);
         }
     }
@@ -96,13 +105,14 @@ impl Gram {
             return;
         }
         batch.zero_rest();
+        let capacity = batch.capacity;
         let columns = |first: usize| -> [&[S::f64s]; TILE] {
             std::array::from_fn(|k| {
-                S::as_simd_f64s(&batch.data[(first + k) * BATCH..(first + k + 1) * BATCH]).0
+                S::as_simd_f64s(&batch.data[(first + k) * capacity..(first + k + 1) * capacity]).0
             })
         };
         for first in (0..self.stride).step_by(TILE) {
-            if pace.is_over(first * TILE * BATCH / 4) {
+            if pace.is_over(first * TILE * capacity / 4) {
                 break;
             }
             let left = columns(first);
@@ -130,7 +140,7 @@ impl Gram {
         second: usize,
         right: [&[S::f64s]; N],
     ) {
-        let length = BATCH / S::F64_LANES;
+        let length = left[0].len();
         let left = left.map(|column| &column[..length]);
         let right = right.map(|column| &column[..length]);
         let mut sums = [[simd.splat_f64s(0.0); N]; TILE];
@@ -339,7 +349,7 @@ mod tests {
                     self.0.add(simd, &mut batch, &mut pace);
                 }
                 let columns: Vec<[f64; 1]> = (0..n).map(|column| [value(row, column)]).collect();
-                batch.append(&columns, 1);
+                batch.append(columns.iter(), 1);
             }
             self.0.add(simd, &mut batch, &mut pace);
         }

@@ -137,7 +137,7 @@ impl WithSimd for GramOverRecords<'_> {
 
 /// Takes the columns of some rows.
 trait TakeRows {
-    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]);
+    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>);
 }
 
 /// Gathers rows into a Gram matrix.
@@ -149,7 +149,7 @@ struct Gathered<'a> {
 
 impl TakeRows for Gathered<'_> {
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, rows: usize, columns: &[Row]) {
+    fn take<'r, S: Simd>(&mut self, simd: S, rows: usize, columns: impl Iterator<Item = &'r Row>) {
         if self.batch.free() < rows {
             self.gram.add(simd, &mut self.batch, &mut self.pace);
         }
@@ -165,8 +165,8 @@ struct Rows {
 
 impl TakeRows for Rows {
     #[inline(always)]
-    fn take<S: Simd>(&mut self, _: S, rows: usize, columns: &[Row]) {
-        for (kept, column) in self.columns.iter_mut().zip(&columns[self.first..]) {
+    fn take<'r, S: Simd>(&mut self, _: S, rows: usize, columns: impl Iterator<Item = &'r Row>) {
+        for (kept, column) in self.columns.iter_mut().zip(columns.skip(self.first)) {
             kept.extend_from_slice(&column[..rows]);
         }
     }
@@ -212,7 +212,8 @@ struct ColumnsOfBlock<'a, T> {
     spec: Columns<'a>,
     layout: Layout,
     backward: Backward,
-    columns: Vec<Row>,
+    constant: Row,
+    jacobian: Vec<Row>,
     to: T,
 }
 
@@ -222,7 +223,8 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
             spec,
             layout: Layout::new(*spec.architecture),
             backward: Backward::new(spec.architecture),
-            columns: vec![Row([0.0; BLOCK]); spec.count()],
+            constant: Row([1.0; BLOCK]),
+            jacobian: vec![Row([0.0; BLOCK]); if spec.output.is_some() { spec.parameters.len() } else { 0 }],
             to,
         }
     }
@@ -230,8 +232,7 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
     /// Columns of the Jacobian: the derivatives of the module page, by theory.md (2.11).
     #[inline(always)]
     fn jacobian<S: Simd>(&mut self, output: &[f64], block: &Block, readout: &Readout) {
-        let m = self.spec.architecture.output_weights();
-        let jacobian = &mut self.columns[m + 1..];
+        let jacobian = &mut self.jacobian;
         let Block { u, z, slopes, .. } = block;
         self.backward.run::<S>(readout, output, &Row([1.0; BLOCK]), block);
         let by_neuron = &mut jacobian[self.layout.hidden.clone()];
@@ -263,14 +264,12 @@ impl<'a, T> ColumnsOfBlock<'a, T> {
 impl<T: TakeRows> TakeBlock for ColumnsOfBlock<'_, T> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, rows: usize, block: &Block, readout: &Readout) {
-        let m = self.spec.architecture.output_weights();
-        let (features, rest) = self.columns.split_at_mut(m);
-        readout.features(&block.z, &block.h, features);
-        rest[0] = block.target;
         if let Some(output) = self.spec.output {
             self.jacobian::<S>(output, block, readout);
         }
-        self.to.take(simd, rows, &self.columns);
+        let features = readout.features(&self.constant, &block.z, &block.h);
+        let columns = features.chain(std::iter::once(&block.target)).chain(&self.jacobian);
+        self.to.take(simd, rows, columns);
     }
 }
 

@@ -254,9 +254,9 @@ impl MemoryLayer {
             let v = drive::<S>(group, |c| u[c]);
             let (mut plays, mut slips) = (*play, *slip);
             let outputs = if self.deteriorating {
-                follow::<true>(v, &mut plays, &mut slips, &group.inverse_beta)
+                follow::<S, true>(v, &mut plays, &mut slips, &group.inverse_beta)
             } else {
-                follow::<false>(v, &mut plays, &mut slips, &group.inverse_beta)
+                follow::<S, false>(v, &mut plays, &mut slips, &group.inverse_beta)
             };
             (*play, *slip) = (plays, slips);
             z.copy_from_slice(&outputs[..z.len()]);
@@ -422,9 +422,16 @@ fn drive<S: Simd>(group: &Group, u: impl Fn(usize) -> f64) -> Lanes {
     v
 }
 
+/// [`deteriorating_stop::remaining_strength`] with a fused product: one operation less, and another rounding.
+#[inline(always)]
+fn remaining_strength<S: Simd>(slip: f64, inverse_beta: f64) -> f64 {
+    let strength = multiply_add::<S>(-slip, inverse_beta, 1.0);
+    if strength > 0.0 { strength } else { 0.0 }
+}
+
 /// Moves the stops of a group to the inputs `v`, and returns their outputs.
 #[inline(always)]
-fn follow<const DETERIORATING: bool>(
+fn follow<S: Simd, const DETERIORATING: bool>(
     v: Lanes,
     play: &mut Lanes,
     slip: &mut Lanes,
@@ -439,7 +446,7 @@ fn follow<const DETERIORATING: bool>(
         let mut output = stop::elongation(v[l], after);
         if DETERIORATING {
             slip[l] = deteriorating_stop::accumulate(slip[l], before, after);
-            output *= deteriorating_stop::remaining_strength(slip[l], inverse_beta[l]);
+            output *= remaining_strength::<S>(slip[l], inverse_beta[l]);
         }
         outputs[l] = output;
     }
@@ -478,7 +485,7 @@ fn advance<S: Simd, const G: usize, const DETERIORATING: bool>(
                     *v = multiply_add::<S>(weight, u[t], *v);
                 }
             }
-            tile[g] = follow::<DETERIORATING>(v, &mut plays[g], &mut slips[g], &inverse_beta[g]);
+            tile[g] = follow::<S, DETERIORATING>(v, &mut plays[g], &mut slips[g], &inverse_beta[g]);
         }
     }
     play.copy_from_slice(&plays);
@@ -549,7 +556,7 @@ fn advance_with_slopes<S: Simd>(
             memory.play[l] = after;
             let slip = deteriorating_stop::accumulate(memory.slip[l], before, after);
             memory.slip[l] = slip;
-            let left = deteriorating_stop::remaining_strength(slip, group.inverse_beta[l]);
+            let left = remaining_strength::<S>(slip, group.inverse_beta[l]);
             let elongation = stop::elongation(v, after);
             let wears = if left > 0.0 { elongation * group.inverse_beta[l] } else { 0.0 };
             output[t][0][l] = elongation * left;

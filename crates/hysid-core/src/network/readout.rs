@@ -62,6 +62,14 @@ impl Readout {
     pub fn tanh_layer<S: Simd>(&self, simd: S, z: &[Row], rows: usize, h: &mut [Row]) {
         let z = &z[..self.memory];
         let vectors = rows.div_ceil(S::F64_LANES);
+        let reached = vectors * S::F64_LANES;
+        let apply_tanh = |h: &mut [Row]| {
+            for h in h {
+                for value in &mut h[..reached] {
+                    *value = tanh::<S>(*value);
+                }
+            }
+        };
         let mut i = 0;
         while i + 2 <= self.hidden {
             let (first, second) = h[i..i + 2].split_at_mut(1);
@@ -72,16 +80,13 @@ impl Readout {
                 vectors,
                 [&mut first[0], &mut second[0]],
             );
+            // The divisions of these neurons run beside the sums of the next ones.
+            apply_tanh(&mut h[i..i + 2]);
             i += 2;
         }
         if i < self.hidden {
             weighted_sums(simd, z, [self.neuron(i)], vectors, [&mut h[i]]);
-        }
-        let reached = vectors * S::F64_LANES;
-        for h in &mut h[..self.hidden] {
-            for value in &mut h[..reached] {
-                *value = tanh::<S>(*value);
-            }
+            apply_tanh(&mut h[i..=i]);
         }
     }
 
@@ -104,13 +109,14 @@ impl Readout {
 
     /// The features, which the output weights multiply: constant 1, tanh neurons, direct path.
     #[inline(always)]
-    pub fn features(&self, z: &[Row], h: &[Row], features: &mut [Row]) {
-        let (constant, rest) = features.split_at_mut(usize::from(self.constant));
-        constant.fill(Row([1.0; BLOCK]));
-        rest[..self.hidden].copy_from_slice(&h[..self.hidden]);
-        if self.direct {
-            rest[self.hidden..self.hidden + self.memory].copy_from_slice(&z[..self.memory]);
-        }
+    pub fn features<'r>(
+        &self,
+        constant: &'r Row,
+        z: &'r [Row],
+        h: &'r [Row],
+    ) -> impl Iterator<Item = &'r Row> {
+        let direct = if self.direct { &z[..self.memory] } else { &[] };
+        self.constant.then_some(constant).into_iter().chain(&h[..self.hidden]).chain(direct)
     }
 }
 

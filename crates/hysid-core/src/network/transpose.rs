@@ -13,20 +13,30 @@ use pulp::Simd;
 pub(crate) fn transpose<'a, S: Simd>(
     simd: S,
     rows: &[[f64; 8]; 8],
-    columns: impl Iterator<Item = &'a mut [f64; 8]>,
+    columns: impl ExactSizeIterator<Item = &'a mut [f64; 8]>,
 ) {
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V4>() {
-        let turned = by_shuffles(*simd, rows);
-        for (column, turned) in columns.zip(turned) {
-            // Stored as a vector, which the compiler does not take apart again.
-            pulp::x86::V4::as_mut_simd_f64s(column).0[0] = pulp::cast(turned);
+        // Two columns need about half of the shuffles.
+        if columns.len() <= 2 {
+            store(by_shuffles(*simd, rows), columns.take(2));
+        } else {
+            store(by_shuffles(*simd, rows), columns);
         }
         return;
     }
     let _ = simd;
     for (index, column) in columns.enumerate() {
         *column = from_fn(|row| rows[row][index]);
+    }
+}
+
+/// Stored as vectors, which the compiler does not take apart again.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn store<'a>(turned: [std::arch::x86_64::__m512d; 8], columns: impl Iterator<Item = &'a mut [f64; 8]>) {
+    for (column, turned) in columns.zip(turned) {
+        pulp::x86::V4::as_mut_simd_f64s(column).0[0] = pulp::cast(turned);
     }
 }
 

@@ -115,7 +115,7 @@ impl GramOfRows<'_> {
         if self.batch.free() < self.count {
             self.gram.add(simd, &mut self.batch, &mut self.pace);
         }
-        self.batch.append(&self.waiting, self.count);
+        self.batch.append(self.waiting.iter(), self.count);
         self.count = 0;
     }
 }

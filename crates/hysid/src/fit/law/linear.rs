@@ -265,7 +265,7 @@ impl<'a> Gatherer<'a> {
         self.filled += 1;
         self.folds[fold].rows += 1;
         if self.filled == LINE {
-            self.batch.append(&self.lines, LINE);
+            self.batch.append(self.lines.iter(), LINE);
             self.filled = 0;
             if self.batch.free() < LINE {
                 self.folds[fold].gram.gather(&mut self.batch, &mut self.pace);
@@ -274,7 +274,7 @@ impl<'a> Gatherer<'a> {
     }
 
     fn flush(&mut self) {
-        self.batch.append(&self.lines, self.filled);
+        self.batch.append(self.lines.iter(), self.filled);
         self.filled = 0;
         self.folds[self.fold].gram.gather(&mut self.batch, &mut self.pace);
     }

@@ -147,7 +147,7 @@ impl Rows {
                     row.push(root * u);
                 }
             }
-            batch.append(&transposed, count);
+            batch.append(transposed.iter(), count);
             gram.gather(&mut batch, &mut pace);
         }
         gram
