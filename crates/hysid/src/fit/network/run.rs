@@ -129,7 +129,7 @@ impl TrainingRun {
             }
             Search::Subgradient { search, stall } => {
                 left[0] == Method::Subgradient
-                    && search.is_sound(frame.layout.len(), &dilatation_options())
+                    && search.is_sound(frame.layout.len(), &DilatationOptions::default())
                     && stall.is_sound()
             }
         };
@@ -410,13 +410,9 @@ fn begin(
     };
     let scales = scales(objective.layout(), &parameters);
     let mut function = NetworkFunction { objective, lowest: &mut best };
-    let search = SpaceDilatation::new(parameters, scales, dilatation_options(), &mut function)?;
+    let search = SpaceDilatation::new(parameters, scales, DilatationOptions::default(), &mut function)?;
     let stall = Stall::new(best.objective, options.stall);
     Ok((Search::Subgradient { search, stall }, best))
-}
-
-fn dilatation_options() -> DilatationOptions {
-    DilatationOptions { first_step: 0.1, coefficient: 3.0, ..DilatationOptions::default() }
 }
 
 /// Typical lengths of the parameters: a weight's own magnitude, but no less than a tenth.
