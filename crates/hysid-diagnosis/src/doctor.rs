@@ -17,6 +17,7 @@ mod start;
 
 use std::ops::Range;
 
+pub(crate) use clipping::clipped_outputs;
 use serde::Serialize;
 
 use super::artifact::Explanation;
@@ -180,11 +181,6 @@ pub(crate) fn without_defects(survey: &BranchSet, clipped: &[(usize, Range<usize
     let records = survey.data.records().iter().enumerate();
     let records = records.map(|(number, record)| record.clone().scored_where(|row| !is_defect(number, row)));
     Dataset::new(survey.data.names().clone(), records.collect()).ok()
-}
-
-/// The records and rows whose output an instrument clipped.
-pub(crate) fn clipped_outputs(survey: &BranchSet) -> Vec<(usize, Range<usize>)> {
-    clipping::clipped_rows(survey)
 }
 
 /// The longest time by which the output may lag behind the input or lead it, from how it turns where the input

@@ -129,7 +129,7 @@ fn made(finished: &[Finished], settings: Settings, further: &str) -> Text {
     let seconds: f64 = finished.iter().map(|one| one.seconds).sum();
     let quick = if settings.quick { " A quick run, with a fraction of the effort." } else { "" };
     rendering::made(&format!(
-        ", on {dates}, seed {}; {seconds:.0} s by the clock in total over all experiments, beside whatever else ran. The measured data of the \
+        ", on {dates}, seed {}; {seconds:.0} s, the sum of the times of all experiments, of which several run at once. The measured data of the \
          paper are not public: synthetic specimens replace them.{quick}{further}",
         settings.seed
     ))

@@ -300,7 +300,8 @@ impl SampleReadout {
         }
         let of_memory = dot::<S>(&self.direct, z, 0.0);
         let h = self.h.as_flattened_mut();
-        // Of a length that the compiler does not know: it takes a loop over one group apart.
+        // One loop over all groups, of a length that the compiler does not know: it unrolls a loop over a single group
+        // and then uses narrower vectors.
         for h in h.iter_mut() {
             *h = tanh::<S>(*h);
         }

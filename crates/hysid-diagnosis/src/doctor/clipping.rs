@@ -75,8 +75,8 @@ pub(super) fn complaints(survey: &BranchSet) -> Vec<DataIssue> {
     found
 }
 
-/// Rows of each record whose output is clipped.
-pub(super) fn clipped_rows(survey: &BranchSet) -> Vec<(usize, Range<usize>)> {
+/// The records and rows whose output an instrument clipped.
+pub(crate) fn clipped_outputs(survey: &BranchSet) -> Vec<(usize, Range<usize>)> {
     let of_ends = [1.0, -1.0].into_iter().filter_map(|sign| clipped(survey, true, sign));
     of_ends.flat_map(|of_end| of_end.runs).map(|run| (run.record, run.rows)).collect()
 }
