@@ -2,6 +2,7 @@
 //! matrix.
 
 mod blocked_cholesky;
+pub mod dilated_space;
 
 use pulp::{Simd, WithSimd};
 

@@ -11,8 +11,8 @@
 //! dilatation.
 //!
 //! Each dilatation shortens the steps in a direction across which the sub-gradient jumps, so that a narrow
-//! valley becomes round. `B` has the square of the number of variables as elements; one step costs about six
-//! operations for each, in addition to the function.
+//! valley becomes round. `B` has the square of the number of variables as entries; an iteration reads it twice
+//! and writes it once, in addition to the function.
 //!
 //! [`minimise`] minimises any function. Training advances step by step with [`SpaceDilatation`], whose whole
 //! state can be stored.
@@ -20,6 +20,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::linear_algebra::dot;
 use crate::optimise::MOST_COUNTED;
 use crate::optimise::stall::Stall;
@@ -104,6 +105,8 @@ const MOST_INNER_STEPS: usize = 500;
 const MOST_HALVINGS: usize = 100;
 /// A transformed vector this much shorter than rounding allows for is noise: the space begins anew.
 const NOISE: f64 = 1e-13;
+/// Largest entry of `B` below which all are divided by it.
+const SMALLEST_ENTRY: f64 = 1e-50;
 
 /// The state of a minimisation. It can be stored and resumed, to the last bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,8 +117,12 @@ pub struct SpaceDilatation {
     x: Vec<f64>,
     value: f64,
     gradient: Vec<f64>,
-    /// `B`, by rows.
-    transformation: Vec<f64>,
+    /// `B`.
+    space: DilatedSpace,
+    /// `Bᵀg`.
+    transformed: Vec<f64>,
+    /// `B Bᵀg / |Bᵀg|`, along which the next steps go.
+    direction: Vec<f64>,
     step: f64,
     /// Length of the last inner step in units of the scales.
     last_move: f64,
@@ -161,31 +168,35 @@ impl SpaceDilatation {
             ));
         }
         let best = Minimum { x: x.clone(), value, iterations: 0, evaluations: 1 };
-        let transformation = diagonal(&scales);
-        Ok(Self {
+        let space = DilatedSpace::of_scales(&scales);
+        let mut search = Self {
             options,
             scales,
             x,
             value,
             gradient,
-            transformation,
+            space,
+            transformed: Vec::new(),
+            direction: Vec::new(),
             step: options.first_step,
             last_move: options.first_step,
             best,
-        })
+        };
+        search.aim();
+        Ok(search)
     }
 
     /// True if a minimisation of a function of so many variables with these settings can go on from here.
     pub(crate) fn is_sound(&self, variables: usize, options: &DilatationOptions) -> bool {
         let n = variables;
         let are_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        let vectors = [&self.x, &self.scales, &self.gradient, &self.best.x];
+        let vectors =
+            [&self.x, &self.scales, &self.gradient, &self.transformed, &self.direction, &self.best.x];
         let numbers = [self.value, self.step, self.last_move, self.best.value];
         self.options == *options
             && vectors.into_iter().all(|vector| vector.len() == n && are_finite(vector))
             && self.scales.iter().all(|scale| *scale > 0.0)
-            && self.transformation.len() == n * n
-            && are_finite(&self.transformation)
+            && self.space.is_sound(n)
             && are_finite(&numbers)
             && self.step > 0.0
             && self.best.iterations.max(self.best.evaluations) <= MOST_COUNTED
@@ -200,55 +211,41 @@ impl SpaceDilatation {
     /// if it does.
     pub fn advance(&mut self, f: &mut impl Subdifferentiable) -> Option<Termination> {
         self.best.iterations += 1;
-        let n = self.x.len();
-        let mut transformed = self.transform_back(&self.gradient);
-        let mut length = norm(&transformed);
-        if length <= NOISE * norm(&self.gradient) * self.largest_entry() {
-            if norm(&self.gradient) == 0.0 {
-                return Some(Termination::GradientVanished);
-            }
-            self.begin_anew();
-            transformed = self.transform_back(&self.gradient);
-            length = norm(&transformed);
+        if norm(&self.gradient) == 0.0 {
+            return Some(Termination::GradientVanished);
         }
-        let along: Vec<f64> = transformed.iter().map(|u| u / length).collect();
-        let direction = self.transform(&along);
         if self.options.dilatation == Dilatation::Subgradient {
             let above = (self.value - self.options.lower_bound).max(0.0);
             let alpha = self.options.coefficient;
-            self.step = (alpha + 1.0) / alpha * above / length;
+            self.step = (alpha + 1.0) / alpha * above / norm(&self.transformed);
         }
-        let before = std::mem::replace(&mut self.gradient, vec![0.0; n]);
-        if !self.walk(&direction, f) {
+        let before = std::mem::replace(&mut self.gradient, vec![0.0; self.x.len()]);
+        if !self.walk(f) {
             self.gradient = before;
             return Some(Termination::NoFurtherImprovement);
         }
-        let mut xi = match self.options.dilatation {
-            Dilatation::Subgradient => along,
-            Dilatation::Difference => {
-                let difference: Vec<f64> =
-                    self.gradient.iter().zip(&before).map(|(after, before)| after - before).collect();
-                let xi = self.transform_back(&difference);
-                if norm(&xi) <= NOISE * norm(&difference) * self.largest_entry() {
-                    self.begin_anew();
-                    return None;
-                }
-                xi
-            }
+        let after = self.space.transpose_times(&self.gradient);
+        let xi = match self.options.dilatation {
+            Dilatation::Subgradient => std::mem::take(&mut self.transformed),
+            Dilatation::Difference => difference(&after, &self.transformed),
         };
-        let length = norm(&xi);
-        xi.iter_mut().for_each(|xi| *xi /= length);
-        self.dilate(&xi);
+        let is_noise = self.options.dilatation == Dilatation::Difference
+            && self.is_noise(&xi, &difference(&self.gradient, &before));
+        if is_noise {
+            self.begin_anew()
+        } else {
+            self.dilate(xi, after)
+        }
         None
     }
 
-    /// Steps along a direction until the function rises along it; false if the point cannot change.
-    fn walk(&mut self, direction: &[f64], f: &mut impl Subdifferentiable) -> bool {
+    /// Steps along the direction until the function rises along it; false if the point cannot change.
+    fn walk(&mut self, f: &mut impl Subdifferentiable) -> bool {
         let mut inner = 0;
         let mut halvings = 0;
-        let unit = norm_in(direction, &self.scales);
+        let unit = norm_in(&self.direction, &self.scales);
         loop {
-            let next: Vec<f64> = self.x.iter().zip(direction).map(|(x, d)| x - self.step * d).collect();
+            let next: Vec<f64> = self.x.iter().zip(&self.direction).map(|(x, d)| x - self.step * d).collect();
             if next == self.x {
                 return false;
             }
@@ -279,7 +276,7 @@ impl SpaceDilatation {
             if inner % STEPS_BEFORE_GROWTH == 0 {
                 self.step *= self.options.growth;
             }
-            if dot(direction, &self.gradient) <= 0.0 || inner == MOST_INNER_STEPS {
+            if dot(&self.direction, &self.gradient) <= 0.0 || inner == MOST_INNER_STEPS {
                 if inner == 1 {
                     self.step *= self.options.shrinkage;
                 }
@@ -291,47 +288,46 @@ impl SpaceDilatation {
     /// Forgets the dilatations. The step begins anew from the last one as it was in the undilated space:
     /// in the dilated one it may have grown beyond all bounds.
     fn begin_anew(&mut self) {
-        self.transformation = diagonal(&self.scales);
+        self.space = DilatedSpace::of_scales(&self.scales);
         self.step = self.last_move / STEPS_BEFORE_GROWTH as f64;
+        self.aim();
     }
 
-    /// `B <- B R_{1/α}(ξ)`.
-    fn dilate(&mut self, xi: &[f64]) {
-        let factor = 1.0 / self.options.coefficient - 1.0;
-        let stretched = self.transform(xi);
-        for (row, b) in self.transformation.chunks_exact_mut(xi.len()).zip(stretched) {
-            let factor = factor * b;
-            for (entry, xi) in row.iter_mut().zip(xi) {
-                *entry += factor * xi;
-            }
-        }
+    /// The direction in which the function falls, in a space that is not dilated yet.
+    fn aim(&mut self) {
+        self.transformed = self.space.transpose_times(&self.gradient);
+        let length = norm(&self.transformed).max(f64::MIN_POSITIVE);
+        let along: Vec<f64> = self.transformed.iter().map(|u| u / length).collect();
+        self.direction = self.space.times(&along);
+    }
+
+    /// `B <- B R_{1/α}(ξ / |ξ|)`, and the next direction. `transformed` is `Bᵀg` of the space as it was.
+    fn dilate(&mut self, mut xi: Vec<f64>, transformed: Vec<f64>) {
+        let length = norm(&xi);
+        xi.iter_mut().for_each(|xi| *xi /= length);
+        let gamma = 1.0 / self.options.coefficient;
+        // R is symmetric: Bᵀg of the new space is R Bᵀg.
+        let share = (gamma - 1.0) * dot(&xi, &transformed);
+        self.transformed = transformed;
+        self.transformed.iter_mut().zip(&xi).for_each(|(u, xi)| *u += share * xi);
+        let length = norm(&self.transformed).max(f64::MIN_POSITIVE);
+        let along: Vec<f64> = self.transformed.iter().map(|u| u / length).collect();
+        self.direction = self.space.dilate(&xi, gamma, &along);
         // det B falls with every dilatation. A common factor moves from B to the step without any
         // change to the points that follow.
-        let largest = self.largest_entry();
-        if largest < 1e-50 {
-            self.transformation.iter_mut().for_each(|entry| *entry /= largest);
+        if self.space.largest_entry() < SMALLEST_ENTRY {
+            let largest = self.space.normalise();
+            self.transformed.iter_mut().chain(&mut self.direction).for_each(|value| *value /= largest);
             self.step *= largest;
         }
-    }
-
-    fn largest_entry(&self) -> f64 {
-        self.transformation.iter().fold(0.0, |largest, entry| entry.abs().max(largest))
-    }
-
-    /// `B u`.
-    fn transform(&self, u: &[f64]) -> Vec<f64> {
-        self.transformation.chunks_exact(u.len()).map(|row| dot(row, u)).collect()
-    }
-
-    /// `Bᵀ g`.
-    fn transform_back(&self, g: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; g.len()];
-        for (row, &g) in self.transformation.chunks_exact(g.len()).zip(g) {
-            for (product, entry) in product.iter_mut().zip(row) {
-                *product += entry * g;
-            }
+        if norm(&self.gradient) > 0.0 && self.is_noise(&self.transformed, &self.gradient) {
+            self.begin_anew();
         }
-        product
+    }
+
+    /// True if `u = Bᵀg` is shorter than rounding allows for.
+    fn is_noise(&self, u: &[f64], g: &[f64]) -> bool {
+        norm(u) <= NOISE * norm(g) * self.space.largest_entry()
     }
 }
 
@@ -396,13 +392,8 @@ pub fn minimise(
     Ok((search.best, if reached { Termination::Converged } else { Termination::EpochsUsed }))
 }
 
-fn diagonal(scales: &[f64]) -> Vec<f64> {
-    let n = scales.len();
-    let mut matrix = vec![0.0; n * n];
-    for (i, scale) in scales.iter().enumerate() {
-        matrix[i * n + i] = *scale;
-    }
-    matrix
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 fn norm(v: &[f64]) -> f64 {

@@ -1,0 +1,227 @@
+//! The matrix of a dilated space, of minimisation by sub-gradients (theory.md (3.7)).
+
+use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use crate::simd;
+
+/// Rows that are worked on together.
+const ROWS: usize = 4;
+/// Partial sums of a scalar product.
+const SUMS: usize = 8;
+
+/// The square matrix `B` of a dilated space, which takes directions there to directions in the space of the
+/// variables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DilatedSpace {
+    n: usize,
+    /// By rows.
+    entries: Vec<f64>,
+    /// Magnitude of the largest entry.
+    largest: f64,
+}
+
+impl DilatedSpace {
+    /// The diagonal matrix of typical lengths of the variables.
+    pub fn of_scales(scales: &[f64]) -> Self {
+        let n = scales.len();
+        let mut entries = vec![0.0; n * n];
+        for (i, scale) in scales.iter().enumerate() {
+            entries[i * n + i] = *scale;
+        }
+        Self { n, largest: largest_of(&entries), entries }
+    }
+
+    /// True if it is a finite matrix for so many variables.
+    pub fn is_sound(&self, variables: usize) -> bool {
+        let is_of = self.n == variables && self.entries.len() == variables * variables;
+        is_of
+            && self.entries.iter().all(|entry| entry.is_finite())
+            && self.largest == largest_of(&self.entries)
+    }
+
+    /// Magnitude of the largest entry.
+    pub fn largest_entry(&self) -> f64 {
+        self.largest
+    }
+
+    /// `B u`.
+    pub fn times(&self, u: &[f64]) -> Vec<f64> {
+        self.entries.chunks_exact(self.n).map(|row| super::dot(row, u)).collect()
+    }
+
+    /// `Bᵀ g`.
+    pub fn transpose_times(&self, g: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.n];
+        simd::run(TransposeTimes { space: self, g, product: &mut product });
+        product
+    }
+
+    /// Dilates the space along the unit vector `along`, `B <- B (I + (γ - 1) along alongᵀ)`, and returns `B u` of
+    /// the new matrix: one pass through the matrix for both.
+    pub fn dilate(&mut self, along: &[f64], gamma: f64, u: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.n];
+        let largest = simd::run(Dilate { space: self, along, gamma, u, product: &mut product });
+        self.largest = largest;
+        product
+    }
+
+    /// Divides all entries by the largest, and returns that.
+    pub fn normalise(&mut self) -> f64 {
+        let largest = self.largest;
+        self.entries.iter_mut().for_each(|entry| *entry /= largest);
+        self.largest = 1.0;
+        largest
+    }
+}
+
+fn largest_of(entries: &[f64]) -> f64 {
+    entries.iter().fold(0.0, |largest, entry| entry.abs().max(largest))
+}
+
+struct TransposeTimes<'a> {
+    space: &'a DilatedSpace,
+    g: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl WithSimd for TransposeTimes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { space: DilatedSpace { n, entries, .. }, g, product } = self;
+        let (blocks, rest) = g.as_chunks::<ROWS>();
+        let (rows, rest_of_rows) = entries.split_at(blocks.len() * ROWS * n);
+        for (g, rows) in blocks.iter().zip(rows.chunks_exact(ROWS * n)) {
+            let [a, b, c, d] = rows_of(rows, *n);
+            for (j, product) in product.iter_mut().enumerate() {
+                *product += (g[0] * a[j] + g[1] * b[j]) + (g[2] * c[j] + g[3] * d[j]);
+            }
+        }
+        for (g, row) in rest.iter().zip(rest_of_rows.chunks_exact(*n)) {
+            for (product, entry) in product.iter_mut().zip(row) {
+                *product += g * entry;
+            }
+        }
+    }
+}
+
+/// Rows of equal length.
+#[inline(always)]
+fn rows_of(rows: &[f64], n: usize) -> [&[f64]; ROWS] {
+    let (a, rest) = rows.split_at(n);
+    let (b, rest) = rest.split_at(n);
+    let (c, d) = rest.split_at(n);
+    [a, b, c, d]
+}
+
+struct Dilate<'a> {
+    space: &'a mut DilatedSpace,
+    along: &'a [f64],
+    gamma: f64,
+    u: &'a [f64],
+    product: &'a mut [f64],
+}
+
+impl WithSimd for Dilate<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { space: DilatedSpace { n, entries, .. }, along, gamma, u, product } = self;
+        // B'u = Bu + (γ - 1) (B along) (alongᵀu)
+        let [share, _] = products(along, u, along);
+        let mut largest = [0.0; SUMS];
+        for (row, product) in entries.chunks_exact_mut(*n).zip(product) {
+            let [stretched, of_u] = products(row, along, u);
+            let factor = (gamma - 1.0) * stretched;
+            *product = of_u + factor * share;
+            add_multiple(row, along, factor, &mut largest);
+        }
+        largest.into_iter().fold(0.0, f64::max)
+    }
+}
+
+/// Scalar products of `a` with `b` and with `c`.
+#[inline(always)]
+fn products(a: &[f64], b: &[f64], c: &[f64]) -> [f64; 2] {
+    let ((a, a_rest), (b, b_rest), (c, c_rest)) =
+        (a.as_chunks::<SUMS>(), b.as_chunks::<SUMS>(), c.as_chunks::<SUMS>());
+    let (mut with_b, mut with_c) = ([0.0; SUMS], [0.0; SUMS]);
+    for ((a, b), c) in a.iter().zip(b).zip(c) {
+        for l in 0..SUMS {
+            with_b[l] += a[l] * b[l];
+        }
+        for l in 0..SUMS {
+            with_c[l] += a[l] * c[l];
+        }
+    }
+    let rest = |other: &[f64]| a_rest.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+    [with_b.iter().sum::<f64>() + rest(b_rest), with_c.iter().sum::<f64>() + rest(c_rest)]
+}
+
+/// `row += factor other`; keeps the largest magnitudes.
+#[inline(always)]
+fn add_multiple(row: &mut [f64], other: &[f64], factor: f64, largest: &mut [f64; SUMS]) {
+    let (row, row_rest) = row.as_chunks_mut::<SUMS>();
+    let (other, other_rest) = other.as_chunks::<SUMS>();
+    for (row, other) in row.iter_mut().zip(other) {
+        for l in 0..SUMS {
+            row[l] += factor * other[l];
+        }
+        for l in 0..SUMS {
+            largest[l] = if row[l].abs() > largest[l] { row[l].abs() } else { largest[l] };
+        }
+    }
+    for (l, (row, other)) in row_rest.iter_mut().zip(other_rest).enumerate() {
+        *row += factor * other;
+        largest[l] = row.abs().max(largest[l]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn some(n: usize, seed: usize) -> Vec<f64> {
+        (0..n).map(|i| ((i * 37 + seed * 101 + 1) as f64 * 0.61).sin()).collect()
+    }
+
+    /// Against the definition, entry by entry, for sizes with and without a rest.
+    #[test]
+    fn dilatations_follow_their_definition() {
+        for n in [1, 2, 5, 8, 13, 27, 64] {
+            let scales: Vec<f64> = (0..n).map(|i| 1.0 + 0.3 * i as f64).collect();
+            let mut space = DilatedSpace::of_scales(&scales);
+            let mut matrix: Vec<Vec<f64>> =
+                (0..n).map(|i| (0..n).map(|j| if i == j { scales[i] } else { 0.0 }).collect()).collect();
+            for round in 0..5 {
+                let mut along = some(n, round);
+                let length = along.iter().map(|a| a * a).sum::<f64>().sqrt();
+                along.iter_mut().for_each(|a| *a /= length);
+                let u = some(n, round + 10);
+                let product = space.dilate(&along, 0.4, &u);
+                for row in &mut matrix {
+                    let stretched: f64 = row.iter().zip(&along).map(|(b, a)| b * a).sum();
+                    row.iter_mut().zip(&along).for_each(|(b, a)| *b += (0.4 - 1.0) * stretched * a);
+                }
+                let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * n as f64, "{a} {b} of {n}");
+                for (i, row) in matrix.iter().enumerate() {
+                    near(product[i], row.iter().zip(&u).map(|(b, u)| b * u).sum());
+                }
+                space.times(&u).iter().zip(&product).for_each(|(a, b)| near(*a, *b));
+                let back = space.transpose_times(&u);
+                for (j, back) in back.iter().enumerate() {
+                    near(*back, matrix.iter().zip(&u).map(|(row, u)| row[j] * u).sum());
+                }
+                assert!(space.is_sound(n));
+                near(space.largest_entry(), matrix.iter().flatten().fold(0.0, |most, b| b.abs().max(most)));
+            }
+            assert!(!space.is_sound(n + 1));
+            let largest = space.largest_entry();
+            assert_eq!(space.normalise(), largest);
+            assert!(space.is_sound(n) && space.largest_entry() == 1.0);
+        }
+    }
+}
