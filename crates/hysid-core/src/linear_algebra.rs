@@ -80,6 +80,7 @@ impl Gram {
     }
 
     /// The element at `row` and `column`: the scalar product of these columns of `A`.
+    #[inline]
     pub fn at(&self, row: usize, column: usize) -> f64 {
         let (row, column) = (row.max(column), row.min(column));
         debug_assert!(row < self.n);
@@ -101,34 +102,8 @@ impl Gram {
     /// Adds the rows of a batch and empties it; incomplete once the pace is over.
     #[inline(always)]
     pub fn add<S: Simd>(&mut self, simd: S, batch: &mut Batch, pace: &mut Pace<'_>) {
-        debug_assert_eq!(batch.columns, self.n);
-        if batch.rows == 0 {
-            return;
-        }
-        batch.zero_rest();
-        let capacity = batch.capacity;
-        let columns = |first: usize| -> [&[S::f64s]; TILE] {
-            std::array::from_fn(|k| {
-                S::as_simd_f64s(&batch.data[(first + k) * capacity..(first + k + 1) * capacity]).0
-            })
-        };
-        for first in (0..self.stride).step_by(TILE) {
-            if pace.is_over(first * TILE * capacity / 4) {
-                break;
-            }
-            let left = columns(first);
-            for second in (0..=first).step_by(TILE) {
-                let right = columns(second);
-                if S::REGISTER_COUNT >= 32 {
-                    self.add_tile::<S, TILE>(simd, first, left, second, right);
-                } else {
-                    let halves = [[right[0], right[1]], [right[2], right[3]]];
-                    self.add_tile::<S, 2>(simd, first, left, second, halves[0]);
-                    self.add_tile::<S, 2>(simd, first, left, second + 2, halves[1]);
-                }
-            }
-        }
-        batch.clear();
+        // One function of each instruction set for all kernels, and not a copy wherever they call it.
+        simd.vectorize(AddBatch { gram: self, batch, pace });
     }
 
     /// Scalar products of four columns with `N` others, all sums in registers.
@@ -172,7 +147,35 @@ impl WithSimd for AddBatch<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.gram.add(simd, self.batch, self.pace);
+        let Self { gram, batch, pace } = self;
+        debug_assert_eq!(batch.columns, gram.n);
+        if batch.rows == 0 {
+            return;
+        }
+        batch.zero_rest();
+        let capacity = batch.capacity;
+        let columns = |first: usize| -> [&[S::f64s]; TILE] {
+            std::array::from_fn(|k| {
+                S::as_simd_f64s(&batch.data[(first + k) * capacity..(first + k + 1) * capacity]).0
+            })
+        };
+        for first in (0..gram.stride).step_by(TILE) {
+            if pace.is_over(first * TILE * capacity / 4) {
+                break;
+            }
+            let left = columns(first);
+            for second in (0..=first).step_by(TILE) {
+                let right = columns(second);
+                if S::REGISTER_COUNT >= 32 {
+                    gram.add_tile::<S, TILE>(simd, first, left, second, right);
+                } else {
+                    let halves = [[right[0], right[1]], [right[2], right[3]]];
+                    gram.add_tile::<S, 2>(simd, first, left, second, halves[0]);
+                    gram.add_tile::<S, 2>(simd, first, left, second + 2, halves[1]);
+                }
+            }
+        }
+        batch.clear();
     }
 }
 
@@ -196,16 +199,19 @@ impl Symmetric {
     }
 
     /// The element `i` of the diagonal.
+    #[inline]
     pub fn diagonal(&self, i: usize) -> f64 {
         self.data[i * self.n + i]
     }
 
     /// The element at a row and a column.
+    #[inline]
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.data[row.max(column) * self.n + row.min(column)]
     }
 
     /// Adds to the entry of `row` and `column`, which is also that of `column` and `row`.
+    #[inline]
     pub fn add_at(&mut self, row: usize, column: usize, value: f64) {
         self.data[row.max(column) * self.n + row.min(column)] += value;
     }
@@ -236,6 +242,7 @@ impl Symmetric {
     }
 
     /// Adds to the element `i` of the diagonal.
+    #[inline]
     pub fn add_to_diagonal(&mut self, i: usize, value: f64) {
         self.data[i * self.n + i] += value;
     }

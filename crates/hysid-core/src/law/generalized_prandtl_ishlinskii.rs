@@ -48,6 +48,7 @@ impl Envelope {
     }
 
     /// The envelope at an input.
+    #[inline]
     pub fn value(&self, x: f64) -> f64 {
         self.a0 * (self.a1 * x + self.a2).tanh() + self.a3
     }

@@ -108,6 +108,7 @@ impl DeadZones {
     }
 
     /// The value `S(z)`, in the unit of the output.
+    #[inline]
     pub fn value(&self, z: f64) -> f64 {
         let parts = &self.parts;
         let zones = parts.thresholds.iter().zip(&parts.weights);

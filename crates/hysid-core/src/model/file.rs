@@ -23,6 +23,9 @@ pub const FORMAT_VERSION: u64 = 6;
 /// Version of the layout of a model that begins in the virgin state: the same without initial states.
 pub const VIRGIN_FORMAT_VERSION: u64 = 5;
 
+/// The only version with another layout: it knew networks only.
+const NETWORK_FORMAT_VERSION: u64 = 1;
+
 /// Up to this version the checksum passed over all white space, in texts too.
 const LOOSE_CHECKSUM: u64 = 4;
 
@@ -336,10 +339,11 @@ pub(super) fn read(text: &str) -> Result<Model> {
             "the model file was changed after it was written: its checksum does not match".into(),
         ));
     }
+    // From text in every version: the text tells the place of an error, and reading values instead would compile the
+    // reader of every part a second time.
     let file = match version {
-        // The text itself tells the place of an error.
-        VIRGIN_FORMAT_VERSION | FORMAT_VERSION => serde_json::from_str(text),
-        _ => serde_json::from_value(upgraded(value)),
+        NETWORK_FORMAT_VERSION => serde_json::from_str(&upgraded(value).to_string()),
+        _ => serde_json::from_str(text),
     };
     let file: File = file.map_err(|error| {
         damaged(format!("the model file does not have the layout of version {version}: {error}"))
@@ -347,17 +351,15 @@ pub(super) fn read(text: &str) -> Result<Model> {
     assemble(file).map_err(|error| damaged(format!("the model file contradicts itself: {error}")))
 }
 
-/// A file of any earlier version in the layout of the present one.
+/// A file of [`NETWORK_FORMAT_VERSION`] in the layout of the present one.
 fn upgraded(mut value: serde_json::Value) -> serde_json::Value {
-    if value["version"] == 1
-        && let Some(file) = value.as_object_mut()
-    {
-        // Version 1 knew networks only, and had their parts side by side.
+    if let Some(file) = value.as_object_mut() {
+        // Networks had their parts side by side.
         let parts = ["scaling", "architecture", "memory", "readout"];
         let parts: serde_json::Map<_, _> =
             parts.into_iter().filter_map(|part| Some((part.to_string(), file.remove(part)?))).collect();
         file.insert("network".into(), parts.into());
-        // It named the trainer beside the options and had but one.
+        // The trainer was named beside the options, and there was but one.
         if let Some(training) = file.get_mut("training").and_then(serde_json::Value::as_object_mut) {
             training.remove("trainer");
         }

@@ -2,10 +2,14 @@
 //!
 //! All rows of a record advance the memory. Rows with a target are collected, so that readout and derivatives
 //! are computed for whole blocks of them. The storage needed does not grow with the record.
+//!
+//! The memory's part of a block and that of its rows with a target are operations of their own: each is compiled
+//! once for an instruction set, the memory's for all kernels together. Inlined, they would be compiled at every place
+//! that calls them, in every kernel.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
-use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, Row};
+use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, MemoryState, Row, Sensitivity};
 use crate::network::readout::Readout;
 use crate::network::{Architecture, limited};
 use crate::stop_check::{Pace, StopCheck};
@@ -161,21 +165,14 @@ impl<'a> Workspace<'a> {
                 steps[..rows].copy_from_slice(&drive.steps[start..start + rows]);
             }
             self.block.target[..rows].copy_from_slice(&target[start..start + rows]);
-            let Block { u, z, slopes, .. } = &mut self.block;
-            if self.with_slopes {
-                self.memory.forward_with_slopes(
-                    simd,
-                    &mut state,
-                    &mut sensitivity,
-                    u,
-                    &steps,
-                    rows,
-                    z,
-                    slopes,
-                );
-            } else {
-                self.memory.forward(simd, &mut state, u, &steps, rows, z);
-            }
+            simd.vectorize(Advance {
+                memory: &self.memory,
+                state: &mut state,
+                sensitivity: self.with_slopes.then_some(&mut sensitivity),
+                block: &mut self.block,
+                steps: &steps,
+                rows,
+            });
             let wanted = self.block.target[..rows].iter().filter(|y| !y.is_nan()).count();
             if wanted == BLOCK && self.filled == 0 {
                 std::mem::swap(&mut self.block, &mut self.pending);
@@ -203,11 +200,54 @@ impl<'a> Workspace<'a> {
     #[inline(always)]
     fn flush<S: Simd>(&mut self, simd: S, to: &mut impl TakeBlock) {
         let rows = std::mem::take(&mut self.filled);
-        if rows == 0 {
-            return;
+        if rows > 0 {
+            simd.vectorize(HandOn { readout: &self.readout, block: &mut self.pending, rows, to });
         }
-        let Block { z, h, .. } = &mut self.pending;
-        self.readout.tanh_layer(simd, z, rows, h);
-        to.take(simd, rows, &self.pending, &self.readout);
+    }
+}
+
+/// Advances the memory by the rows of a block.
+struct Advance<'w> {
+    memory: &'w MemoryLayer,
+    state: &'w mut MemoryState,
+    /// If slopes are wanted.
+    sensitivity: Option<&'w mut Sensitivity>,
+    block: &'w mut Block,
+    steps: &'w Row,
+    rows: usize,
+}
+
+impl WithSimd for Advance<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { memory, state, sensitivity, block, steps, rows } = self;
+        let Block { u, z, slopes, .. } = block;
+        match sensitivity {
+            Some(sensitivity) => {
+                memory.forward_with_slopes(simd, state, sensitivity, u, steps, rows, z, slopes);
+            }
+            None => memory.forward(simd, state, u, steps, rows, z),
+        }
+    }
+}
+
+/// Completes a block of rows with a target and hands it on.
+struct HandOn<'w, T> {
+    readout: &'w Readout,
+    block: &'w mut Block,
+    rows: usize,
+    to: &'w mut T,
+}
+
+impl<T: TakeBlock> WithSimd for HandOn<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { readout, block, rows, to } = self;
+        readout.tanh_layer(simd, &block.z, rows, &mut block.h);
+        to.take(simd, rows, block, readout);
     }
 }

@@ -99,7 +99,8 @@ impl Variable {
     }
 }
 
-/// A family of laws, in the form of the search.
+/// A family of laws, in the form of the search. The search knows it by reference only, so that the compiler makes one
+/// search for all families: a call costs nothing beside the run over a record that it asks for.
 pub(crate) trait Family: Sync {
     /// The parameters that are searched.
     fn variables(&self) -> &[Variable];
@@ -202,8 +203,8 @@ impl Found {
 }
 
 /// The squared residual over the variance of the output, as a function of `u`.
-pub(super) struct Objective<'a, F> {
-    family: &'a F,
+pub(super) struct Objective<'a> {
+    family: &'a dyn Family,
     series: &'a [Series],
     target: Vec<f64>,
     /// Sum of the squared deviations of the output from its mean.
@@ -212,7 +213,7 @@ pub(super) struct Objective<'a, F> {
     stop: StopCheck<'a>,
 }
 
-impl<F: Family> Objective<'_, F> {
+impl Objective<'_> {
     fn parameters(&self, u: &[f64]) -> Vec<f64> {
         self.family.variables().iter().zip(u).map(|(variable, &u)| variable.value(u)).collect()
     }
@@ -240,8 +241,8 @@ impl<F: Family> Objective<'_, F> {
 /// # Errors
 /// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
 /// before.
-pub(crate) fn search<F: Family>(
-    family: &F,
+pub(crate) fn search(
+    family: &dyn Family,
     series: &[Series],
     effort: Effort,
     observer: &mut SearchObserver<'_>,
@@ -288,7 +289,7 @@ pub(crate) fn search<F: Family>(
 
 /// The point that was asked for, or else the best of many points that lie apart: those that the data suggest and
 /// random ones.
-fn beginnings<F: Family>(objective: &Objective<'_, F>, effort: &Effort) -> Vec<Descent> {
+fn beginnings(objective: &Objective<'_>, effort: &Effort) -> Vec<Descent> {
     let variables = objective.family.variables();
     if effort.near.len() == variables.len() {
         let places = variables.iter().zip(&effort.near).map(|(variable, &value)| variable.place(value));

@@ -10,8 +10,8 @@ use crate::optimise::multi_start::Start;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
+use super::Objective;
 use super::projection::Projection;
-use super::{Family, Objective};
 
 /// Step of a finite difference in `u`.
 const DIFFERENCE: f64 = 1e-5;
@@ -39,7 +39,7 @@ impl Descent {
     }
 
     /// One iteration, which lowers the residual unless there is no way on.
-    pub fn advance<F: Family>(&mut self, objective: &Objective<'_, F>) {
+    pub fn advance(&mut self, objective: &Objective<'_>) {
         if self.ended.is_none() {
             self.ended = self.search.advance(objective);
         }
@@ -61,7 +61,7 @@ impl Start for Descent {
     }
 }
 
-impl<F: Family> Problem for Objective<'_, F> {
+impl Problem for Objective<'_> {
     type Value = Projection;
     type Curvature = Symmetric;
     const RULES: Rules = Rules::KINKED;
