@@ -140,13 +140,20 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
     }
     let part = match (progress.phase, progress.method) {
         (Phase::Starts, _) => return "cross-validation".into(),
-        (Phase::AllData, Method::LevenbergMarquardt) if best == f64::INFINITY => {
-            return format!("{starts} starts");
+        // Several starts at a time have no epoch in common.
+        (Phase::AllData, Method::LevenbergMarquardt | Method::Subgradient) if starts > 1 => {
+            let starts = format!("{starts} starts");
+            if best == f64::INFINITY {
+                return starts;
+            }
+            starts
         }
-        (Phase::AllData, Method::LevenbergMarquardt) => format!("{starts} starts"),
-        (Phase::AllData, Method::Genetic | Method::Subgradient) if best == f64::INFINITY => {
+        (Phase::AllData, Method::Genetic | Method::Subgradient | Method::LevenbergMarquardt)
+            if best == f64::INFINITY =>
+        {
             return "first evaluations".into();
         }
+        (Phase::AllData, Method::LevenbergMarquardt) => format!("iteration {}", progress.epoch),
         (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
         (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY && progress.epoch == 0 => {
             return "least squares".into();

@@ -205,7 +205,7 @@ fn command_lines() {
             (
                 "fit data.csv --training guess",
                 2,
-                "invalid value 'guess' for '--training <NAME>' [possible values: levenberg-marquardt, hybrid, genetic, subgradient] (see `hysid --help`)",
+                "invalid value 'guess' for '--training <NAME>' [possible values: subgradient, levenberg-marquardt, hybrid, genetic] (see `hysid --help`)",
             ),
             (
                 "fit data.csv -o data.html",

@@ -214,7 +214,7 @@ fn records_are_held_out_in_turn() {
     assert_eq!(ran.status, Some(0), "{}", ran.stderr);
     assert!(ran.stdout.contains("test 0, test 2") && ran.stdout.contains("unseen kN"), "{}", ran.stdout);
     // The same warnings as fit.
-    assert!(ran.stderr.contains("levenberg-marquardt ignores --population"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("subgradient ignores --population"), "{}", ran.stderr);
 
     bench.put(
         "few.csv",

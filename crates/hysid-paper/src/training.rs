@@ -67,8 +67,8 @@ struct Training {
 /// All trainings from one seed.
 struct Repetition {
     trainings: Vec<Training>,
-    /// Seconds until Levenberg-Marquardt, begun anew whenever it ends, reaches the hybrid's error; `None`
-    /// if it does not within the hybrid's time.
+    /// Seconds until the sub-gradient method, begun anew after half of the hybrid's epochs, reaches the hybrid's
+    /// error; `None` if it does not within the hybrid's time.
     seconds_to_match: Option<f64>,
 }
 
@@ -170,7 +170,8 @@ fn training(protocol: &Protocol, trainer: Trainer, seed: u64, observer: &dyn Obs
     })
 }
 
-/// Levenberg-Marquardt from one start after another until it is as low as the hybrid was at its end.
+/// The sub-gradient method from one start after another, each with the epochs of the hybrid's second phase, until it is
+/// as low as the hybrid was at its end.
 fn seconds_to_match(
     protocol: &Protocol,
     seed: u64,
@@ -187,7 +188,10 @@ fn seconds_to_match(
             break;
         }
         // Seeds of other repetitions are not used twice.
-        let options = protocol.options(Trainer::LevenbergMarquardt, seed + start * 1_000_003);
+        let options = FitOptions {
+            epochs: protocol.epochs / 2,
+            ..protocol.options(Trainer::Subgradient, seed + start * 1_000_003)
+        };
         let fitted = fit(&protocol.train, &options, &mut |progress| {
             if progress.train_nrmse_percent <= target {
                 reached = Some(elapsed());

@@ -363,7 +363,7 @@ fn pnn_and_gpnn_find_their_own_parameters() {
 #[test]
 fn penalties_stay_where_there_is_noise_or_they_were_asked_for() {
     let data = with_noise(&bank_data(200), 3.0, 7).unwrap();
-    let options = FitOptions { starts: 2, epochs: 10, ..small(Family::PreisachNn, 4, 4) };
+    let options = FitOptions { starts: 2, epochs: 400, ..small(Family::PreisachNn, 4, 4) };
     assert_eq!(quietly(&data, &options).model.provenance().penalties, Some(Regularisation::default()));
     let asked = FitOptions { ridge: Some(1e-3), ..options };
     let penalties = Regularisation { ridge: 1e-3, ..Regularisation::default() };

@@ -403,7 +403,7 @@ mod tests {
             (json!({ "model": "duhem-nn", "states": 21 }), "states 21: choose a whole number from 1 to 20"),
             (json!({ "model": "duhem-nn", "hidden": 0 }), "hidden 0: choose a whole number from 1 to 1000"),
             (json!({ "model": "xpn" }), "model \"xpn\": choose one of auto, pnn, gpnn"),
-            (json!({ "training": "lm" }), "training \"lm\": choose one of levenberg-marquardt,"),
+            (json!({ "training": "lm" }), "training \"lm\": choose one of subgradient, levenberg-marquardt,"),
             (json!({ "validation": 1.0 }), "validation 1.0: a number between 0 and 1 is needed"),
             (json!({ "thresholds": 0.5 }), "thresholds 0.5: numbers above 0 are needed"),
         ] {
@@ -441,7 +441,7 @@ mod tests {
         }
         assert!(ignored(json!({ "model": "random-stops", "no_deterioration": true })).is_empty());
         let by_whom = |options| chosen(options).unwrap().ignored()[0].by;
-        assert_eq!(by_whom(json!({ "model": "xpnn", "population": 50 })), "levenberg-marquardt");
+        assert_eq!(by_whom(json!({ "model": "xpnn", "population": 50 })), "subgradient");
         assert_eq!(by_whom(json!({ "model": "pnn", "history": true })), "pnn");
     }
 

@@ -17,14 +17,14 @@ use crate::options::table::check;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Trainer {
-    /// Levenberg-Marquardt with variable projection from several starts.
-    #[default]
+    /// Levenberg-Marquardt from several starts.
     LevenbergMarquardt,
     /// The paper's: a genetic algorithm, then the sub-gradient method from its best individual.
     Hybrid,
     /// The genetic algorithm alone.
     Genetic,
-    /// The sub-gradient method with space dilatation alone.
+    /// The sub-gradient method with space dilatation from several starts.
+    #[default]
     Subgradient,
 }
 
@@ -46,7 +46,7 @@ pub enum Method {
 impl Trainer {
     /// All trainers.
     pub const ALL: [Trainer; 4] =
-        [Trainer::LevenbergMarquardt, Trainer::Hybrid, Trainer::Genetic, Trainer::Subgradient];
+        [Trainer::Subgradient, Trainer::LevenbergMarquardt, Trainer::Hybrid, Trainer::Genetic];
 
     /// The name on the command line and in model files.
     pub fn name(self) -> &'static str {
@@ -58,11 +58,12 @@ impl Trainer {
         }
     }
 
-    /// Default number of starts: 1 for the trainers of the paper, which trains one network.
+    /// Default number of starts: 1 where a population is the start.
     pub fn default_starts(self) -> usize {
         match self {
             Trainer::LevenbergMarquardt => 8,
-            _ => 1,
+            Trainer::Subgradient => 2,
+            Trainer::Hybrid | Trainer::Genetic => 1,
         }
     }
 
@@ -70,7 +71,8 @@ impl Trainer {
     pub fn default_epochs(self) -> usize {
         match self {
             Trainer::LevenbergMarquardt => 40,
-            _ => 2000,
+            Trainer::Subgradient => 400,
+            Trainer::Hybrid | Trainer::Genetic => 2000,
         }
     }
 
@@ -119,7 +121,7 @@ pub struct FitOptions {
     #[serde(default, skip_serializing_if = "InputOptions::is_none")]
     pub shaping: InputOptions,
     /// The trainer.
-    #[serde(default)]
+    #[serde(default = "trainer_of_old_files")]
     pub training: Trainer,
     /// Number of random networks, or populations, to start from. The one with the lowest objective becomes
     /// the model, and a few of them are cross-validated.
@@ -150,6 +152,11 @@ pub struct FitOptions {
     /// Largest number of scored rows of early iterations. All rows advance the memory, and the last
     /// iterations use all scored rows.
     pub thin: usize,
+}
+
+/// Files without a trainer come from a version that had one.
+fn trainer_of_old_files() -> Trainer {
+    Trainer::LevenbergMarquardt
 }
 
 fn default_population() -> usize {

@@ -187,10 +187,10 @@ pub const OPTIONS: [FitOption; 30] = [
     FitOption {
         name: "training",
         group: Training,
-        meaning: "Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the \
-                  sub-gradient method with space dilatation; or one of these two alone",
+        meaning: "Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic \
+                  algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method",
         values: Values::Names(trainers),
-        default: "levenberg-marquardt",
+        default: "subgradient; levenberg-marquardt for the networks of auto",
         used_by: of_networks,
     },
     FitOption {
@@ -198,7 +198,7 @@ pub const OPTIONS: [FitOption; 30] = [
         group: Training,
         meaning: "Number of random starts: networks, populations or parameter sets from which the training begins",
         values: Values::Count(1, MOST_STARTS),
-        default: "8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for \
+        default: "2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for \
                   rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
                   generalized-prandtl-ishlinskii",
         used_by: |_, _| true,
@@ -209,8 +209,8 @@ pub const OPTIONS: [FitOption; 30] = [
         meaning: "Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm, \
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
         values: Values::Count(0, MOST_EPOCHS),
-        default: "40; 2000 for trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and \
-                  neuro-madelung, 45 for duhem-nn",
+        default: "400; 2000 for hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for \
+                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn",
         used_by: |_, _| true,
     },
     FitOption {

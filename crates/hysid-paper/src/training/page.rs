@@ -234,8 +234,9 @@ pub(super) fn matched(repetitions: &[Repetition]) -> String {
     let reached = match shares.as_slice() {
         [] => {
             return format!(
-                "Levenberg-Marquardt, restarted whenever it ends, does not reach the hybrid's final error \
-                 within the hybrid's time from any of {tried}."
+                "The sub-gradient method alone, begun anew from another random network after half as many epochs \
+                 as the hybrid has, does not reach the hybrid's final error within the hybrid's time from any of \
+                 {tried}."
             );
         }
         shares => shares,
@@ -243,8 +244,9 @@ pub(super) fn matched(repetitions: &[Repetition]) -> String {
     let (low, median, high) = range(reached);
     let part = |share: f64| format!("1/{:.2}", Significant(1.0 / share));
     format!(
-        "Levenberg-Marquardt, restarted whenever it ends, reaches the hybrid's final error within the \
-         hybrid's time in {} of {tried}, after {} of that time ({} to {}).",
+        "The sub-gradient method alone, begun anew from another random network after half as many epochs as the \
+         hybrid has, reaches the hybrid's final error within the hybrid's time in {} of {tried}, after {} of that \
+         time ({} to {}).",
         reached.len(),
         part(median),
         part(low),

@@ -149,17 +149,19 @@ def fit(
         lower end of the input range, demagnetised, or unknown and found for each record. Default: virgin; for
         auto, cross-validation chooses among virgin, a warm-up and unknown.
     training : str, optional
-        Trainer of a network: Levenberg-Marquardt; or the paper's hybrid of a genetic algorithm and the
-        sub-gradient method with space dilatation; or one of these two alone. Default: levenberg-marquardt.
+        Trainer of a network: the sub-gradient method with space dilatation, Levenberg-Marquardt, the genetic
+        algorithm, or the paper's hybrid of the genetic algorithm and the sub-gradient method. Default:
+        subgradient; levenberg-marquardt for the networks of auto.
     starts : int, optional
-        Number of random starts: networks, populations or parameter sets from which the training begins. Default:
-        8; 2 for auto; 1 for trainers other than levenberg-marquardt; 16 for rate-dependent-prandtl-ishlinskii
-        and neuro-madelung, 6 for duhem-nn, 32 for generalized-prandtl-ishlinskii.
+        Number of random starts: networks, populations or parameter sets from which the training begins.
+        Default: 2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for
+        rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for
+        generalized-prandtl-ishlinskii.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
-        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 40; 2000 for
-        trainers other than levenberg-marquardt; 60 for generalized-prandtl-ishlinskii and neuro-madelung, 45
-        for duhem-nn.
+        iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400; 2000 for
+        hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for
+        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional

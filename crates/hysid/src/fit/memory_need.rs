@@ -12,6 +12,7 @@ use crate::fit::law::{
     prandtl_ishlinskii, preisach,
 };
 use crate::fit::network::curvature::has_few_rows;
+use crate::fit::network::fitting::room;
 use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
 use crate::law::duhem_nn::Layout;
 use crate::network::Architecture;
@@ -95,7 +96,6 @@ fn of_network(data: &Dataset, options: &FitOptions, threads: usize) -> Result<Me
     let (searched, features) = (architecture.searched_parameters(), architecture.output_weights());
     let rows = data.scored().min(options.thin);
     let (p, m, n) = (searched as f64, features as f64, rows as f64);
-    let runs = options.starts.min(4 * threads);
     let busy = threads.min(options.starts.max(if options.starts > 1 { RUNS_ON_FOLDS } else { 1 })) as f64;
 
     let evaluation = 4.0 * m * m;
@@ -105,32 +105,40 @@ fn of_network(data: &Dataset, options: &FitOptions, threads: usize) -> Result<Me
         _ if has_few_rows(searched, features, rows) => 2.0 * p * (n + m) + 3.0 * (n + m) * (n + m),
         _ => (m + p) * (m + p) + p * p + p * m,
     };
-    let buffers = 500.0 * (m + p);
+    // Rows of the columns that a matrix is made of.
+    let buffers = 500.0 * if options.training == Trainer::LevenbergMarquardt { m + p } else { m };
     let all_runs = options.starts.saturating_add(if options.starts > 1 { RUNS_ON_FOLDS } else { 0 });
-    let state = m * m
-        + 4.0 * p
-        + match options.training {
-            Trainer::LevenbergMarquardt => 0.0,
-            Trainer::Genetic => 2.0 * options.population as f64 * p,
-            Trainer::Subgradient => p * p,
-            Trainer::Hybrid => (p * p).max(2.0 * options.population as f64 * p),
-        };
-    let states = all_runs as f64 * state + runs as f64 * state;
+    // The dilated space: a dilatation of each epoch, and at most their matrix.
+    let space = p * p.min(options.epochs as f64);
+    let under_way = all_runs.min(room(searched, options.epochs, threads));
+    let state = match options.training {
+        Trainer::LevenbergMarquardt => 0.0,
+        Trainer::Genetic => 2.0 * options.population as f64 * p,
+        Trainer::Subgradient => space,
+        Trainer::Hybrid => space.max(2.0 * options.population as f64 * p),
+    };
+    let (kept, states) = (all_runs as f64 * (m * m + 4.0 * p), under_way as f64 * (m * m + state));
+    let of_states = match options.training.is_genetic() {
+        true => (format!("populations of {} for {under_way} runs", options.population), SMALLER_POPULATION),
+        false => (format!("the search in {searched} parameters"), FEWER_NEURONS),
+    };
     let copies = copies_of_data(data, &architecture, options.starts > 1);
-    let total = busy * (evaluation + slope + buffers) + states + copies;
+    let total = busy * (evaluation + slope + buffers) + kept + states + copies;
     Ok(largest_of(
         total,
         [
             (busy * slope, format!("derivatives by {searched} searched parameters"), FEWER_NEURONS),
             (busy * evaluation, format!("sums over {features} output weights"), FEWER_NEURONS),
-            (states, format!("{all_runs} runs of {searched} searched parameters"), FEWER_STARTS),
+            (kept, format!("{all_runs} runs of {searched} searched parameters"), FEWER_STARTS),
+            (states, of_states.0, of_states.1),
             (copies, format!("{} rows of {} inputs", data.rows(), architecture.channels()), FEWER_ROWS),
         ],
     ))
 }
 
 const FEWER_NEURONS: &str = "choose fewer hidden, stops or relaxation neurons, or fewer inputs";
-const FEWER_STARTS: &str = "choose fewer starts, a smaller population, or fewer neurons";
+const FEWER_STARTS: &str = "choose fewer starts or fewer neurons";
+const SMALLER_POPULATION: &str = "choose a smaller population, fewer starts, or fewer neurons";
 const FEWER_ROWS: &str = "fit to fewer rows";
 const FEWER_OPERATORS: &str = "choose fewer operators";
 
@@ -256,7 +264,8 @@ mod tests {
     #[test]
     fn the_largest_network_is_refused_with_numbers_and_advice() {
         let rows = data(200_000, 1);
-        let need = need(&rows, serde_json::json!({ "model": "xpnn+", "stops": 300, "hidden": 300 }));
+        let sizes = serde_json::json!({ "model": "xpnn+", "stops": 300, "hidden": 300, "training": "levenberg-marquardt" });
+        let need = need(&rows, sizes);
         assert!(need.bytes > 60e9, "{need:?}");
         let error = need.check(16e9).unwrap_err().to_string();
         for words in ["GB", "16.0 GB are available", "searched parameters", "fewer hidden"] {

@@ -16,7 +16,7 @@
 pub mod checkpoint;
 pub(crate) mod curvature;
 mod encoding;
-mod fitting;
+pub(crate) mod fitting;
 pub(crate) mod least_squares;
 pub mod objective;
 pub mod random_stops;

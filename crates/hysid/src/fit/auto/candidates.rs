@@ -13,7 +13,7 @@ use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
 use crate::options::input_options::InputOptions;
 use crate::options::network::ENSEMBLE_PENALTIES;
-use crate::options::network::{FitOptions, Regularisation};
+use crate::options::network::{FitOptions, Regularisation, Trainer};
 use crate::options::variants::variants;
 use crate::options::{FitSpec, ModelName};
 
@@ -387,7 +387,7 @@ fn of_network(
         ridge: Some(options.ridge.unwrap_or(ENSEMBLE_PENALTIES.ridge)),
         decay: Some(options.decay.unwrap_or(ENSEMBLE_PENALTIES.decay)),
         thin: THIN,
-        ..FitOptions::default()
+        ..FitOptions::of(Trainer::LevenbergMarquardt)
     }
 }
 

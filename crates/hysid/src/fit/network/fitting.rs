@@ -53,6 +53,8 @@ const LAST_EPOCHS_ON_ALL_ROWS: usize = 4;
 
 /// Runs that advance together, for each thread: enough that no thread waits long for another.
 const RUNS_PER_THREAD: usize = 4;
+/// Numbers that the states of these runs hold at most, if there are several of them.
+const MOST_NUMBERS: usize = 32 << 20;
 
 /// All runs of a fit so far.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -420,7 +422,8 @@ impl<'a> Fitting<'a> {
         let (all, begun) = (beginnings.len(), (stage.runs)(&mut self.state).len());
         require(begun <= all, "its number of runs")?;
         let mut waiting = beginnings.into_iter().skip(begun);
-        let room = RUNS_PER_THREAD * rayon::current_num_threads();
+        let threads = rayon::current_num_threads();
+        let room = room(self.architecture.searched_parameters(), stage.epochs, threads);
         while !observer.is_over() {
             let (options, runs) = (&self.whole.options, (stage.runs)(&mut self.state));
             let under_way = runs.iter().filter(|run| !run.is_over()).count();
@@ -494,6 +497,12 @@ impl<'a> Fitting<'a> {
         let done: usize = self.state.all_runs().map(of_run).sum();
         (done as f64 / self.epochs_expected.max(1) as f64).min(1.0)
     }
+}
+
+/// Runs of so many parameters and epochs that advance together: the state of one may be a dilated space.
+pub(crate) fn room(parameters: usize, epochs: usize, threads: usize) -> usize {
+    let numbers = parameters.saturating_mul(parameters.min(epochs)).max(1);
+    (MOST_NUMBERS / numbers).clamp(1, RUNS_PER_THREAD * threads)
 }
 
 /// Where the runs of a stage are kept.

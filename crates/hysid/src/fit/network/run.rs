@@ -58,8 +58,17 @@ pub(crate) struct Point {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 enum Search {
     LevenbergMarquardt(LevenbergMarquardt<Value>),
-    Genetic { search: Genetic, encoding: Encoding, stall: Stall },
-    Subgradient { search: SpaceDilatation, stall: Stall },
+    Genetic {
+        search: Genetic,
+        encoding: Encoding,
+        stall: Stall,
+    },
+    Subgradient {
+        search: SpaceDilatation,
+        stall: Stall,
+    },
+    /// All methods are over. Their state, which may be large, is not kept.
+    Over,
 }
 
 /// Where a run begins.
@@ -132,6 +141,7 @@ impl TrainingRun {
                     && search.is_sound(frame.layout.len(), &DilatationOptions::default())
                     && stall.is_sound()
             }
+            Search::Over => self.termination.is_some(),
         };
         require(search, "state of a method")?;
         let counts = [self.epoch, self.epoch_of_method, self.evaluations_before, self.last.evaluations];
@@ -171,6 +181,7 @@ impl TrainingRun {
                 let ended = search.advance(&mut function);
                 ended.or_else(|| stall.is_reached(self.best.objective).then_some(Termination::Stalled))
             }
+            Search::Over => return Ok(false),
         };
         let nothing_done =
             matches!(ended, Some(Termination::GradientVanished | Termination::NoFurtherImprovement))
@@ -194,12 +205,13 @@ impl TrainingRun {
         let used = (self.epoch_of_method >= self.plan[0].1).then_some(Termination::EpochsUsed);
         let Some(termination) = ended.or(used) else { return Ok(()) };
         self.close_history(termination);
+        self.evaluations_before += self.search.evaluations();
         if self.plan.len() == 1 {
+            self.search = Search::Over;
             self.termination = Some(termination);
             return Ok(());
         }
         self.plan.remove(0);
-        self.evaluations_before += self.search.evaluations();
         self.epoch_of_method = 0;
         let method = self.plan[0].0;
         (self.search, self.best) = begin(method, objective, options, self.best.parameters.clone())?;
@@ -247,6 +259,8 @@ impl TrainingRun {
     pub fn stop(&mut self) {
         if self.termination.is_none() {
             self.close_history(Termination::Stopped);
+            self.evaluations_before += self.search.evaluations();
+            self.search = Search::Over;
             self.termination = Some(Termination::Stopped);
         }
     }
@@ -341,6 +355,7 @@ impl Search {
             Search::Genetic { search, .. } => search.evaluations(),
             // A gradient is an evaluation of its own.
             Search::Subgradient { search, .. } => 2 * search.best().evaluations,
+            Search::Over => 0,
         }
     }
 }
