@@ -38,7 +38,7 @@ def test_a_validation_may_be_ended(spring_and_slider):
         told.append(progress)
         return True
 
-    found = hysid.validate(*spring_and_slider, model="xpnn", starts=1, epochs=100_000, progress=enough)
+    found = hysid.validate(*spring_and_slider, model="xpnn", starts=1, epochs=100_000, stall=0, progress=enough)
     assert len(found.folds) == 1
     assert all(progress.is_part and progress.model == "xpnn" and progress.done <= 0.2 for progress in told)
 

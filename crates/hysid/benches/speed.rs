@@ -114,7 +114,7 @@ fn data() -> Dataset {
 
 fn options() -> FitOptions {
     let sizes = Sizes { stops: 10, hidden: 10, relaxation: 0 };
-    FitOptions { model: Family::Xpnn, sizes, ..FitOptions::default() }
+    FitOptions { model: Family::Xpnn, sizes, ..FitOptions::of(Trainer::LevenbergMarquardt) }
 }
 
 fn jacobian(criterion: &mut Criterion) {
@@ -149,7 +149,8 @@ fn paper(criterion: &mut Criterion) {
     ] {
         let sizes = options().sizes;
         let defaults = FitOptions::of(training);
-        let options = FitOptions { model: Family::Xpnn, sizes, population, epochs: 50, stall: 0, ..defaults };
+        let limits = FitOptions { population, starts: 1, epochs: 50, stall: 0, ..defaults };
+        let options = FitOptions { model: Family::Xpnn, sizes, ..limits };
         group.bench_function(name, |b| {
             b.iter(|| fit(&data, &options, &mut |_| ControlFlow::Continue(())).unwrap())
         });

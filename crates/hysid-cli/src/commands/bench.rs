@@ -199,9 +199,11 @@ fn record(samples: usize) -> Result<Record> {
     Ok(Record::new("bench", vec![x], y)?.with_time(time)?)
 }
 
-/// A fit from one start, and the milliseconds of an iteration.
+/// A fit by Levenberg-Marquardt from one start, and the milliseconds of an iteration.
 fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fitted, f64)> {
-    let options = FitOptions { starts: 1, ..options.clone() };
+    let defaults = FitOptions::of(Trainer::LevenbergMarquardt);
+    let options =
+        FitOptions { starts: 1, training: defaults.training, epochs: defaults.epochs, ..options.clone() };
     let mut iterations = 0usize;
     let began = Instant::now();
     let fitted = fit(data, &options, &mut |progress| {
