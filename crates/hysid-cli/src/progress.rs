@@ -138,31 +138,25 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
     if progress.is_part {
         return format!("fitting {}", progress.model.name());
     }
-    let part = match (progress.phase, progress.method) {
-        (Phase::Starts, _) => return "cross-validation".into(),
+    if progress.phase == Phase::Starts {
+        return "cross-validation".into();
+    }
+    let is_first = best == f64::INFINITY;
+    let epoch = progress.epoch;
+    let part = match progress.method {
         // Several starts at a time have no epoch in common.
-        (Phase::AllData, Method::LevenbergMarquardt | Method::Subgradient) if starts > 1 => {
-            let starts = format!("{starts} starts");
-            if best == f64::INFINITY {
-                return starts;
-            }
-            starts
+        Method::LevenbergMarquardt | Method::Subgradient if starts > 1 => format!("{starts} starts"),
+        Method::LevenbergMarquardt | Method::Subgradient | Method::Genetic if is_first => {
+            "first evaluations".into()
         }
-        (Phase::AllData, Method::Genetic | Method::Subgradient | Method::LevenbergMarquardt)
-            if best == f64::INFINITY =>
-        {
-            return "first evaluations".into();
-        }
-        (Phase::AllData, Method::LevenbergMarquardt) => format!("iteration {}", progress.epoch),
-        (Phase::AllData, Method::Genetic) => format!("generation {}", progress.epoch),
-        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY && progress.epoch == 0 => {
-            return "least squares".into();
-        }
-        (Phase::AllData, Method::LeastSquares) if best == f64::INFINITY => {
-            return format!("round {}", progress.epoch);
-        }
-        (Phase::AllData, Method::LeastSquares) => format!("round {}", progress.epoch),
-        (Phase::AllData, Method::Subgradient) => format!("sub-gradient {}", progress.epoch),
+        Method::LevenbergMarquardt => format!("iteration {epoch}"),
+        Method::Subgradient => format!("sub-gradient {epoch}"),
+        Method::Genetic => format!("generation {epoch}"),
+        Method::LeastSquares if is_first && epoch == 0 => "least squares".into(),
+        Method::LeastSquares => format!("round {epoch}"),
     };
+    if is_first {
+        return part;
+    }
     format!("{part}, error {:.3} % of std", Significant(best))
 }

@@ -61,6 +61,12 @@ impl DilatedSpace {
         Self { n, form }
     }
 
+    /// Numbers that a space of so many variables holds after so many dilatations.
+    pub fn numbers(variables: usize, dilatations: usize) -> usize {
+        let rows = if variables < MANY_VARIABLES { variables } else { variables.min(dilatations) };
+        variables.saturating_mul(rows)
+    }
+
     /// True if it is a finite matrix for so many variables.
     pub fn is_sound(&self, variables: usize) -> bool {
         let are_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
@@ -188,8 +194,8 @@ impl Product {
     }
 }
 
-/// `v <- (I + (γ - 1) along alongᵀ) v`
-fn dilate_vector(v: &mut [f64], along: &[f64], gamma: f64) {
+/// Dilates a vector along the unit vector `along`: `v <- (I + (γ - 1) along alongᵀ) v`.
+pub fn dilate_vector(v: &mut [f64], along: &[f64], gamma: f64) {
     let share = (gamma - 1.0) * dot(along, v);
     v.iter_mut().zip(along).for_each(|(v, along)| *v += share * along);
 }
@@ -251,7 +257,7 @@ impl WithSimd for Dilate<'_> {
     fn with_simd<S: Simd>(self, _: S) -> f64 {
         let Self { entries, along, gamma, u, product } = self;
         // B'u = Bu + (γ - 1) (B along) (alongᵀu)
-        let [share, _] = products(along, u, along);
+        let share = dot(along, u);
         let mut largest = [0.0; SUMS];
         for (row, product) in entries.chunks_exact_mut(along.len()).zip(product) {
             let [stretched, of_u] = products(row, along, u);

@@ -15,6 +15,7 @@ use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::fitting::room;
 use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
 use crate::law::duhem_nn::Layout;
+use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::network::Architecture;
 use crate::options::FitSpec;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -108,8 +109,7 @@ fn of_network(data: &Dataset, options: &FitOptions, threads: usize) -> Result<Me
     // Rows of the columns that a matrix is made of.
     let buffers = 500.0 * if options.training == Trainer::LevenbergMarquardt { m + p } else { m };
     let all_runs = options.starts.saturating_add(if options.starts > 1 { RUNS_ON_FOLDS } else { 0 });
-    // The dilated space: a dilatation of each epoch, and at most their matrix.
-    let space = p * p.min(options.epochs as f64);
+    let space = DilatedSpace::numbers(searched, options.epochs) as f64;
     let under_way = all_runs.min(room(searched, options.epochs, threads));
     let state = match options.training {
         Trainer::LevenbergMarquardt => 0.0,

@@ -12,7 +12,7 @@
 //!
 //! Each dilatation shortens the steps in a direction across which the sub-gradient jumps, so that a narrow
 //! valley becomes round. `B` has the square of the number of variables as entries; an iteration reads it twice
-//! and writes it once, in addition to the function.
+//! and writes it once, in addition to the function. Of many variables its dilatations are kept instead.
 //!
 //! [`minimise`] minimises any function. Training advances step by step with [`SpaceDilatation`], whose whole
 //! state can be stored.
@@ -20,7 +20,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::linear_algebra::dilated_space::DilatedSpace;
+use crate::linear_algebra::dilated_space::{DilatedSpace, dilate_vector};
 use crate::linear_algebra::dot;
 use crate::optimise::MOST_COUNTED;
 use crate::optimise::stall::Stall;
@@ -232,9 +232,9 @@ impl SpaceDilatation {
         let is_noise = self.options.dilatation == Dilatation::Difference
             && self.is_noise(&xi, &difference(&self.gradient, &before));
         if is_noise {
-            self.begin_anew()
+            self.begin_anew();
         } else {
-            self.dilate(xi, after)
+            self.dilate(&xi, after);
         }
         None
     }
@@ -296,23 +296,16 @@ impl SpaceDilatation {
     /// The direction in which the function falls, in a space that is not dilated yet.
     fn aim(&mut self) {
         self.transformed = self.space.transpose_times(&self.gradient);
-        let length = norm(&self.transformed).max(f64::MIN_POSITIVE);
-        let along: Vec<f64> = self.transformed.iter().map(|u| u / length).collect();
-        self.direction = self.space.times(&along);
+        self.direction = self.space.times(&unit(&self.transformed));
     }
 
     /// `B <- B R_{1/α}(ξ / |ξ|)`, and the next direction. `transformed` is `Bᵀg` of the space as it was.
-    fn dilate(&mut self, mut xi: Vec<f64>, transformed: Vec<f64>) {
-        let length = norm(&xi);
-        xi.iter_mut().for_each(|xi| *xi /= length);
-        let gamma = 1.0 / self.options.coefficient;
-        // R is symmetric: Bᵀg of the new space is R Bᵀg.
-        let share = (gamma - 1.0) * dot(&xi, &transformed);
+    fn dilate(&mut self, xi: &[f64], transformed: Vec<f64>) {
+        let (xi, gamma) = (unit(xi), 1.0 / self.options.coefficient);
         self.transformed = transformed;
-        self.transformed.iter_mut().zip(&xi).for_each(|(u, xi)| *u += share * xi);
-        let length = norm(&self.transformed).max(f64::MIN_POSITIVE);
-        let along: Vec<f64> = self.transformed.iter().map(|u| u / length).collect();
-        self.direction = self.space.dilate(&xi, gamma, &along);
+        // R is symmetric: Bᵀg of the new space is R Bᵀg.
+        dilate_vector(&mut self.transformed, &xi, gamma);
+        self.direction = self.space.dilate(&xi, gamma, &unit(&self.transformed));
         // det B falls with every dilatation. A common factor moves from B to the step without any
         // change to the points that follow.
         if self.space.largest_entry() < SMALLEST_ENTRY {
@@ -394,6 +387,12 @@ pub fn minimise(
 
 fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// The vector of length 1 along `v`; 0 if `v` is.
+fn unit(v: &[f64]) -> Vec<f64> {
+    let length = norm(v).max(f64::MIN_POSITIVE);
+    v.iter().map(|v| v / length).collect()
 }
 
 fn norm(v: &[f64]) -> f64 {

@@ -21,6 +21,7 @@ use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{Frame, require};
 use crate::fit::network::{Fitted, Observer, Progress, SharedObserver, wanted_of};
 use crate::law::facts::Origin;
+use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::model::history::Phase;
 use crate::model::input_transform::{InputTransform, Transformed};
 use crate::model::{Found, Model, Predictor};
@@ -501,8 +502,8 @@ impl<'a> Fitting<'a> {
 
 /// Runs of so many parameters and epochs that advance together: the state of one may be a dilated space.
 pub(crate) fn room(parameters: usize, epochs: usize, threads: usize) -> usize {
-    let numbers = parameters.saturating_mul(parameters.min(epochs)).max(1);
-    (MOST_NUMBERS / numbers).clamp(1, RUNS_PER_THREAD * threads)
+    let numbers = DilatedSpace::numbers(parameters, epochs);
+    (MOST_NUMBERS / numbers.max(1)).clamp(1, RUNS_PER_THREAD * threads)
 }
 
 /// Where the runs of a stage are kept.

@@ -204,14 +204,13 @@ impl TrainingRun {
     ) -> Result<()> {
         let used = (self.epoch_of_method >= self.plan[0].1).then_some(Termination::EpochsUsed);
         let Some(termination) = ended.or(used) else { return Ok(()) };
-        self.close_history(termination);
-        self.evaluations_before += self.search.evaluations();
         if self.plan.len() == 1 {
-            self.search = Search::Over;
-            self.termination = Some(termination);
+            self.end(termination);
             return Ok(());
         }
+        self.close_history(termination);
         self.plan.remove(0);
+        self.evaluations_before += self.search.evaluations();
         self.epoch_of_method = 0;
         let method = self.plan[0].0;
         (self.search, self.best) = begin(method, objective, options, self.best.parameters.clone())?;
@@ -258,11 +257,15 @@ impl TrainingRun {
     /// Ends it where it is, because the user wants no more.
     pub fn stop(&mut self) {
         if self.termination.is_none() {
-            self.close_history(Termination::Stopped);
-            self.evaluations_before += self.search.evaluations();
-            self.search = Search::Over;
-            self.termination = Some(Termination::Stopped);
+            self.end(Termination::Stopped);
         }
+    }
+
+    fn end(&mut self, termination: Termination) {
+        self.close_history(termination);
+        self.evaluations_before += self.search.evaluations();
+        self.search = Search::Over;
+        self.termination = Some(termination);
     }
 
     /// Takes down the error on what was held out of the fold it was trained on.
