@@ -59,7 +59,7 @@ fn csv_text(data: &Dataset) -> String {
 
 fn push_row(text: &mut String, record: &Record, row: usize) {
     text.push_str(record.name());
-    let inputs = record.inputs().iter().map(Vec::as_slice);
+    let inputs = record.inputs().iter().map(|input| &**input);
     for column in record.time().into_iter().chain(inputs).chain([record.output()]) {
         text.push(',');
         if !column[row].is_nan() {

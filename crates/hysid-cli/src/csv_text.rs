@@ -45,7 +45,7 @@ pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clo
 
 /// The numbers of a row in the order of the columns.
 fn numbers(record: &Record, row: usize) -> impl Iterator<Item = String> {
-    let inputs = record.inputs().iter().map(Vec::as_slice);
+    let inputs = record.inputs().iter().map(|input| &**input);
     let columns = record.time().into_iter().chain(inputs).chain(record.given_rate());
     let output = record.output()[row];
     let output = if output.is_nan() { String::new() } else { shortest(output) };
@@ -80,7 +80,7 @@ mod tests {
 
     fn bits(record: &Record) -> Vec<Vec<u64>> {
         let columns =
-            record.inputs().iter().map(Vec::as_slice).chain(record.time()).chain(record.given_rate());
+            record.inputs().iter().map(|input| &**input).chain(record.time()).chain(record.given_rate());
         columns.chain([record.output()]).map(|column| column.iter().map(|v| v.to_bits()).collect()).collect()
     }
 

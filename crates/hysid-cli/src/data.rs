@@ -13,7 +13,7 @@ use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
 use crate::messages::Usage;
 use crate::record_names::RecordNames;
-use crate::table::{Head, Table};
+use crate::table::{Head, Origin, Table};
 use crate::terminal::clipped;
 
 /// Measured data and the tables they come from.
@@ -29,7 +29,7 @@ pub struct Data {
 /// The tables, and which record is where.
 pub struct Source {
     /// The tables, in the order of the command line.
-    pub tables: Vec<Table>,
+    pub tables: Vec<Origin>,
     places: Vec<Place>,
 }
 
@@ -47,15 +47,17 @@ impl Data {
             roles.check_against(table, &tables[0])?;
         }
         let stems = stems(&tables);
-        let mut source = Source { places: Vec::new(), tables };
-        let mut records = Vec::new();
-        for (index, stem) in stems.iter().enumerate() {
-            let several = stems.len() > 1;
-            let places = places(&source.tables[index], index, &roles, stem, several)?;
+        let mut source = Source { places: Vec::new(), tables: Vec::new() };
+        let mut of_tables = Vec::new();
+        for (index, (table, stem)) in tables.into_iter().zip(&stems).enumerate() {
             let first = source.places.len();
-            source.places.extend(places);
-            let columns = Columns::read(&source.tables[index], &roles)?;
-            for place in &source.places[first..] {
+            source.places.extend(places(&table, index, &roles, stem, stems.len() > 1)?);
+            of_tables.push((Columns::read(&table, &roles)?, first..source.places.len()));
+            source.tables.push(table.into_origin());
+        }
+        let mut records = Vec::new();
+        for (columns, places) in of_tables {
+            for place in &source.places[places] {
                 records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
             }
         }

@@ -18,16 +18,30 @@ pub use rows::{Row, Rows};
 /// A table as it stands in its file.
 #[derive(Debug)]
 pub struct Table {
-    head: Head,
-    /// Line of each row in the file, counted from 1.
-    pub lines: Vec<u64>,
+    origin: Origin,
     /// The cells of all rows one after the other, verbatim.
     text: String,
     /// Where each cell ends in `text`.
     ends: Vec<usize>,
 }
 
+/// Where the rows of a table stand: what is left of it when its cells have been read.
+#[derive(Debug)]
+pub struct Origin {
+    head: Head,
+    /// Line of each row in the file, counted from 1.
+    pub lines: Vec<u64>,
+}
+
 impl Deref for Table {
+    type Target = Origin;
+
+    fn deref(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+impl Deref for Origin {
     type Target = Head;
 
     fn deref(&self) -> &Head {
@@ -60,9 +74,14 @@ impl Table {
             all_ends.extend(ends.iter().map(|end| all.len() + end));
             all.push_str(text);
         }
-        let table = Self { head: rows.head, lines, text: all, ends: all_ends };
+        let table = Self { origin: Origin { head: rows.head, lines }, text: all, ends: all_ends };
         ensure!(!table.lines.is_empty(), "{}", no_rows(&table.file));
         Ok(table)
+    }
+
+    /// The table without its cells, which need several times the memory of their numbers.
+    pub fn into_origin(self) -> Origin {
+        self.origin
     }
 
     /// Number of rows.
@@ -88,7 +107,7 @@ mod tests {
     use super::*;
 
     fn lines(text: &str) -> Vec<u64> {
-        Table::from_bytes(Path::new("f"), text.as_bytes()).unwrap().lines
+        Table::from_bytes(Path::new("f"), text.as_bytes()).unwrap().into_origin().lines
     }
 
     /// The last byte of one cell and the first of the next make a letter together, and nothing alone.

@@ -3,6 +3,7 @@
 pub mod column;
 pub mod initial_state;
 pub mod metrics;
+pub mod polyline;
 pub mod rate;
 pub mod record;
 pub mod summary;

@@ -647,7 +647,7 @@ impl Model {
         let mut ranges = Ranges::of(self);
         for record in data.records() {
             let rate = self.rate.map(|method| method.rate(record)).transpose()?;
-            let inputs: Vec<&[f64]> = record.inputs().iter().map(Vec::as_slice).collect();
+            let inputs: Vec<&[f64]> = record.inputs().iter().map(|input| &**input).collect();
             ranges.take(&inputs, rate.as_deref());
         }
         Ok(ranges.warnings())

@@ -216,7 +216,7 @@ impl<'a> BranchSet<'a> {
     pub fn new(data: &'a Dataset, options: &DiagnosisOptions) -> Self {
         let input = data.input_range(0);
         let width = input.1 - input.0;
-        let inputs = data.records().iter().map(|record| record.inputs()[0].as_slice());
+        let inputs = data.records().iter().map(|record| &*record.inputs()[0]);
         let roughness = noise::roughness(inputs);
         let rows = data.rows().max(2);
         // Jitter of all rows together hardly ever jumps further.

@@ -148,8 +148,7 @@ fn with_unseen(train: &Dataset, unseen: &Dataset) -> Result<Dataset> {
     let both = |(train, unseen): (&Record, &Record)| {
         let outputs = train.output().iter().zip(unseen.output());
         let outputs = outputs.map(|(&trained, &unseen)| if trained.is_nan() { unseen } else { trained });
-        let record = Record::new(train.name(), train.inputs().to_vec(), outputs.collect())?;
-        train.time().map_or(Ok(record.clone()), |time| record.with_time(time.to_vec()))
+        train.clone().with_output(outputs.collect())
     };
     let records = train.records().iter().zip(unseen.records()).map(both).collect::<Result<_>>()?;
     Dataset::new(train.names().clone(), records)

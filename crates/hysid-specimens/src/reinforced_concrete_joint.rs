@@ -336,6 +336,5 @@ fn cycles(is_wanted: impl Fn(usize) -> bool) -> Result<Record> {
         if is_wanted(cycle.min(CYCLES_IN_ALL - 1)) { force } else { f64::NAN }
     });
     let output = output.collect();
-    let time = whole.time().expect("the test has time stamps").to_vec();
-    Record::new(whole.name(), whole.inputs().to_vec(), output)?.with_time(time)
+    whole.clone().with_output(output)
 }

@@ -351,7 +351,8 @@ mod tests {
     #[test]
     fn copies_are_held_out_together() {
         let (a, b) = (record("a", 200, 1.0), record("b", 200, 1.3));
-        let copy = Record::new("copy", a.inputs().to_vec(), a.output().to_vec()).unwrap();
+        let copy = Record::new("copy", a.inputs().iter().map(|x| x.to_vec()).collect(), a.output().to_vec())
+            .unwrap();
         let part =
             Record::new("part", vec![a.inputs()[0][50..150].to_vec()], a.output()[50..150].to_vec()).unwrap();
         let several = folds(&data(vec![a.clone(), part.clone(), b, copy.clone()]), 5);

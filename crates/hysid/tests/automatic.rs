@@ -367,7 +367,7 @@ fn rows_of_a_wrong_beginning_are_not_trained_on() {
         let sound = record(rows, name);
         let wrong = |(row, y): (usize, &f64)| y + 3.0 * (-(row as f64) / 4.0).exp();
         let output = sound.output().iter().enumerate().map(wrong).collect();
-        Record::new(name, sound.inputs().to_vec(), output).unwrap()
+        Record::new(name, sound.inputs().iter().map(|input| input.to_vec()).collect(), output).unwrap()
     };
     let untimed = ColumnNames { time: None, ..names() };
     let data = Dataset::new(untimed.clone(), vec![strange(150, "a"), strange(140, "b")]).unwrap();

@@ -219,7 +219,7 @@ fn damaged_checkpoints_and_other_data_are_refused() {
     let mut record = data().records()[0].clone();
     let mut y = record.output().to_vec();
     y[9] += 1e-9;
-    record = Record::new("r", record.inputs().to_vec(), y)
+    record = Record::new("r", record.inputs().iter().map(|input| input.to_vec()).collect(), y)
         .unwrap()
         .with_time(record.time().unwrap().to_vec())
         .unwrap();

@@ -92,7 +92,7 @@ fn kinds(data: &Dataset) -> Vec<DataIssueKind> {
 }
 
 fn columns(record: &Record) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    (record.time().unwrap().to_vec(), record.inputs()[0].clone(), record.output().to_vec())
+    (record.time().unwrap().to_vec(), record.inputs()[0].to_vec(), record.output().to_vec())
 }
 
 fn rebuilt(time: Vec<f64>, x: Vec<f64>, y: Vec<f64>) -> Dataset {

@@ -38,7 +38,12 @@ fn untimed(records: Vec<Record>) -> Dataset {
 }
 
 fn without_time(record: &Record) -> Record {
-    Record::new(record.name(), record.inputs().to_vec(), record.output().to_vec()).unwrap()
+    Record::new(
+        record.name(),
+        record.inputs().iter().map(|input| input.to_vec()).collect(),
+        record.output().to_vec(),
+    )
+    .unwrap()
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {

@@ -132,7 +132,7 @@ fn no_output_leaves_its_bound() {
 fn everything_that_a_model_asks_for_is_provided() {
     let one = record(180, "a");
     let temperature: Vec<f64> = (0..one.len()).map(|k| 20.0 + 10.0 * (0.03 * k as f64).sin()).collect();
-    let inputs = vec![one.inputs()[0].clone(), temperature.clone()];
+    let inputs = vec![one.inputs()[0].to_vec(), temperature.clone()];
     let time = one.time().unwrap().to_vec();
     let two = Record::new("two inputs", inputs, one.output().to_vec()).unwrap().with_time(time).unwrap();
     let two = Dataset::new(ColumnNames::plain(2), vec![two]).unwrap();
@@ -145,7 +145,12 @@ fn everything_that_a_model_asks_for_is_provided() {
         assert_eq!(diagnosis.probing.held, [middle], "{}", name.name());
     }
     let rate = RateMethod::Central.rate(&one).unwrap();
-    let given = Record::new("given rate", one.inputs().to_vec(), one.output().to_vec()).unwrap();
+    let given = Record::new(
+        "given rate",
+        one.inputs().iter().map(|input| input.to_vec()).collect(),
+        one.output().to_vec(),
+    )
+    .unwrap();
     let names = ColumnNames { time: None, rate: Some("v".into()), ..ColumnNames::plain(1) };
     let given = Dataset::new(names, vec![given.with_given_rate(rate).unwrap()]).unwrap();
     let name = ModelName::Network(Family::Xpnn);

@@ -347,7 +347,7 @@ fn warnings_give_the_share_of_samples_beyond_the_training() {
     let beyond = |factor: f64, rows: usize| {
         let record = record(1, 120);
         let largest = record.inputs()[0].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let mut x = record.inputs()[0].clone();
+        let mut x = record.inputs()[0].to_vec();
         x[..rows].fill(factor * largest);
         let whole = Record::new("r", vec![x], vec![f64::NAN; 120])
             .unwrap()

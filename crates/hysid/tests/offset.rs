@@ -89,7 +89,7 @@ fn further_inputs_are_shifted_too() {
         let record = record(200, "a");
         let temperature = (0..200).map(|row| by + 5.0 * (0.05 * f64::from(row)).sin()).collect();
         let record =
-            Record::new("a", vec![record.inputs()[0].clone(), temperature], record.output().to_vec());
+            Record::new("a", vec![record.inputs()[0].to_vec(), temperature], record.output().to_vec());
         Dataset::new(ColumnNames { time: None, ..ColumnNames::plain(2) }, vec![record.unwrap()]).unwrap()
     };
     let errors = [0.0, 300.0, 1e6].map(|by| {

@@ -25,7 +25,7 @@ const METHODS: [RateMethod; 4] =
 /// With a second input and a given rate.
 fn rich(rows: usize, name: &str) -> Record {
     let plain = record(rows, name);
-    let x = plain.inputs()[0].clone();
+    let x = plain.inputs()[0].to_vec();
     let load = (0..rows).map(|k| (0.05 * k as f64).cos()).collect();
     let rate = (0..rows).map(|k| (0.19 * k as f64).cos()).collect();
     let rich = Record::new(name, vec![x, load], plain.output().to_vec()).unwrap();

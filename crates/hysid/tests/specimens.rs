@@ -582,7 +582,7 @@ fn every_specimen_is_found_by_its_name_and_tells_what_it_is() {
 /// All numbers of a data set, blanks too.
 fn bits(data: &Dataset) -> Vec<u64> {
     let columns = data.records().iter().flat_map(|record| {
-        record.time().into_iter().chain(record.inputs().iter().map(Vec::as_slice)).chain([record.output()])
+        record.time().into_iter().chain(record.inputs().iter().map(|input| &**input)).chain([record.output()])
     });
     columns.flatten().map(|value| value.to_bits()).collect()
 }
@@ -634,7 +634,7 @@ fn continuations_carry_the_training_part_with_them() {
         let (train, test) = (specimen.train(), specimen.test());
         let (head, tail) = (&train.records()[0], &test.records()[0]);
         let end = head.len();
-        assert_eq!(head.inputs()[0], tail.inputs()[0][..end]);
+        assert_eq!(head.inputs()[0][..], tail.inputs()[0][..end]);
         assert!(tail.output()[..end].iter().all(|y| y.is_nan()));
         assert!(tail.output()[end..].iter().all(|y| y.is_finite()));
     }

@@ -271,7 +271,7 @@ fn network(fitted: &Fitted) -> Result<&Network> {
 
 /// The network alone: scaled inputs and rates in, scaled outputs out.
 fn network_ns(fitted: &Fitted) -> Result<f64> {
-    let x = record(SAMPLES)?.inputs()[0].clone();
+    let x = record(SAMPLES)?.inputs()[0].to_vec();
     let rate: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
     let mut y = vec![0.0; SAMPLES];
     let mut simulator = network(fitted)?.simulator();

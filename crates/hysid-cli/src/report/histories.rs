@@ -87,7 +87,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     let band = predicted.map(|predicted| panel.error_band(predicted));
     parts.push(panel.figure(&error, 165.0, &[line], band));
     for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
-        let line = (Colour::Input, "input", 1.2, input.as_slice());
+        let line = (Colour::Input, "input", 1.2, &**input);
         parts.push(panel.figure(&unit::label(name), 165.0, &[line], None));
     }
     parts

@@ -7,6 +7,7 @@ mod copies;
 mod excitation;
 mod fingerprint;
 mod thinning;
+mod values;
 
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, Result};
@@ -15,6 +16,7 @@ pub use copies::{Copy, copies, likeness, measurements};
 pub use excitation::Excitation;
 pub use fingerprint::Fingerprint;
 pub use thinning::Thinning;
+pub use values::Values;
 
 /// One run of an experiment, in the order of time. It may begin after a
 /// [lead-in](crate::data::initial_state); without one, a model is fitted to it from the virgin state, and
@@ -22,9 +24,9 @@ pub use thinning::Thinning;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     name: String,
-    time: Option<Vec<f64>>,
-    inputs: Vec<Vec<f64>>,
-    given_rate: Option<Vec<f64>>,
+    time: Option<Values>,
+    inputs: Vec<Values>,
+    given_rate: Option<Values>,
     output: Vec<f64>,
     lead_in: Option<Vec<f64>>,
 }
@@ -37,6 +39,7 @@ impl Record {
     /// No rows, differing lengths, an input that is not finite, values beyond
     /// [`crate::error::LARGEST_VALUE`].
     pub fn new(name: impl Into<String>, inputs: Vec<Vec<f64>>, output: Vec<f64>) -> Result<Self> {
+        let inputs = inputs.into_iter().map(Values::from).collect();
         let record = Self { name: name.into(), time: None, inputs, given_rate: None, output, lead_in: None };
         Excitation::new(&record.name, columns(&record.inputs))?;
         record.excitation().check_column(Channel::Output, &record.output, true)?;
@@ -49,7 +52,7 @@ impl Record {
     /// Another length, a value that is not finite, or time stamps that do not increase.
     pub fn with_time(mut self, time: Vec<f64>) -> Result<Self> {
         self.excitation().with_time(&time)?;
-        self.time = Some(time);
+        self.time = Some(time.into());
         Ok(self)
     }
 
@@ -60,7 +63,7 @@ impl Record {
     /// Another length, or a value that is not finite.
     pub fn with_given_rate(mut self, rate: Vec<f64>) -> Result<Self> {
         self.excitation().with_given_rate(&rate)?;
-        self.given_rate = Some(rate);
+        self.given_rate = Some(rate.into());
         Ok(self)
     }
 
@@ -108,7 +111,7 @@ impl Record {
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.inputs.first().map_or(0, Vec::len)
+        self.inputs.first().map_or(0, |input| input.len())
     }
 
     /// True if there is no row; no record that was made by [`Record::new`] is empty.
@@ -117,7 +120,7 @@ impl Record {
     }
 
     /// The inputs, each with one value a row.
-    pub fn inputs(&self) -> &[Vec<f64>] {
+    pub fn inputs(&self) -> &[Values] {
         &self.inputs
     }
 
@@ -179,13 +182,13 @@ impl Record {
 
     /// The rows before `end`.
     pub fn rows_up_to(&self, end: usize) -> Record {
-        let cut = |column: &Vec<f64>| column[..end].to_vec();
+        let cut = |column: &Values| column.up_to(end);
         Record {
             name: self.name.clone(),
             time: self.time.as_ref().map(cut),
             inputs: self.inputs.iter().map(cut).collect(),
             given_rate: self.given_rate.as_ref().map(cut),
-            output: cut(&self.output),
+            output: self.output[..end].to_vec(),
             lead_in: self.lead_in.clone(),
         }
     }
@@ -201,8 +204,8 @@ impl Record {
     }
 }
 
-fn columns(inputs: &[Vec<f64>]) -> Vec<&[f64]> {
-    inputs.iter().map(Vec::as_slice).collect()
+fn columns(inputs: &[Values]) -> Vec<&[f64]> {
+    inputs.iter().map(|input| &**input).collect()
 }
 
 /// Above this number of pairs, records are not compared with each other.

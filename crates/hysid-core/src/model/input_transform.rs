@@ -379,7 +379,7 @@ mod tests {
         // s = 0.2, X = 2, P = 1 + 3 + 2.5; the rates are 0, 1, -3, 2.5 and 99.5 % of three rows stay below 2.5.
         let [u, m, p] = record.inputs() else { panic!("three inputs") };
         assert_eq!(u[2], f64::asinh(-10.0));
-        assert_eq!(m, &[0.0, 0.5, 1.0, 1.0]);
+        assert_eq!(**m, [0.0, 0.5, 1.0, 1.0]);
         assert!((p[2] - f64::ln(1.0 + 10.0 * 4.0 / 6.5) / f64::ln(11.0)).abs() < 1e-15);
         assert!((p[3] - 1.0).abs() < 1e-15);
         assert!((record.given_rate().unwrap()[2] - f64::asinh(-3.0 / 1.25)).abs() < 1e-15);

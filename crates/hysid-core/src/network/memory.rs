@@ -16,6 +16,7 @@ use std::ops::{Deref, DerefMut};
 
 use pulp::Simd;
 
+use crate::network::decay::decay;
 use crate::network::transpose::transpose;
 use crate::network::{Architecture, Layout};
 use crate::operator::{deteriorating_stop, play, relaxation, stop};
@@ -85,7 +86,7 @@ pub(crate) struct MemoryLayer {
     deteriorating: bool,
     groups: Vec<Group>,
     linear: Option<Vec<f64>>,
-    /// Channel and τ of each relaxation neuron.
+    /// Channel and 1/τ of each relaxation neuron.
     relaxation: Vec<(usize, f64)>,
 }
 
@@ -173,7 +174,7 @@ impl MemoryLayer {
             groups: (0..architecture.stops).step_by(LANES).map(group).collect(),
             linear: architecture.linear.then(|| parameters[layout.linear].to_vec()),
             relaxation: ln_tau
-                .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), ln_tau.exp()))
+                .map(|(m, ln_tau)| (channel_of_input(m / architecture.relaxation), (-ln_tau).exp()))
                 .collect(),
         }
     }
@@ -238,7 +239,7 @@ impl MemoryLayer {
             }
         }
         self.run_linear::<S>(u, rows, linear);
-        self.relax(state, None, u, steps, rows, stress, &mut []);
+        self.relax::<S>(state, None, u, steps, rows, stress, &mut []);
         self.remember(state, u, rows);
     }
 
@@ -264,9 +265,12 @@ impl MemoryLayer {
         if let (Some(weights), Some(z)) = (&self.linear, linear.first_mut()) {
             *z = weights.iter().zip(u).fold(0.0, |sum, (&weight, &u)| multiply_add::<S>(weight, u, sum));
         }
-        for ((&(channel, tau), z), stress) in self.relaxation.iter().zip(stress).zip(&mut state.stress) {
+        for ((&(channel, inverse_tau), z), stress) in
+            self.relaxation.iter().zip(stress).zip(&mut state.stress)
+        {
             let increment = u[channel] - state.last[channel];
-            *stress = relaxation::advance(*stress, increment, relaxation::decay(time_step, tau));
+            let factors = decay::<S>(time_step * inverse_tau);
+            *stress = relaxation::advance(*stress, increment, (factors.stress, factors.increment));
             *z = *stress;
         }
         state.last.copy_from_slice(u);
@@ -309,7 +313,7 @@ impl MemoryLayer {
             advance_with_slopes(simd, group, memory, u, rows, outputs);
         }
         self.run_linear::<S>(u, rows, linear);
-        self.relax(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
+        self.relax::<S>(state, Some(sensitivity), u, steps, rows, stress, &mut slopes.ln_tau);
         self.remember(state, u, rows);
     }
 
@@ -357,7 +361,7 @@ impl MemoryLayer {
     /// Relaxation neurons, and their derivatives by ln τ if a sensitivity is carried along.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
-    fn relax(
+    fn relax<S: Simd>(
         &self,
         state: &mut MemoryState,
         mut sensitivity: Option<&mut Sensitivity>,
@@ -367,28 +371,26 @@ impl MemoryLayer {
         z: &mut [Row],
         ln_tau: &mut [Row],
     ) {
-        for (m, &(channel, tau)) in self.relaxation.iter().enumerate() {
+        let mut factors = [Row([0.0; BLOCK]); 3];
+        let [left, gain, by_ln_tau] = &mut factors;
+        let reached = whole_lanes(rows);
+        for (m, &(channel, inverse_tau)) in self.relaxation.iter().enumerate() {
+            let of_row = left[..reached].iter_mut().zip(&mut gain[..reached]).zip(&mut by_ln_tau[..reached]);
+            for (((left, gain), by_ln_tau), &step) in of_row.zip(&steps[..reached]) {
+                let decay = decay::<S>(step * inverse_tau);
+                (*left, *gain, *by_ln_tau) = (decay.stress, decay.increment, decay.by_ln_tau);
+            }
             let mut last = state.last[channel];
             let mut stress = state.stress[m];
             let mut slope = sensitivity.as_ref().map_or(0.0, |s| s.stress[m]);
-            let mut step = f64::NAN;
-            let mut factors = (1.0, 1.0);
-            let mut decay_by_ln_tau = 0.0;
             for t in 0..rows {
-                if steps[t] != step {
-                    step = steps[t];
-                    factors = relaxation::decay(step, tau);
-                    // φE, which falls to 0 as φ = h/τ grows beyond all bounds.
-                    decay_by_ln_tau = if step == f64::INFINITY { 0.0 } else { step / tau * factors.0 };
-                }
                 let increment = u[channel][t] - last;
                 if sensitivity.is_some() {
-                    let (e, g) = factors;
                     // theory.md (2.10), with (1 - E - φE)/φ = G - E
-                    slope = e * slope + decay_by_ln_tau * stress + increment * (g - e);
+                    slope = left[t] * slope + by_ln_tau[t] * stress + increment * (gain[t] - left[t]);
                     ln_tau[m][t] = slope;
                 }
-                stress = relaxation::advance(stress, increment, factors);
+                stress = relaxation::advance(stress, increment, (left[t], gain[t]));
                 z[m][t] = stress;
                 last = u[channel][t];
             }

@@ -35,6 +35,19 @@ impl Drive {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// The drive through these rows alone, which are in order.
+    pub fn through(&self, rows: &[usize]) -> Self {
+        let channels = self.channels.iter().map(|u| rows.iter().map(|&row| u[row]).collect());
+        let mut next = 0;
+        let since_last = |&row: &usize| {
+            let elapsed = self.steps[next..=row].iter().sum();
+            next = row + 1;
+            elapsed
+        };
+        let steps = if self.steps.is_empty() { Vec::new() } else { rows.iter().map(since_last).collect() };
+        Self { channels: channels.collect(), steps }
+    }
 }
 
 /// A network on its way over records: its parameters found by search, and whether derivatives are

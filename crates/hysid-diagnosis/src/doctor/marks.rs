@@ -71,7 +71,7 @@ pub(super) fn complaints(data: &Dataset) -> Vec<DataIssue> {
     let inputs = names.inputs.iter().enumerate().map(|(input, name)| Column {
         name,
         is_output: false,
-        of: Box::new(move |record: &Record| record.inputs()[input].as_slice()),
+        of: Box::new(move |record: &Record| &*record.inputs()[input]),
     });
     let output = Column { name: &names.output, is_output: true, of: Box::new(Record::output) };
     inputs.chain([output]).flat_map(|column| column.complaints(data)).collect()

@@ -76,7 +76,7 @@ fn held_samples(survey: &BranchSet, of_output: bool) -> Option<DataIssue> {
     let mut lengths: Vec<usize> = Vec::new();
     let (mut held, mut while_other_moves) = (0, 0);
     for record in survey.data.records() {
-        let (x, y) = (record.inputs()[0].as_slice(), record.output());
+        let (x, y) = (&*record.inputs()[0], record.output());
         let (column, other) = if of_output { (y, x) } else { (x, y) };
         let mut length = 1;
         for row in 1..column.len() {

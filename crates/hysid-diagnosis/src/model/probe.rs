@@ -199,7 +199,7 @@ impl<'m> Probe<'m> {
     /// As there.
     pub fn run_slowly(&self, name: &str, x: &[f64]) -> Result<Record> {
         let record = self.run(name, x, self.speeds.vanishing)?;
-        Record::new(name, record.inputs().to_vec(), record.output().to_vec())
+        Record::new(name, vec![x.to_vec()], record.output().to_vec())
     }
 
     /// What the model is driven with: all inputs, time, the rate where it has to be given. No output.

@@ -5,7 +5,7 @@ use super::*;
 /// All numbers of a data set, to the last bit.
 fn bits(data: &Dataset) -> Vec<u64> {
     let columns = |record: &Record| {
-        let inputs = record.inputs().iter().map(Vec::as_slice);
+        let inputs = record.inputs().iter().map(|input| &**input);
         inputs
             .chain(record.time())
             .chain([record.output()])

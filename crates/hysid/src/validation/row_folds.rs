@@ -123,7 +123,9 @@ mod tests {
     fn a_single_record_is_cut_into_blocks_of_rows_that_have_an_output() {
         let whole = record(1.0);
         let blank = (0..100).map(|k| if k < 50 { f64::NAN } else { whole.output()[k] }).collect();
-        let folds = RowFolds::of(&data(vec![Record::new("r", whole.inputs().to_vec(), blank).unwrap()]));
+        let folds = RowFolds::of(&data(vec![
+            Record::new("r", whole.inputs().iter().map(|x| x.to_vec()).collect(), blank).unwrap(),
+        ]));
         assert_eq!(folds.judged, [0, 1, 2, 3, 4]);
         assert_eq!((folds.of_rows[0][59], folds.of_rows[0][60], folds.of_rows[0][99]), (0, 1, 4));
     }
@@ -132,7 +134,12 @@ mod tests {
     #[test]
     fn copies_are_in_one_fold() {
         let copied = record(2.0);
-        let copy = Record::new("copy", copied.inputs().to_vec(), copied.output().to_vec()).unwrap();
+        let copy = Record::new(
+            "copy",
+            copied.inputs().iter().map(|x| x.to_vec()).collect(),
+            copied.output().to_vec(),
+        )
+        .unwrap();
         let folds = RowFolds::of(&data(vec![record(3.0), copied, record(1.0), copy]));
         let of_records: Vec<usize> = folds.of_rows.iter().map(|rows| rows[0]).collect();
         assert_eq!((folds.count, of_records), (3, vec![0, 1, 2, 1]));

@@ -120,12 +120,12 @@ struct Sought<'r> {
 
 impl<'r> Sought<'r> {
     fn new(record: &'r Record) -> Self {
-        let columns = || record.inputs.iter().chain([&record.output]);
-        let range = |column: &Vec<f64>| {
+        let columns = || record.inputs.iter().map(|input| &**input).chain([&record.output[..]]);
+        let range = |column: &[f64]| {
             let (low, high) = super::range(column.iter());
             high - low
         };
-        let variance = |column: &Vec<f64>| {
+        let variance = |column: &[f64]| {
             let values = || column.iter().filter(|value| !value.is_nan());
             let count = values().count() as f64;
             let mean = values().sum::<f64>() / count;

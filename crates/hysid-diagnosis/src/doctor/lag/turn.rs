@@ -74,7 +74,7 @@ impl<'d> Turn<'d> {
     /// The turning point between two branches that follow one another, of a record with time.
     pub fn between(survey: &BranchSet<'d>, before: &Branch, after: &Branch) -> Option<Self> {
         let record = &survey.data.records()[before.record];
-        let (time, x, y) = (record.time()?, record.inputs()[0].as_slice(), record.output());
+        let (time, x, y) = (record.time()?, &*record.inputs()[0], record.output());
         let row = after.rows.start;
         let rows = before.rows.start..after.rows.end;
         if row < rows.start + FEWEST_ROWS || row + FEWEST_ROWS >= rows.end {

@@ -230,7 +230,7 @@ fn plain_predictions(trial: &Trial) -> Vec<Vec<f64>> {
 
 /// A record whose first input goes a share of its way from an origin.
 fn scaled(record: &Record, share: f64, origin: f64) -> Result<Record> {
-    let mut inputs = record.inputs().to_vec();
+    let mut inputs: Vec<Vec<f64>> = record.inputs().iter().map(|input| input.to_vec()).collect();
     inputs[0].iter_mut().for_each(|x| *x = origin + share * (*x - origin));
     let mut scaled = Record::new(record.name(), inputs, vec![f64::NAN; record.len()])?;
     if let Some(time) = record.time() {

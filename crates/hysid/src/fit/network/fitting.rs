@@ -225,12 +225,11 @@ impl<'a> Fitting<'a> {
         observer: &SharedObserver<'_, '_>,
     ) -> Result<()> {
         let is_to_stop = || observer.is_to_stop();
-        let objective =
-            self.whole.objective(self.architecture, penalties)?.until(StopCheck::new(&is_to_stop));
+        let objective = self.whole.objective(self.architecture, penalties)?.thinned(self.asked.thin);
         let stage = Stage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_data,
-            objectives: &[objective.thinned(self.asked.thin)],
+            objectives: &[objective.until(StopCheck::new(&is_to_stop))],
             epochs: self.asked.epochs,
             epochs_before: 0,
         };
@@ -262,13 +261,13 @@ impl<'a> Fitting<'a> {
         let random = |(objective, start)| Beginning { objective, start, from: From::Random };
         let all = (0..folds.len()).flat_map(|fold| (0..starts).map(move |start| (fold, start)));
         let stage = FoldStage { runs: |state| &mut state.folds, phase: Phase::Starts, penalties };
-        let objectives = self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer, stop)?;
+        self.drive_on_folds(&stage, &parts, all.map(random).collect(), observer, stop)?;
         if observer.is_over() || folds.is_empty() {
             return Ok(Validation::default());
         }
         let of_run = |(index, run): (usize, &TrainingRun)| {
-            let fold = index / starts;
-            OnFold::of(run, &parts[fold], &objectives[fold], &folds[fold], rate)
+            let (part, fold) = (&parts[index / starts], &folds[index / starts]);
+            OnFold::of(run, part, &part.objective(self.architecture, penalties)?.until(stop), fold, rate)
         };
         let on_folds: Vec<OnFold> = self.state.folds.iter().enumerate().map(of_run).collect::<Result<_>>()?;
         if observer.is_over() {
@@ -291,15 +290,15 @@ impl<'a> Fitting<'a> {
             return Ok(validation);
         }
         let stage = FoldStage { runs: |state| &mut state.folds_exact, penalties: NO_PENALTIES, ..stage };
-        let objectives = self.drive_on_folds(&stage, &parts, onward, observer, stop)?;
+        self.drive_on_folds(&stage, &parts, onward, observer, stop)?;
         if observer.is_over() {
             return Ok(validation);
         }
-        let of_run = |(fold, run): (usize, &TrainingRun)| {
-            OnFold::of(run, &parts[fold], &objectives[fold], &folds[fold], rate)
+        let of_run = |(run, (part, fold)): (&TrainingRun, (&Part, &Fold))| {
+            OnFold::of(run, part, &part.objective(self.architecture, NO_PENALTIES)?.until(stop), fold, rate)
         };
         let without: Vec<OnFold> =
-            self.state.folds_exact.iter().enumerate().map(of_run).collect::<Result<_>>()?;
+            self.state.folds_exact.iter().zip(parts.iter().zip(&folds)).map(of_run).collect::<Result<_>>()?;
         let without: Vec<&OnFold> = without.iter().collect();
         if observer.is_over() {
             return Ok(validation);
@@ -319,24 +318,23 @@ impl<'a> Fitting<'a> {
         split.map(fold).into_iter().collect()
     }
 
-    /// Drives a stage on the training parts of all folds; gives the objectives there.
-    fn drive_on_folds<'s>(
+    /// Drives a stage on the training parts of all folds.
+    fn drive_on_folds(
         &mut self,
         stage: &FoldStage,
         parts: &[Part],
         beginnings: Vec<Beginning>,
         observer: &SharedObserver<'_, '_>,
-        stop: StopCheck<'s>,
-    ) -> Result<Vec<Objective<'s>>> {
+        stop: StopCheck<'_>,
+    ) -> Result<()> {
         let FoldStage { phase, runs, penalties } = *stage;
-        let objective = |part: &Part| Ok(part.objective(self.architecture, penalties)?.until(stop));
-        let objectives = parts.iter().map(objective);
-        let objectives: Vec<Objective> = objectives.collect::<Result<_>>()?;
-        let thinned: Vec<Objective> =
-            objectives.iter().map(|objective| objective.thinned(self.asked.thin)).collect();
-        let stage = Stage { phase, runs, objectives: &thinned, epochs: self.asked.epochs, epochs_before: 0 };
-        self.drive(&stage, beginnings, observer)?;
-        Ok(objectives)
+        let objective = |part: &Part| {
+            Ok(part.objective(self.architecture, penalties)?.thinned(self.asked.thin).until(stop))
+        };
+        let objectives: Vec<Objective> = parts.iter().map(objective).collect::<Result<_>>()?;
+        let stage =
+            Stage { phase, runs, objectives: &objectives, epochs: self.asked.epochs, epochs_before: 0 };
+        self.drive(&stage, beginnings, observer)
     }
 
     /// Errors of one run on each fold, on what was held out, all together.
@@ -352,12 +350,11 @@ impl<'a> Fitting<'a> {
         best.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
         best.truncate(FINALISTS);
         let is_to_stop = || observer.is_to_stop();
-        let objective =
-            self.whole.objective(self.architecture, NO_PENALTIES)?.until(StopCheck::new(&is_to_stop));
+        let objective = self.whole.objective(self.architecture, NO_PENALTIES)?.thinned(self.asked.thin);
         let stage = Stage {
             phase: Phase::AllData,
             runs: |state| &mut state.all_exact,
-            objectives: &[objective.thinned(self.asked.thin)],
+            objectives: &[objective.until(StopCheck::new(&is_to_stop))],
             epochs: self.asked.epochs,
             epochs_before: self.asked.epochs,
         };

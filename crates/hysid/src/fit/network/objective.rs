@@ -11,8 +11,7 @@
 //! for each of the `N` scored samples and one column for each output weight; `y` is the scaled measured
 //! output.
 
-use std::borrow::Cow;
-
+use crate::data::polyline::{Column, noise, polyline};
 use crate::data::record::{Dataset, Thinning};
 use crate::error::Result;
 use crate::fit::network::curvature::{self, Curvature, has_few_rows};
@@ -31,8 +30,10 @@ pub struct Objective<'a> {
     architecture: Architecture,
     layout: Layout,
     regularisation: Regularisation,
-    drives: Cow<'a, [Drive]>,
+    drives: Vec<Drive>,
     targets: Vec<Vec<f64>>,
+    /// Mean time step and duration of the longest record as measured.
+    time_scales: Option<(f64, f64)>,
     rows: usize,
     stop: StopCheck<'a>,
     /// Evaluations take long enough to be broken off.
@@ -61,6 +62,13 @@ impl Value {
 /// milliseconds.
 const LONG: usize = 20_000_000;
 
+/// Deviation of the inputs of thinned data from those measured, as a share of their largest magnitude: so many standard
+/// deviations of their noise, within limits. The rate has no upper limit: where it is mostly noise, its path matters
+/// little.
+const NOISE_OFF_PATH: f64 = 4.0;
+const LEAST_OFF_PATH: f64 = 1e-3;
+const MOST_OFF_PATH: f64 = 1e-2;
+
 impl<'a> Objective<'a> {
     /// Scales the data for the architecture.
     ///
@@ -73,14 +81,15 @@ impl<'a> Objective<'a> {
         options: &FitOptions,
     ) -> Result<Self> {
         let used = || data.records().iter().filter(|record| record.scored() > 0);
-        let drives: Result<Vec<Drive>> =
-            used().map(|record| scaling.drive(record, &architecture, options.rate)).collect();
+        let drives = used().map(|record| scaling.drive(record, &architecture, options.rate));
+        let drives: Vec<Drive> = drives.collect::<Result<_>>()?;
         let targets: Vec<Vec<f64>> = used().map(|record| scaling.target(record)).collect();
         Ok(Self {
             architecture,
             layout: Layout::new(architecture),
             regularisation: options.penalties(),
-            drives: Cow::Owned(drives?),
+            time_scales: time_scales(&drives),
+            drives,
             targets,
             rows: data.scored(),
             stop: StopCheck::never(),
@@ -109,20 +118,18 @@ impl<'a> Objective<'a> {
         self.rows
     }
 
-    /// The same objective on at most `most` scored rows. All rows advance the memory.
-    pub fn thinned(&self, most: usize) -> Objective<'_> {
-        let mut targets = self.targets.clone();
-        let rows = Thinning::new(self.rows, most).blank(targets.iter_mut().flatten());
-        Objective {
-            drives: Cow::Borrowed(&self.drives),
-            targets,
-            rows,
-            layout: self.layout.clone(),
-            architecture: self.architecture,
-            regularisation: self.regularisation,
-            stop: self.stop,
-            is_long: self.is_long,
+    /// The same objective on at most `most` scored rows. If there are more rows, the others are left out where the
+    /// inputs run straight, and advance the memory elsewhere.
+    pub fn thinned(mut self, most: usize) -> Self {
+        self.rows = Thinning::new(self.rows, most).blank(self.targets.iter_mut().flatten());
+        if self.drives.iter().map(Drive::len).sum::<usize>() > most {
+            for (drive, target) in self.drives.iter_mut().zip(&mut self.targets) {
+                let rows = rows_of_path(drive, self.architecture.rate, target);
+                *target = rows.iter().map(|&row| target[row]).collect();
+                *drive = drive.through(&rows);
+            }
         }
+        self
     }
 
     /// The architecture.
@@ -135,17 +142,9 @@ impl<'a> Objective<'a> {
         &self.layout
     }
 
-    /// Mean time step and duration of the longest record, in the unit of time; `None` without time stamps.
+    /// Mean time step and duration of the longest record as measured, in the unit of time; `None` without time stamps.
     pub(crate) fn time_scales(&self) -> Option<(f64, f64)> {
-        // The rows of a lead-in take an infinite time.
-        fn measured(drive: &Drive) -> impl Iterator<Item = &f64> {
-            drive.steps.iter().filter(|step| step.is_finite())
-        }
-        let durations = self.drives.iter().map(|drive| measured(drive).sum::<f64>());
-        let longest = durations.clone().fold(0.0, f64::max);
-        let steps: usize = self.drives.iter().map(|drive| measured(drive).count().saturating_sub(1)).sum();
-        let step = durations.sum::<f64>() / steps.max(1) as f64;
-        (longest > 0.0).then_some((step, longest))
+        self.time_scales
     }
 
     /// Half of the range of the first input, in scaled units.
@@ -204,7 +203,7 @@ impl<'a> Objective<'a> {
     fn slope_of_few_rows(&self, parameters: &[f64], value: &Value) -> Option<Slope<Curvature>> {
         let output = Some(value.solution.weights.as_slice());
         let columns = Columns { architecture: &self.architecture, parameters, output };
-        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        let (drives, targets, stop) = (&self.drives, &self.targets, self.stop);
         let columns = RowsOverRecords { columns, first: 0, drives, targets, stop }.columns();
         let mut decay = vec![0.0; parameters.len()];
         self.weights(parameters).for_each(|(index, _)| decay[index] = self.regularisation.decay);
@@ -217,7 +216,7 @@ impl<'a> Objective<'a> {
 
     fn gram(&self, parameters: &[f64], output: Option<&[f64]>) -> crate::linear_algebra::Gram {
         let columns = Columns { architecture: &self.architecture, parameters, output };
-        let (drives, targets, stop) = (&*self.drives, &*self.targets, self.stop);
+        let (drives, targets, stop) = (&self.drives, &self.targets, self.stop);
         GramOverRecords { columns, drives, targets, stop }.gram()
     }
 
@@ -235,6 +234,36 @@ impl<'a> Objective<'a> {
     fn weights<'p>(&self, parameters: &'p [f64]) -> impl Iterator<Item = (usize, &'p f64)> {
         parameters.iter().enumerate().filter(|(index, _)| self.layout.is_weight(*index))
     }
+}
+
+/// The rows that stay of a record with many: those with a target, and those without which the inputs would run otherwise.
+fn rows_of_path(drive: &Drive, rate: bool, target: &[f64]) -> Vec<usize> {
+    let is_rate = |channel: usize| rate && channel == 1;
+    let tolerance = |channel: usize, values: &[f64]| {
+        let most = if is_rate(channel) { f64::INFINITY } else { MOST_OFF_PATH };
+        (NOISE_OFF_PATH * noise(values)).clamp(LEAST_OFF_PATH, most)
+    };
+    let columns = drive.channels.iter().enumerate().map(|(channel, values)| Column {
+        values,
+        tolerance: tolerance(channel, values),
+        longest: f64::INFINITY,
+    });
+    let columns: Vec<Column> = columns.collect();
+    let step = |row: usize| drive.steps.get(row).copied().unwrap_or(1.0);
+    polyline(&columns, step, |row| !target[row].is_nan())
+}
+
+/// Mean time step and duration of the longest record; `None` without time stamps.
+fn time_scales(drives: &[Drive]) -> Option<(f64, f64)> {
+    // The rows of a lead-in take an infinite time.
+    fn measured(drive: &Drive) -> impl Iterator<Item = &f64> {
+        drive.steps.iter().filter(|step| step.is_finite())
+    }
+    let durations = drives.iter().map(|drive| measured(drive).sum::<f64>());
+    let longest = durations.clone().fold(0.0, f64::max);
+    let steps: usize = drives.iter().map(|drive| measured(drive).count().saturating_sub(1)).sum();
+    let step = durations.sum::<f64>() / steps.max(1) as f64;
+    (longest > 0.0).then_some((step, longest))
 }
 
 /// Gradient `g` of `F` and Gauss-Newton matrix `B` with decay, `B + κI` (theory.md (3.3), (3.4)).
@@ -320,6 +349,37 @@ mod tests {
                 slope.curvature.step(&slope.gradient, &damping, StopCheck::never()).unwrap()
             };
             assert_near(&step(&by_matrix), &step(&by_rows), 1e-6);
+        }
+    }
+
+    /// Of a long record, thinned data have nearly the errors of all rows, with and without noise of the input.
+    #[test]
+    fn thinned_data_have_nearly_the_errors_of_all_rows() {
+        let rows = 60_000;
+        for noise in [0.0, 2e-4] {
+            let x = |k: usize| {
+                let of_noise = noise * (hysid_core::random::mix(k as u64) as f64 / u64::MAX as f64 - 0.5);
+                (2e-3 * k as f64).sin() * (1.0 + 0.5 * (1e-4 * k as f64).sin()) + of_noise
+            };
+            let x: Vec<f64> = (0..rows).map(x).collect();
+            let y = (0..rows).map(|k| (2e-3 * k as f64 - 0.6).sin() + 0.1 * x[k]).collect();
+            let time = (0..rows).map(|k| 0.1 * k as f64).collect();
+            let record = Record::new("r", vec![x], y).unwrap().with_time(time).unwrap();
+            let data = Dataset::new(ColumnNames::plain(1), vec![record]).unwrap();
+            let rate = Some(crate::data::rate::RateMethod::Central);
+            let options = FitOptions { model: Family::XpnnPlus, rate, ..FitOptions::default() };
+            let scaling = Scaling::of(&data, rate).unwrap();
+            let architecture = options.architecture(&data).unwrap();
+            let whole = Objective::new(&data, &scaling, architecture, &options).unwrap();
+            let thinned = whole.clone().thinned(4000);
+            assert_eq!(thinned.scored(), 4000);
+            let run: usize = thinned.drives.iter().map(Drive::len).sum();
+            assert!(run < if noise == 0.0 { 12_000 } else { 30_000 }, "{run} rows");
+            assert_eq!(thinned.time_scales(), whole.time_scales());
+            let point = crate::fit::network::start::random(&whole, 1, 0);
+            let error = |objective: &Objective| objective.value(&point).mean_square;
+            let ratio = error(&thinned) / error(&whole);
+            assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
         }
     }
 

@@ -1,6 +1,8 @@
 //! Which rows of long records a search looks at.
 
+use crate::data::polyline::{Column, polyline};
 use crate::data::record::Thinning;
+use crate::law::Sample;
 use crate::law::series::Series;
 
 /// Rows compared with the measured output at most.
@@ -9,12 +11,21 @@ const MOST_COMPARED: usize = 5000;
 /// Rows run through at most; of longer data the beginnings of the records are searched on.
 const MOST_RUN: usize = 200_000;
 
+/// Rows from which on rows on straight parts of a path are left out.
+const LONG: usize = 20_000;
+
+/// How far the path through the rows that stay may be from that measured, and how long a step may be where rows are
+/// left out, as shares of the largest magnitude. Steps are short, because the memory of a law depends on them.
+const STEPS_OF_INPUT: [f64; 2] = [1e-3, 1e-2];
+/// The same for the rate.
+const STEPS_OF_RATE: [f64; 2] = [1e-2, 5e-2];
+
 /// What the memory of a law depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Memory {
     /// Only the turning points of the input: rows between them may be left out.
     TurningPoints,
-    /// Every row, because the rate counts.
+    /// The path of the input and its rate: rows on a straight part of it may be left out.
     EveryRow,
 }
 
@@ -26,49 +37,79 @@ pub(crate) fn thinned(series: Vec<Series>, memory: Memory) -> Vec<Series> {
 
 /// As [`thinned`], with at most `most` rows that are compared.
 pub(crate) fn thinned_to(series: Vec<Series>, memory: Memory, most: usize) -> Vec<Series> {
-    let scored = |series: &[Series]| -> usize {
-        series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
-    };
-    let mut series = series;
-    let thinning = Thinning::new(scored(&series), most);
-    thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
-    let series: Vec<Series> = match memory {
-        Memory::TurningPoints => series.iter().map(condensed).collect(),
-        Memory::EveryRow => series,
-    };
-    let rows: usize = series.iter().map(|series| series.samples.len()).sum();
+    let whole = condensed(&series, memory, most);
+    let rows = rows(&whole);
     if rows <= MOST_RUN {
-        return series;
+        return whole;
     }
     let share = MOST_RUN as f64 / rows as f64;
     let mut begun: Vec<Series> = series.iter().map(|series| beginning(series, share)).collect();
     begun.retain(|series| series.output.iter().any(|y| !y.is_nan()));
-    if scored(&begun) < scored(&series) / 20 { series } else { begun }
+    if scored(&begun) < scored(&series) / 20 { whole } else { condensed(&begun, memory, most) }
 }
 
-/// Without the rows that neither have an output nor turn.
-fn condensed(series: &Series) -> Series {
+/// Number of rows that are run through.
+fn rows(series: &[Series]) -> usize {
+    series.iter().map(|series| series.samples.len()).sum()
+}
+
+/// Number of rows with an output.
+fn scored(series: &[Series]) -> usize {
+    series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
+}
+
+/// At most `most` rows compared, and of the others those that the memory depends on.
+fn condensed(series: &[Series], memory: Memory, most: usize) -> Vec<Series> {
+    let thinning = Thinning::new(scored(series), most);
+    let mut series = series.to_vec();
+    thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
+    match memory {
+        Memory::TurningPoints => series.iter().map(|series| through(series, &turning_rows(series))).collect(),
+        Memory::EveryRow if rows(&series) <= LONG => series,
+        Memory::EveryRow => series.iter().map(|series| through(series, &rows_of_path(series))).collect(),
+    }
+}
+
+/// The rows that have an output or turn.
+fn turning_rows(series: &Series) -> Vec<usize> {
     let x = |row: usize| series.samples[row].x;
     let last = series.samples.len() - 1;
-    let stays = |row: usize| {
+    let stays = |&row: &usize| {
         row == 0
             || row == last
             || !series.output[row].is_nan()
             || (x(row) - x(row - 1)) * (x(row + 1) - x(row)) <= 0.0
     };
-    let mut short = Series { samples: Vec::new(), output: Vec::new() };
-    let mut elapsed = 0.0;
-    for row in 0..series.samples.len() {
-        elapsed += series.samples[row].step;
-        if stays(row) {
-            let mut sample = series.samples[row];
-            sample.step = elapsed;
-            elapsed = 0.0;
-            short.samples.push(sample);
-            short.output.push(series.output[row]);
-        }
+    (0..=last).filter(stays).collect()
+}
+
+/// The rows that have an output, and those of short steps along the path of the input and its rate.
+fn rows_of_path(series: &Series) -> Vec<usize> {
+    let values = |of: fn(&Sample) -> f64| -> Vec<f64> { series.samples.iter().map(of).collect() };
+    let (x, rate) = (values(|sample| sample.x), values(|sample| sample.rate));
+    let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let column = |values, [tolerance, longest]: [f64; 2]| {
+        let largest = largest(values);
+        Column { values, tolerance: tolerance * largest, longest: longest * largest }
+    };
+    let has_time = series.samples.iter().any(|sample| sample.step > 0.0);
+    let step = |row: usize| if has_time { series.samples[row].step } else { 1.0 };
+    let columns = [column(&x, STEPS_OF_INPUT), column(&rate, STEPS_OF_RATE)];
+    polyline(&columns, step, |row| !series.output[row].is_nan())
+}
+
+/// The rows given, each with the time since the one before.
+fn through(series: &Series, rows: &[usize]) -> Series {
+    let mut next = 0;
+    let since_last = |&row: &usize| {
+        let step = series.samples[next..=row].iter().map(|sample| sample.step).sum();
+        next = row + 1;
+        Sample { step, ..series.samples[row] }
+    };
+    Series {
+        samples: rows.iter().map(since_last).collect(),
+        output: rows.iter().map(|&row| series.output[row]).collect(),
     }
-    short
 }
 
 fn beginning(series: &Series, share: f64) -> Series {
@@ -87,7 +128,6 @@ pub(crate) fn spread(values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Sample;
 
     fn zigzag(rows: usize) -> Series {
         let x = |row: usize| ((row % 100) as f64 - 50.0).abs();
@@ -110,5 +150,30 @@ mod tests {
         let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
         assert_eq!(elapsed, 100_000.0);
         assert_eq!(thinned(vec![zigzag(1_000_000)], Memory::EveryRow)[0].samples.len(), MOST_RUN);
+    }
+
+    /// The path of a long record is kept with its time, in short steps, and as many rows are compared where only its
+    /// beginning is run through.
+    #[test]
+    fn long_paths_keep_their_shape_and_their_time() {
+        let signal = |row: usize| (0.002 * row as f64).sin();
+        let series = |rows: usize, step: f64| {
+            let sample =
+                |row| Sample { x: signal(row), rate: 0.002 / step * (0.002 * row as f64).cos(), step };
+            Series { samples: (0..rows).map(sample).collect(), output: (0..rows).map(signal).collect() }
+        };
+        let found = &thinned(vec![series(100_000, 0.5)], Memory::EveryRow)[0];
+        assert!(found.samples.len() < 30_000, "{}", found.samples.len());
+        assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
+        assert!(found.samples.windows(2).all(|pair| (pair[1].x - pair[0].x).abs() <= 0.0101));
+        let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
+        assert!((elapsed - 50_000.0).abs() < 1e-6);
+        let rough = Series {
+            samples: (0..600_000).map(|row| Sample { x: (row % 2) as f64, rate: 0.0, step: 1.0 }).collect(),
+            output: (0..600_000).map(|row| row as f64).collect(),
+        };
+        let found = &thinned(vec![rough], Memory::EveryRow)[0];
+        assert_eq!(found.samples.len(), MOST_RUN);
+        assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
     }
 }
