@@ -149,8 +149,8 @@ pub struct FitOptions {
     /// `None` as for `ridge`.
     #[serde(default)]
     pub decay: Option<f64>,
-    /// Largest number of scored rows of early iterations. All rows advance the memory, and the last
-    /// iterations use all scored rows.
+    /// Largest number of scored rows of the iterations. If there are more rows, those on straight parts of the path of
+    /// the inputs are left out. The output weights, and the last iterations of Levenberg-Marquardt, use all rows.
     pub thin: usize,
 }
 
