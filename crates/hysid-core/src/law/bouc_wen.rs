@@ -163,9 +163,21 @@ impl BoucWen {
         let parts = (travel / part).ceil().clamp(1.0, MOST_PARTS);
         let part = travel / parts;
         match &self.degradation {
-            None => (0..parts as usize).fold(inner, |inner, _| self.part(inner, part)),
+            None => self.constant_upwards(inner, part, parts as usize),
             Some(degradation) => self.degrading_upwards(degradation, inner, part, by),
         }
+    }
+
+    /// Moves up by so many parts, or until the yield force is reached.
+    fn constant_upwards(&self, inner: Inner, part: f64, parts: usize) -> Inner {
+        let mut inner = inner;
+        for _ in 0..parts {
+            if inner.z >= YIELDED {
+                break;
+            }
+            inner = self.part(inner, part);
+        }
+        inner
     }
 
     /// Moves up by `by` in parts, or along the yield force where the element follows it, as it does after [`SATURATED`]
