@@ -162,6 +162,12 @@ impl Chart {
     }
 }
 
+/// Several charts as one file, `columns` of them beside each other, in cells as large as the largest chart. `description`
+/// is for readers who cannot see them; `generator` names the program that made the file.
+pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
+    svg::sheet(charts, columns, description, generator)
+}
+
 /// Points in a file: one that is not finite is nothing.
 mod points {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,60 +1,27 @@
 //! How fast the parts are. The sizes stand in the names.
 
+mod inputs;
+
 use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use hysid::data::record::{ColumnNames, Dataset, Record};
 use hysid::fit::network::fit;
 use hysid::fit::network::objective::Objective;
+use hysid::network::Family;
 use hysid::network::scaling::Scaling;
-use hysid::network::{Architecture, Family, Layout, Network, Sizes};
 use hysid::operator::{DeterioratingStop, Operator, Play, Relaxation, Stop};
 use hysid::optimise::levenberg_marquardt::LevenbergMarquardt;
 use hysid::options::network::{FitOptions, Trainer};
-use rand::{RngExt, SeedableRng};
-use rand_xoshiro::Xoshiro256PlusPlus as Generator;
+
+use inputs::{data, network, options, parameters, path, xpnn};
 
 fn group<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, WallTime> {
     let mut group = criterion.benchmark_group(name);
     group.measurement_time(Duration::from_secs(3)).warm_up_time(Duration::from_secs(1)).sample_size(30);
     group
-}
-
-/// An oscillation whose amplitude keeps changing, within -1 to 1.
-fn path(rows: usize) -> Vec<f64> {
-    (0..rows).map(|k| (0.07 * k as f64).sin() * (0.003 * k as f64).cos()).collect()
-}
-
-fn xpnn(stops: usize, hidden: usize, deterioration: bool) -> Architecture {
-    let sizes = Sizes { stops, hidden, relaxation: 0 };
-    let family = if deterioration { Family::Xpnn } else { Family::PreisachNn };
-    Architecture::new(family, sizes, 1, false, false).unwrap()
-}
-
-/// Thresholds spread over the path, wear over its whole length, the rest at random.
-fn parameters(architecture: Architecture, seed: u64) -> Vec<f64> {
-    let layout = Layout::new(architecture);
-    let mut generator = Generator::seed_from_u64(seed);
-    (0..layout.len())
-        .map(|k| {
-            let random = generator.random::<f64>();
-            if layout.stop_weights.contains(&k) {
-                1.0 / (0.05 + 0.9 * random)
-            } else if layout.ln_beta.contains(&k) {
-                1e5f64.ln()
-            } else {
-                random - 0.5
-            }
-        })
-        .collect()
-}
-
-fn network(architecture: Architecture) -> Network {
-    let output = (0..architecture.output_weights()).map(|i| 0.5 - 0.1 * i as f64).collect();
-    Network::new(architecture, parameters(architecture, 1), output).unwrap()
 }
 
 fn operators(criterion: &mut Criterion) {
@@ -104,21 +71,8 @@ fn simulation(criterion: &mut Criterion) {
     });
 }
 
-/// 2000 rows of a network's output, which another one with 10 stops and 10 hidden neurons is to fit.
-fn data() -> Dataset {
-    let x = path(2000);
-    let mut y = vec![0.0; x.len()];
-    network(xpnn(6, 4, true)).simulator().run(&[&x], &[], &mut y);
-    Dataset::new(ColumnNames::plain(1), vec![Record::new("r", vec![x], y).unwrap()]).unwrap()
-}
-
-fn options() -> FitOptions {
-    let sizes = Sizes { stops: 10, hidden: 10, relaxation: 0 };
-    FitOptions { model: Family::Xpnn, sizes, ..FitOptions::of(Trainer::LevenbergMarquardt) }
-}
-
 fn jacobian(criterion: &mut Criterion) {
-    let (data, architecture) = (data(), xpnn(10, 10, true));
+    let (data, architecture) = (data(2000), xpnn(10, 10, true));
     let scaling = Scaling::of(&data, None).unwrap();
     let objective = Objective::new(&data, &scaling, architecture, &options()).unwrap();
     let parameters = parameters(architecture, 2);
@@ -140,7 +94,7 @@ fn jacobian(criterion: &mut Criterion) {
 
 /// What the paper's training is made of.
 fn paper(criterion: &mut Criterion) {
-    let data = data();
+    let data = data(2000);
     let mut group = group(criterion, "paper");
     group.sample_size(10);
     for (name, training, population) in [
@@ -158,7 +112,7 @@ fn paper(criterion: &mut Criterion) {
 }
 
 fn training(criterion: &mut Criterion) {
-    let data = data();
+    let data = data(2000);
     let options = options();
     let mut group = group(criterion, "training");
     group.sample_size(10);

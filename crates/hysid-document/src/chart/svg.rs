@@ -29,6 +29,9 @@ const LEGEND_LINE: f64 = 18.0;
 /// Room that the legend leaves free on both sides together, in pixels.
 const LEGEND_EDGE: f64 = 40.0;
 
+/// Room between the rows of a sheet, in pixels: a legend belongs to the chart below it.
+const SHEET_GAP: f64 = 20.0;
+
 /// Recolours the markers; to be put into the page once.
 pub const STYLE: &str = include_str!("style.css");
 
@@ -80,6 +83,29 @@ pub fn file(chart: &Chart, generator: &str) -> String {
     let attributes =
         format!(" data-generator=\"{}\" width=\"{width}\" height=\"{height}\"", escape(generator));
     element(chart, &attributes, &format!("<style>{STYLE}{STANDALONE}</style>"))
+}
+
+/// As [`super::sheet`].
+pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
+    let largest = |of: fn(&Chart) -> f64| charts.iter().map(of).fold(0.0, f64::max);
+    let (width, height) = (largest(|chart| chart.size.0), largest(|chart| chart.size.1));
+    let columns = columns.clamp(1, charts.len().max(1));
+    let rows = charts.len().div_ceil(columns);
+    let (whole, high) = (width * columns as f64, (height + SHEET_GAP) * rows as f64 - SHEET_GAP);
+    // A drawing has no size of its own: the element around it determines place and size.
+    let placed = |(index, chart): (usize, &Chart)| {
+        let (x, y) = (width * (index % columns) as f64, (height + SHEET_GAP) * (index / columns) as f64);
+        let (width, height) = chart.size;
+        format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">\n{}</svg>\n", drawn(chart))
+    };
+    format!(
+        "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {whole} {high}\" \
+         xmlns=\"http://www.w3.org/2000/svg\" data-generator=\"{}\" width=\"{whole}\" height=\"{high}\">\
+         <style>{STYLE}{STANDALONE}</style>\n{}</svg>\n",
+        escape(description),
+        escape(generator),
+        charts.iter().enumerate().map(placed).collect::<String>()
+    )
 }
 
 /// The `svg` element; `attributes` and what it begins with are markup.

@@ -32,6 +32,22 @@ fn user_text_is_escaped_and_elements_balanced() {
 }
 
 #[test]
+fn charts_of_a_sheet_are_in_rows_and_columns() {
+    let one = chart(vec![(0.0, 0.0), (1.0, 1.0)]);
+    let sheet = sheet(&[one.clone(), one.clone(), one.sized(500.0, 300.0)], 2, "a & b", "Hysid 1");
+    assert!(sheet.starts_with("<svg") && sheet.contains("aria-label=\"a &amp; b\""));
+    assert!(sheet.contains("width=\"1040\" height=\"740\"") && sheet.matches("<style>").count() == 1);
+    for place in [
+        "x=\"0\" y=\"0\" width=\"520\" height=\"360\"",
+        "x=\"520\" y=\"0\"",
+        "x=\"0\" y=\"380\" width=\"500\"",
+    ] {
+        assert!(sheet.contains(place), "{place}");
+    }
+    assert_balanced(&sheet);
+}
+
+#[test]
 fn blanks_leave_gaps_and_lone_points_are_dots() {
     let gap = (1.5, f64::NAN);
     let svg = chart(vec![(0.0, 0.0), (1.0, 1.0), gap, (2.0, 0.0), (3.0, 1.0), gap, (4.0, 0.0)]).svg();
