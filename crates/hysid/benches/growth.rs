@@ -32,13 +32,13 @@ const NEURONS: usize = 10;
 /// Rows where they do not vary.
 const ROWS: usize = 20_000;
 
-/// All points are measured in turns, so that a busy moment of the machine spoils one round and not one point.
+/// All points are measured in turns, so that a short load on the machine affects one round of all points, not all rounds of one point.
 const ROUNDS: usize = 10;
 
 /// A point is run this long in a round, and at least twice.
 const SLICE: Duration = Duration::from_millis(80);
 
-/// The exponent of the growth is that of the largest sizes, so many of them: smaller ones have costs that do not grow.
+/// Number of largest sizes that the exponent is fitted to; at smaller sizes, constant costs matter.
 const LARGEST: usize = 3;
 
 /// A cost at one size.
@@ -82,7 +82,7 @@ fn main() {
     }
 }
 
-/// What was asked for: nothing, or to measure and perhaps to write a picture into a file. `cargo bench` passes `--bench`
+/// Parses the arguments: `None` to skip the benchmark, `Some` to run it, with the file of the picture if there is one. `cargo bench` passes `--bench`
 /// and `cargo test` does not; other arguments are for the other benchmarks.
 fn request(mut arguments: impl Iterator<Item = String>) -> Option<Option<String>> {
     let (mut is_wanted, mut picture) = (false, None);
@@ -137,8 +137,9 @@ fn runs_of_network(rows: usize, stops: usize, neurons: usize) -> [Box<dyn FnMut(
     [Box::new(evaluation), Box::new(gradient), Box::new(free_run)]
 }
 
-/// Free runs of ensembles, and of their members alone: the rest is the medians. The members are networks from different
-/// random starts, each trained a little, since how good they are does not change their cost.
+/// Free runs of ensembles, and of their members alone: the difference is the overhead of the ensemble, with its medians.
+/// The members are networks from different random starts, each trained for two epochs only, because their cost does not
+/// depend on their error.
 fn of_ensembles(sizes: &[usize]) -> Study {
     let data = data(2000);
     let member = |seed: usize| {
@@ -219,8 +220,8 @@ impl Series {
         Cell::Text(format!("{:.2}", self.exponent()))
     }
 
-    /// The line of slope 1 through the largest size: it lies below points that have costs which do not grow, and above
-    /// those of a cost that grows faster than the size.
+    /// The line of slope 1 through the largest size: smaller sizes lie above it if part of the cost is constant, and below
+    /// it if the cost grows faster than linearly.
     fn line(&self) -> Vec<(f64, f64)> {
         let Some((largest, longest)) = self.measured().last() else { return Vec::new() };
         self.measured().map(|(size, _)| (size, longest * size / largest)).collect()

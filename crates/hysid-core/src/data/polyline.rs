@@ -1,28 +1,29 @@
 //! A polyline through few rows of a long signal.
 //!
-//! Of a million rows, a fit compares some thousands with the measured output; the others only lead the memory of a model
-//! there. Where the inputs run straight, one step leads it as far as a hundred: between two rows on a straight line a
-//! play moves one way, and the equation of a relaxation is solved exactly.
+//! A fit scores some ten thousand of a million rows; the others only advance the memory of the model. On a straight part
+//! of the input, one long step gives the same memory as many short ones: a play moves in one direction, and the
+//! relaxation equation has an exact solution.
 //!
 //! ```text
 //! |u(k) - û(k)| <= ε  for every row k
 //! |p(k) - p̂(k)| <= ε
 //! ```
 //!
-//! `u` is the signal, `û` the polyline through the rows that stay, `ε` the tolerance, and `p` a play. The second line follows
-//! from the first, because a play moves by no more than its input (theory.md (1.1)).
+//! `u` is the signal, `û` the polyline through the kept rows, `ε` the tolerance, `p` the play of `u` and `p̂` the play of
+//! `û`. The second line follows from the first: if two inputs differ by at most `ε`, their plays of equal threshold do
+//! too (theory.md (1.2)).
 //!
-//! The rows are found in one pass: from the last row that stayed, every column has an interval of slopes that lead past
-//! all rows since within the tolerance. When the next row lies outside, the one before it stays.
+//! One pass finds the rows. For each column, it holds the interval of slopes of lines from the last kept row that pass
+//! all later rows within the tolerance. If the slope to the next row is outside the interval, the row before it is kept.
 
-/// A column of the signal, with what the polyline may do to it; all in the column's unit.
+/// A column of the signal and the limits of its polyline, in the column's unit.
 #[derive(Debug, Clone, Copy)]
 pub struct Column<'a> {
     /// The value at each row.
     pub values: &'a [f64],
-    /// The largest distance of the polyline from a value.
+    /// Largest distance of the polyline from a value.
     pub tolerance: f64,
-    /// The largest change between two rows that stay, if rows between them are left out.
+    /// Largest change between two successive kept rows with rows left out between them.
     pub longest: f64,
 }
 
@@ -32,7 +33,7 @@ impl Column<'_> {
     }
 }
 
-/// Slopes from the last row that stayed, which pass all rows since within the tolerance.
+/// Interval of slopes of lines from the last kept row that pass all later rows within the tolerance.
 #[derive(Debug, Clone, Copy)]
 struct Opening {
     low: f64,
@@ -41,11 +42,11 @@ struct Opening {
 
 const OPEN: Opening = Opening { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-/// The rows of a polyline that meets every row within the tolerances. It goes through the first row, the last, and every row
-/// that is `needed`.
+/// Indices of the kept rows: the first row, the last, every row that is `needed`, and those of a polyline that deviates
+/// from every row by at most the tolerances.
 ///
-/// `step` is the time from the row before to a row, or 1 for a signal without time. The rows on both sides of a step
-/// that is infinite or not above 0 stay.
+/// `step(row)` is the time since the row before, or 1 without time. Both rows of a step that is infinite, NaN or not
+/// positive are kept.
 pub fn polyline(
     columns: &[Column],
     step: impl Fn(usize) -> f64,
@@ -84,11 +85,12 @@ pub fn polyline(
     rows
 }
 
-/// Windows that the noise is found from, at most.
+/// Maximum number of windows for the estimate of the noise.
 const MOST_WINDOWS: usize = 10_000;
 
-/// Standard deviation of the noise of a signal, in its unit: from the median of its fourth differences, which are small where
-/// it is smooth. A smooth signal of twenty rows a cycle gives less than two thousandths of its amplitude.
+/// Standard deviation of the noise of a signal, in its unit, estimated from the median magnitude of its fourth
+/// differences, which are small for a smooth signal. For a sine without noise, with twenty rows a cycle, the estimate is
+/// below 0.2 % of the amplitude.
 pub fn noise(values: &[f64]) -> f64 {
     let every = (values.len() / MOST_WINDOWS).max(1);
     let fourth = |w: &[f64]| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs();

@@ -7,8 +7,8 @@
 //! E = P + P m,   1 - E = (1 - P) - P m
 //! ```
 //!
-//! `k` is an integer and `|s| <= (ln 2)/2`. For `k = 0` the second difference is `-m` itself, and for others it does not
-//! cancel. The relative errors are below 5e-16.
+//! `k` is an integer and `|s| <= (ln 2)/2`. `1 - E` has no cancellation: it is `-m` for `k = 0`, and `P <= 1/2`
+//! otherwise. For `φ < 700` the relative errors are below 5e-16; beyond, `E` is 0.
 
 use pulp::Simd;
 
@@ -33,25 +33,25 @@ const SQUARE_AND_UP: [f64; 11] = [
 /// ln 2 as a sum: the first part has so few digits that its products with `k` are exact.
 const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
 
-/// Adding this rounds to an integer and leaves it, plus the bias of the exponent, in the low bits.
+/// Adding this constant rounds to an integer; the low bits of the sum are that integer plus the exponent bias 1023.
 const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
 
-/// Nothing is left after so many relaxation times.
+/// From this many relaxation times on, `E` is 0.
 const LONGEST: f64 = 700.0;
 
 /// The factors of one time step of `phi` relaxation times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Decay {
-    /// `E`, for the present stress.
+    /// `E`, the factor of the stress before the step.
     pub stress: f64,
-    /// `G`, for the increment of the input.
+    /// `G`, the factor of the increment of the input.
     pub increment: f64,
-    /// `φE`, the derivative of `E` by `ln τ`.
+    /// `φE`, the derivative of `E` with respect to `ln τ`.
     pub by_ln_tau: f64,
 }
 
-/// The factors [`crate::operator::relaxation::decay`] after `phi` relaxation times, with other roundings. A `phi` that is
-/// not above 0 counts as 0.
+/// The factors of a step of `phi` relaxation times, equal to [`crate::operator::relaxation::decay`] up to rounding. A
+/// `phi` that is not above 0 counts as 0.
 #[inline(always)]
 pub(crate) fn decay<S: Simd>(phi: f64) -> Decay {
     let phi = if phi > 0.0 { phi } else { 0.0 };

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Values row by row, which are never changed. A copy, and the rows before a given one, cost no memory: a
+/// Immutable values of a column, one for each row. Clones and parts from the first row on share one allocation, because
 /// cross-validation holds many parts of the same record.
 #[derive(Clone)]
 pub struct Values {

@@ -248,7 +248,7 @@ impl<'a> Task<'a> {
         stop: StopCheck<'a>,
     ) -> Result<Self> {
         let law = &frame.law;
-        let series = thinned_to(Series::all(data, options.rate)?, Memory::EveryRow, MOST_COMPARED);
+        let series = thinned_to(Series::all(data, options.rate)?, Memory::Path, MOST_COMPARED);
         let scaled = |series: &Series| series.samples.iter().map(|&sample| law.scaled(sample)).collect();
         let target = |series: &Series| {
             series.output.iter().map(|y| (y - law.output_mean) / law.output_scale).collect()

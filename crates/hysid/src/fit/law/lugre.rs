@@ -26,7 +26,7 @@ impl Identify for Lugre {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
-        let series = thinned(Series::all(data, Some(rate))?, Memory::EveryRow);
+        let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
         let (low, high) = data.input_range(0);
         let family = Contacts::new((high - low).max(f64::MIN_POSITIVE), &series);
         let effort = Effort::of(options, STARTS, EPOCHS);

@@ -49,7 +49,7 @@ impl Identify for RateDependentPrandtlIshlinskii {
         let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
         let series = Series::all(data, Some(rate))?;
         let family = Plays::new(&series, options);
-        let series = thinned(series, Memory::EveryRow);
+        let series = thinned(series, Memory::Path);
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
         let mut law = family.law(&found.parameters);

@@ -62,10 +62,10 @@ impl Value {
 /// milliseconds.
 const LONG: usize = 20_000_000;
 
-/// Deviation of the inputs of thinned data from those measured, as a share of their largest magnitude: so many standard
-/// deviations of their noise, within limits. The rate has no upper limit: where it is mostly noise, its path matters
-/// little.
+/// Tolerance of the polyline of an input, in standard deviations of its noise.
 const NOISE_OFF_PATH: f64 = 4.0;
+/// Limits of that tolerance, as shares of the largest magnitude of the input. The rate has no upper limit, because it may
+/// be mostly noise.
 const LEAST_OFF_PATH: f64 = 1e-3;
 const MOST_OFF_PATH: f64 = 1e-2;
 
@@ -118,8 +118,8 @@ impl<'a> Objective<'a> {
         self.rows
     }
 
-    /// The same objective on at most `most` scored rows. If there are more rows, the others are left out where the
-    /// inputs run straight, and advance the memory elsewhere.
+    /// The same objective on at most `most` scored rows. If the records have more than `most` rows, scored or not, the
+    /// rows that are not scored are left out on straight parts of the input path; elsewhere they advance the memory.
     pub fn thinned(mut self, most: usize) -> Self {
         self.rows = Thinning::new(self.rows, most).blank(self.targets.iter_mut().flatten());
         if self.drives.iter().map(Drive::len).sum::<usize>() > most {
@@ -236,7 +236,8 @@ impl<'a> Objective<'a> {
     }
 }
 
-/// The rows that stay of a record with many: those with a target, and those without which the inputs would run otherwise.
+/// Indices of the kept rows of a long record: rows with a target, and the rows of a polyline that follows the inputs within
+/// their tolerances.
 fn rows_of_path(drive: &Drive, rate: bool, target: &[f64]) -> Vec<usize> {
     let is_rate = |channel: usize| rate && channel == 1;
     let tolerance = |channel: usize, values: &[f64]| {

@@ -1,21 +1,22 @@
-//! Which rows of long records a search looks at.
+//! Selection of the rows of long records for a search.
 
 use crate::data::polyline::{Column, polyline};
 use crate::data::record::Thinning;
 use crate::law::Sample;
 use crate::law::series::Series;
 
-/// Rows compared with the measured output at most.
+/// Maximum number of scored rows.
 const MOST_COMPARED: usize = 5000;
 
-/// Rows run through at most; of longer data the beginnings of the records are searched on.
+/// Maximum number of rows of a search. From longer data, the search uses the first part of each record, unless that has
+/// less than a twentieth of the scored rows.
 const MOST_RUN: usize = 200_000;
 
-/// Rows from which on rows on straight parts of a path are left out.
+/// With more rows than this, rows on straight parts of the path are left out.
 const LONG: usize = 20_000;
 
-/// How far the path through the rows that stay may be from that measured, and how long a step may be where rows are
-/// left out, as shares of the largest magnitude. Steps are short, because the memory of a law depends on them.
+/// Tolerance of the polyline and longest step where rows are left out, as shares of the largest magnitude. The steps are
+/// limited because the result of a law depends on their length.
 const STEPS_OF_INPUT: [f64; 2] = [1e-3, 1e-2];
 /// The same for the rate.
 const STEPS_OF_RATE: [f64; 2] = [1e-2, 5e-2];
@@ -26,11 +27,12 @@ pub(crate) enum Memory {
     /// Only the turning points of the input: rows between them may be left out.
     TurningPoints,
     /// The path of the input and its rate: rows on a straight part of it may be left out.
-    EveryRow,
+    Path,
 }
 
-/// The records with so many outputs blanked, and rows that neither turn nor are compared left out,
-/// that the cost of a search has a bound. Every turning point stays, so that the memory is the same.
+/// The records with at most 5000 scored rows and without rows that the memory does not need, so that the cost of a search
+/// is bounded. [`Memory::TurningPoints`] keeps every turning point, so the memory is unchanged; [`Memory::Path`] keeps
+/// the path within a tolerance.
 pub(crate) fn thinned(series: Vec<Series>, memory: Memory) -> Vec<Series> {
     thinned_to(series, memory, MOST_COMPARED)
 }
@@ -65,12 +67,12 @@ fn condensed(series: &[Series], memory: Memory, most: usize) -> Vec<Series> {
     thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
     match memory {
         Memory::TurningPoints => series.iter().map(|series| through(series, &turning_rows(series))).collect(),
-        Memory::EveryRow if rows(&series) <= LONG => series,
-        Memory::EveryRow => series.iter().map(|series| through(series, &rows_of_path(series))).collect(),
+        Memory::Path if rows(&series) <= LONG => series,
+        Memory::Path => series.iter().map(|series| through(series, &rows_of_path(series))).collect(),
     }
 }
 
-/// The rows that have an output or turn.
+/// Scored rows, turning points, and the first and last row.
 fn turning_rows(series: &Series) -> Vec<usize> {
     let x = |row: usize| series.samples[row].x;
     let last = series.samples.len() - 1;
@@ -83,7 +85,7 @@ fn turning_rows(series: &Series) -> Vec<usize> {
     (0..=last).filter(stays).collect()
 }
 
-/// The rows that have an output, and those of short steps along the path of the input and its rate.
+/// Scored rows, and the rows of a polyline in short steps along the input and its rate.
 fn rows_of_path(series: &Series) -> Vec<usize> {
     let values = |of: fn(&Sample) -> f64| -> Vec<f64> { series.samples.iter().map(of).collect() };
     let (x, rate) = (values(|sample| sample.x), values(|sample| sample.rate));
@@ -98,7 +100,7 @@ fn rows_of_path(series: &Series) -> Vec<usize> {
     polyline(&columns, step, |row| !series.output[row].is_nan())
 }
 
-/// The rows given, each with the time since the one before.
+/// The series of these rows only, each with the time since the previous one.
 fn through(series: &Series, rows: &[usize]) -> Series {
     let mut next = 0;
     let since_last = |&row: &usize| {
@@ -137,7 +139,7 @@ mod tests {
 
     #[test]
     fn short_records_stay_as_they_are() {
-        assert_eq!(thinned(vec![zigzag(4000)], Memory::EveryRow), [zigzag(4000)]);
+        assert_eq!(thinned(vec![zigzag(4000)], Memory::Path), [zigzag(4000)]);
     }
 
     #[test]
@@ -149,7 +151,7 @@ mod tests {
         assert_eq!(turns, 2000);
         let elapsed: f64 = found.samples.iter().map(|sample| sample.step).sum();
         assert_eq!(elapsed, 100_000.0);
-        assert_eq!(thinned(vec![zigzag(1_000_000)], Memory::EveryRow)[0].samples.len(), MOST_RUN);
+        assert_eq!(thinned(vec![zigzag(1_000_000)], Memory::Path)[0].samples.len(), MOST_RUN);
     }
 
     /// The path of a long record is kept with its time, in short steps, and as many rows are compared where only its
@@ -162,7 +164,7 @@ mod tests {
                 |row| Sample { x: signal(row), rate: 0.002 / step * (0.002 * row as f64).cos(), step };
             Series { samples: (0..rows).map(sample).collect(), output: (0..rows).map(signal).collect() }
         };
-        let found = &thinned(vec![series(100_000, 0.5)], Memory::EveryRow)[0];
+        let found = &thinned(vec![series(100_000, 0.5)], Memory::Path)[0];
         assert!(found.samples.len() < 30_000, "{}", found.samples.len());
         assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
         assert!(found.samples.windows(2).all(|pair| (pair[1].x - pair[0].x).abs() <= 0.0101));
@@ -172,7 +174,7 @@ mod tests {
             samples: (0..600_000).map(|row| Sample { x: (row % 2) as f64, rate: 0.0, step: 1.0 }).collect(),
             output: (0..600_000).map(|row| row as f64).collect(),
         };
-        let found = &thinned(vec![rough], Memory::EveryRow)[0];
+        let found = &thinned(vec![rough], Memory::Path)[0];
         assert_eq!(found.samples.len(), MOST_RUN);
         assert_eq!(found.output.iter().filter(|y| !y.is_nan()).count(), MOST_COMPARED);
     }
