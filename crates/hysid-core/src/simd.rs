@@ -26,6 +26,16 @@ pub fn instruction_set() -> &'static str {
     "baseline"
 }
 
+/// Adding this constant rounds to an integer; the low bits of the sum are that integer plus the exponent bias 1023.
+const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
+
+/// The integer `k` next to `a * b`, whose magnitude is below 1023, and `2^k`.
+#[inline(always)]
+pub(crate) fn nearest_power<S: Simd>(a: f64, b: f64) -> (f64, f64) {
+    let rounded = multiply_add::<S>(a, b, ROUND);
+    (rounded - ROUND, f64::from_bits(rounded.to_bits() << 52))
+}
+
 /// `a * b + c`, in one rounding where the hardware fuses. Where it does not, `f64::mul_add` would
 /// call a library function hundreds of times slower.
 #[inline(always)]

@@ -32,7 +32,8 @@ const NEURONS: usize = 10;
 /// Rows where they do not vary.
 const ROWS: usize = 20_000;
 
-/// All points are measured in turns, so that a short load on the machine affects one round of all points, not all rounds of one point.
+/// All points are measured in turns, so that a short load on the machine affects one round of all points, not all rounds
+/// of one point.
 const ROUNDS: usize = 10;
 
 /// A point is run this long in a round, and at least twice.
@@ -82,8 +83,8 @@ fn main() {
     }
 }
 
-/// Parses the arguments: `None` to skip the benchmark, `Some` to run it, with the file of the picture if there is one. `cargo bench` passes `--bench`
-/// and `cargo test` does not; other arguments are for the other benchmarks.
+/// Parses the arguments: `None` to skip the benchmark, `Some` to run it, with the file of the picture if there is one.
+/// `cargo bench` passes `--bench` and `cargo test` does not; other arguments are for the other benchmarks.
 fn request(mut arguments: impl Iterator<Item = String>) -> Option<Option<String>> {
     let (mut is_wanted, mut picture) = (false, None);
     while let Some(argument) = arguments.next() {

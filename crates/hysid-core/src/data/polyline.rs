@@ -85,6 +85,17 @@ pub fn polyline(
     rows
 }
 
+/// The time from each of these rows, which are in order, back to the one before it; for the first, to the beginning.
+pub fn steps_between(rows: &[usize], step: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut next = 0;
+    let since_last = |&row: &usize| {
+        let elapsed = (next..=row).map(&step).sum();
+        next = row + 1;
+        elapsed
+    };
+    rows.iter().map(since_last).collect()
+}
+
 /// Maximum number of windows for the estimate of the noise.
 const MOST_WINDOWS: usize = 10_000;
 

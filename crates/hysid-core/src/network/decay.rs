@@ -12,7 +12,7 @@
 
 use pulp::Simd;
 
-use crate::simd::multiply_add;
+use crate::simd::{multiply_add, nearest_power};
 
 /// `(e^s - 1 - s) / s²` by powers of `s`, highest first: Chebyshev interpolation of degree 10 on `|s| <= (ln 2)/2`,
 /// computed with 70 digits; its relative error in `e^s - 1` is 5e-19.
@@ -32,9 +32,6 @@ const SQUARE_AND_UP: [f64; 11] = [
 
 /// ln 2 as a sum: the first part has so few digits that its products with `k` are exact.
 const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
-
-/// Adding this constant rounds to an integer; the low bits of the sum are that integer plus the exponent bias 1023.
-const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
 
 /// From this many relaxation times on, `E` is 0.
 const LONGEST: f64 = 700.0;
@@ -56,15 +53,13 @@ pub(crate) struct Decay {
 pub(crate) fn decay<S: Simd>(phi: f64) -> Decay {
     let phi = if phi > 0.0 { phi } else { 0.0 };
     let bounded = if phi < LONGEST { phi } else { LONGEST };
-    let rounded = multiply_add::<S>(bounded, -std::f64::consts::LOG2_E, ROUND);
-    let k = rounded - ROUND;
+    let (k, power) = nearest_power::<S>(bounded, -std::f64::consts::LOG2_E);
     let s = multiply_add::<S>(-k, LN_2[1], multiply_add::<S>(-k, LN_2[0], -bounded));
     let mut square = SQUARE_AND_UP[0];
     for &coefficient in &SQUARE_AND_UP[1..] {
         square = multiply_add::<S>(square, s, coefficient);
     }
     let m = multiply_add::<S>(s * s, square, s);
-    let power = f64::from_bits(rounded.to_bits() << 52);
     let left = multiply_add::<S>(power, m, power);
     let lost = multiply_add::<S>(-power, m, 1.0 - power);
     let stress = if phi < LONGEST { left } else { 0.0 };

@@ -9,6 +9,7 @@
 
 use pulp::{Simd, WithSimd};
 
+use crate::data::polyline::steps_between;
 use crate::network::memory::{BLOCK, MemoryLayer, MemorySlopes, MemoryState, Row, Sensitivity};
 use crate::network::readout::Readout;
 use crate::network::{Architecture, limited};
@@ -39,13 +40,8 @@ impl Drive {
     /// The drive through these rows alone, which are in order.
     pub fn through(&self, rows: &[usize]) -> Self {
         let channels = self.channels.iter().map(|u| rows.iter().map(|&row| u[row]).collect());
-        let mut next = 0;
-        let since_last = |&row: &usize| {
-            let elapsed = self.steps[next..=row].iter().sum();
-            next = row + 1;
-            elapsed
-        };
-        let steps = if self.steps.is_empty() { Vec::new() } else { rows.iter().map(since_last).collect() };
+        let has_steps = !self.steps.is_empty();
+        let steps = if has_steps { steps_between(rows, |row| self.steps[row]) } else { Vec::new() };
         Self { channels: channels.collect(), steps }
     }
 }

@@ -11,7 +11,7 @@
 
 use pulp::Simd;
 
-use crate::simd::multiply_add;
+use crate::simd::{multiply_add, nearest_power};
 
 /// `(tanh s / s - 1) / s²` by powers of `s²`, highest first: Chebyshev interpolation of degree 5 on `|s| <= (ln 2)/4`,
 /// computed with 60 digits; its relative error in `tanh s` is 2e-17.
@@ -24,17 +24,13 @@ const CUBIC_AND_UP: [f64; 6] = [
     -0.3333333333333328,
 ];
 
-/// Adding this rounds to an integer and leaves it, plus the bias of the exponent, in the low bits.
-const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
-
 /// tanh, for finite `x`.
 #[inline(always)]
 pub(crate) fn tanh<S: Simd>(x: f64) -> f64 {
     let magnitude = x.abs();
     // tanh 20 rounds to 1.
     let a = if magnitude < 20.0 { magnitude } else { 20.0 };
-    let rounded = multiply_add::<S>(a, 2.0 * std::f64::consts::LOG2_E, ROUND);
-    let k = rounded - ROUND;
+    let (k, power) = nearest_power::<S>(a, 2.0 * std::f64::consts::LOG2_E);
     let s = multiply_add::<S>(-k, 0.5 * std::f64::consts::LN_2, a);
     let square = s * s;
     let mut cubic = CUBIC_AND_UP[0];
@@ -42,7 +38,6 @@ pub(crate) fn tanh<S: Simd>(x: f64) -> f64 {
         cubic = multiply_add::<S>(cubic, square, coefficient);
     }
     let t = multiply_add::<S>(square * s, cubic, s);
-    let power = f64::from_bits(rounded.to_bits() << 52);
     let (less, more) = (power - 1.0, power + 1.0);
     (multiply_add::<S>(more, t, less) / multiply_add::<S>(less, t, more)).copysign(x)
 }

@@ -123,9 +123,7 @@ mod tests {
     fn a_single_record_is_cut_into_blocks_of_rows_that_have_an_output() {
         let whole = record(1.0);
         let blank = (0..100).map(|k| if k < 50 { f64::NAN } else { whole.output()[k] }).collect();
-        let folds = RowFolds::of(&data(vec![
-            Record::new("r", whole.inputs().iter().map(|x| x.to_vec()).collect(), blank).unwrap(),
-        ]));
+        let folds = RowFolds::of(&data(vec![whole.clone().with_output(blank).unwrap()]));
         assert_eq!(folds.judged, [0, 1, 2, 3, 4]);
         assert_eq!((folds.of_rows[0][59], folds.of_rows[0][60], folds.of_rows[0][99]), (0, 1, 4));
     }

@@ -265,11 +265,7 @@ impl<'a> Fitting<'a> {
         if observer.is_over() || folds.is_empty() {
             return Ok(Validation::default());
         }
-        let of_run = |(index, run): (usize, &TrainingRun)| {
-            let (part, fold) = (&parts[index / starts], &folds[index / starts]);
-            OnFold::of(run, part, &part.objective(self.architecture, penalties)?.until(stop), fold, rate)
-        };
-        let on_folds: Vec<OnFold> = self.state.folds.iter().enumerate().map(of_run).collect::<Result<_>>()?;
+        let on_folds = self.on_folds(&self.state.folds, &parts, &folds, penalties, stop)?;
         if observer.is_over() {
             return Ok(Validation::default());
         }
@@ -294,11 +290,7 @@ impl<'a> Fitting<'a> {
         if observer.is_over() {
             return Ok(validation);
         }
-        let of_run = |(run, (part, fold)): (&TrainingRun, (&Part, &Fold))| {
-            OnFold::of(run, part, &part.objective(self.architecture, NO_PENALTIES)?.until(stop), fold, rate)
-        };
-        let without: Vec<OnFold> =
-            self.state.folds_exact.iter().zip(parts.iter().zip(&folds)).map(of_run).collect::<Result<_>>()?;
+        let without = self.on_folds(&self.state.folds_exact, &parts, &folds, NO_PENALTIES, stop)?;
         let without: Vec<&OnFold> = without.iter().collect();
         if observer.is_over() {
             return Ok(validation);
@@ -335,6 +327,26 @@ impl<'a> Fitting<'a> {
         let stage =
             Stage { phase, runs, objectives: &objectives, epochs: self.asked.epochs, epochs_before: 0 };
         self.drive(&stage, beginnings, observer)
+    }
+
+    /// What runs predict of the folds, as many of each, fold by fold. Their output weights are those of all rows.
+    fn on_folds(
+        &self,
+        runs: &[TrainingRun],
+        parts: &[Part],
+        folds: &[Fold],
+        penalties: Regularisation,
+        stop: StopCheck<'_>,
+    ) -> Result<Vec<OnFold>> {
+        let mut on_folds = Vec::with_capacity(runs.len());
+        let of_folds = runs.chunks(runs.len() / folds.len());
+        for ((runs, part), fold) in of_folds.zip(parts).zip(folds) {
+            let objective = part.objective(self.architecture, penalties)?.until(stop);
+            for run in runs {
+                on_folds.push(OnFold::of(run, part, &objective, fold, self.asked.rate)?);
+            }
+        }
+        Ok(on_folds)
     }
 
     /// Errors of one run on each fold, on what was held out, all together.

@@ -1,6 +1,6 @@
 //! Selection of the rows of long records for a search.
 
-use crate::data::polyline::{Column, polyline};
+use crate::data::polyline::{Column, polyline, steps_between};
 use crate::data::record::Thinning;
 use crate::law::Sample;
 use crate::law::series::Series;
@@ -60,57 +60,57 @@ fn scored(series: &[Series]) -> usize {
     series.iter().map(|series| series.output.iter().filter(|y| !y.is_nan()).count()).sum()
 }
 
-/// At most `most` rows compared, and of the others those that the memory depends on.
+/// At most `most` scored rows, and of the others those that the memory depends on.
 fn condensed(series: &[Series], memory: Memory, most: usize) -> Vec<Series> {
-    let thinning = Thinning::new(scored(series), most);
-    let mut series = series.to_vec();
-    thinning.blank(series.iter_mut().flat_map(|series| &mut series.output));
-    match memory {
-        Memory::TurningPoints => series.iter().map(|series| through(series, &turning_rows(series))).collect(),
-        Memory::Path if rows(&series) <= LONG => series,
-        Memory::Path => series.iter().map(|series| through(series, &rows_of_path(series))).collect(),
-    }
+    let mut outputs: Vec<Vec<f64>> = series.iter().map(|series| series.output.clone()).collect();
+    Thinning::new(scored(series), most).blank(outputs.iter_mut().flatten());
+    let is_long = rows(series) > LONG;
+    let kept = |samples: &[Sample], output: &[f64]| match memory {
+        Memory::TurningPoints => turning_rows(samples, output),
+        Memory::Path if is_long => rows_of_path(samples, output),
+        Memory::Path => (0..samples.len()).collect(),
+    };
+    let condensed = |(Series { samples, .. }, output): (&Series, &Vec<f64>)| {
+        through(samples, output, &kept(samples, output))
+    };
+    series.iter().zip(&outputs).map(condensed).collect()
 }
 
 /// Scored rows, turning points, and the first and last row.
-fn turning_rows(series: &Series) -> Vec<usize> {
-    let x = |row: usize| series.samples[row].x;
-    let last = series.samples.len() - 1;
+fn turning_rows(samples: &[Sample], output: &[f64]) -> Vec<usize> {
+    let x = |row: usize| samples[row].x;
+    let last = samples.len() - 1;
     let stays = |&row: &usize| {
         row == 0
             || row == last
-            || !series.output[row].is_nan()
+            || !output[row].is_nan()
             || (x(row) - x(row - 1)) * (x(row + 1) - x(row)) <= 0.0
     };
     (0..=last).filter(stays).collect()
 }
 
 /// Scored rows, and the rows of a polyline in short steps along the input and its rate.
-fn rows_of_path(series: &Series) -> Vec<usize> {
-    let values = |of: fn(&Sample) -> f64| -> Vec<f64> { series.samples.iter().map(of).collect() };
+fn rows_of_path(samples: &[Sample], output: &[f64]) -> Vec<usize> {
+    let values = |of: fn(&Sample) -> f64| -> Vec<f64> { samples.iter().map(of).collect() };
     let (x, rate) = (values(|sample| sample.x), values(|sample| sample.rate));
     let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let column = |values, [tolerance, longest]: [f64; 2]| {
         let largest = largest(values);
         Column { values, tolerance: tolerance * largest, longest: longest * largest }
     };
-    let has_time = series.samples.iter().any(|sample| sample.step > 0.0);
-    let step = |row: usize| if has_time { series.samples[row].step } else { 1.0 };
+    let has_time = samples.iter().any(|sample| sample.step > 0.0);
+    let step = |row: usize| if has_time { samples[row].step } else { 1.0 };
     let columns = [column(&x, STEPS_OF_INPUT), column(&rate, STEPS_OF_RATE)];
-    polyline(&columns, step, |row| !series.output[row].is_nan())
+    polyline(&columns, step, |row| !output[row].is_nan())
 }
 
 /// The series of these rows only, each with the time since the previous one.
-fn through(series: &Series, rows: &[usize]) -> Series {
-    let mut next = 0;
-    let since_last = |&row: &usize| {
-        let step = series.samples[next..=row].iter().map(|sample| sample.step).sum();
-        next = row + 1;
-        Sample { step, ..series.samples[row] }
-    };
+fn through(samples: &[Sample], output: &[f64], rows: &[usize]) -> Series {
+    let steps = steps_between(rows, |row| samples[row].step);
+    let sample = |(&row, step): (&usize, f64)| Sample { step, ..samples[row] };
     Series {
-        samples: rows.iter().map(since_last).collect(),
-        output: rows.iter().map(|&row| series.output[row]).collect(),
+        samples: rows.iter().zip(steps).map(sample).collect(),
+        output: rows.iter().map(|&row| output[row]).collect(),
     }
 }
 
