@@ -72,9 +72,16 @@ impl Model {
         inputs: Vec<Column<'_>>,
         rate: Option<Column<'_>>,
         initial_state: Option<&str>,
+        single_precision: bool,
     ) -> PyResult<NewColumn<'py>> {
         let lead_in = self.lead_in(initial_state)?;
-        let run = |excitation: &Excitation<'_>| self.model.response(&after(excitation, &lead_in)?);
+        let run = |excitation: &Excitation<'_>| {
+            let excitation = after(excitation, &lead_in)?;
+            match single_precision {
+                false => self.model.response(&excitation),
+                true => self.model.response_in_single_precision(&excitation),
+            }
+        };
         Ok(PyArray1::from_vec(py, driven(py, name, time, inputs, rate, run)?))
     }
 

@@ -97,6 +97,14 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
             ),
         ),
         (
+            "simulate_single_precision_ns_per_sample",
+            speed(
+                single_precision_ns(&fitted)?,
+                "ns",
+                format!("{network}, {SAMPLES} samples, 1 thread, inputs given scaled, in single precision"),
+            ),
+        ),
+        (
             "simulate_record_ns_per_sample",
             speed(
                 record_ns(&fitted.model)?,
@@ -271,13 +279,28 @@ fn network(fitted: &Fitted) -> Result<&Network> {
 
 /// The network alone: scaled inputs and rates in, scaled outputs out.
 fn network_ns(fitted: &Fitted) -> Result<f64> {
+    let mut simulator = network(fitted)?.simulator();
+    free_run_ns(|u, y| {
+        simulator.reset();
+        simulator.run(u, &[], y);
+    })
+}
+
+fn single_precision_ns(fitted: &Fitted) -> Result<f64> {
+    let mut simulator = network(fitted)?.simulator_in_single_precision();
+    free_run_ns(|u, y| {
+        simulator.reset();
+        simulator.run(u, &[], y);
+    })
+}
+
+/// Time of one sample of a free run, which takes scaled inputs.
+fn free_run_ns(mut run: impl FnMut(&[&[f64]], &mut [f64])) -> Result<f64> {
     let x = record(SAMPLES)?.inputs()[0].to_vec();
     let rate: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
     let mut y = vec![0.0; SAMPLES];
-    let mut simulator = network(fitted)?.simulator();
     median(|| {
-        simulator.reset();
-        simulator.run(black_box(&[&x, &rate]), &[], &mut y);
+        run(black_box(&[&x, &rate]), &mut y);
         black_box(&y);
         Ok(SAMPLES)
     })

@@ -66,6 +66,7 @@ class Model:
         inputs: list[_Column],
         rate: _Column | None,
         initial_state: str | None,
+        single_precision: bool,
     ) -> _Column: ...
     def predict(
         self,
