@@ -71,6 +71,13 @@ impl<'m> Stepper<'m> {
         Self { state: State::virgin(&model), lead_in: model.lead_in.clone(), model }
     }
 
+    /// The same with the arithmetic that every machine has: see [`Simulator::portable`].
+    #[must_use]
+    pub fn portable(mut self) -> Self {
+        self.state.become_portable();
+        self
+    }
+
     /// Advances to the next sample and returns the output there, in the user's unit.
     ///
     /// `inputs` has one value for each input and `time` is the time of the sample, in the user's units;
@@ -113,6 +120,14 @@ impl State {
             past: Past::default(),
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
+        }
+    }
+
+    fn become_portable(&mut self) {
+        match &mut self.memory {
+            Memory::Network(simulator, _) => **simulator = simulator.as_ref().clone().portable(),
+            Memory::Law(_) => {}
+            Memory::Ensemble(ensemble) => ensemble.members.iter_mut().for_each(Self::become_portable),
         }
     }
 

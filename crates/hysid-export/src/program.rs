@@ -1,0 +1,291 @@
+//! The description of a model between its file and the source code of a target: one step as a program.
+//!
+//! A program has arrays of numbers and statements. Constants never change; the state is what a model remembers between
+//! two steps; scratch is what one step needs. A step reads its arguments from an array, advances the state, and leaves
+//! the outputs in another.
+//!
+//! A target writes the statements in its language, each in one line or one loop. [`interpreter`] runs them here, for
+//! tests and for test vectors, and [`tangent`] derives the program of the slope `dy/dx`.
+
+pub mod expression;
+pub mod interpreter;
+pub mod tangent;
+
+use expression::{Real, RealVariable, Truth, Whole, WholeVariable};
+
+/// Name of an array: its number in the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Array(pub(crate) usize);
+
+impl Array {
+    /// An element.
+    pub fn at(self, index: impl Into<Whole>) -> Real {
+        Real::Element(self, Box::new(index.into()))
+    }
+}
+
+/// What an array is for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Storage {
+    /// Numbers that never change.
+    Constant(Vec<f64>),
+    /// What is remembered from one step to the next, with the values before the first.
+    State(Vec<f64>),
+    /// What one step needs. Its content before the step means nothing.
+    Scratch(usize),
+    /// What a step is given.
+    Argument(usize),
+    /// What a step gives.
+    Output(usize),
+}
+
+impl Storage {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Constant(values) | Self::State(values) => values.len(),
+            Self::Scratch(length) | Self::Argument(length) | Self::Output(length) => *length,
+        }
+    }
+
+    /// True without elements.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// An array with its name and what it is for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Declaration {
+    /// An identifier, unique in the program.
+    pub name: String,
+    /// What it is for.
+    pub storage: Storage,
+}
+
+/// One thing that a step does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Statement {
+    /// A remark for the reader of the source code.
+    Remark(String),
+    /// Gives a variable a value. Its first occurrence declares it, in the innermost block around it.
+    Let(RealVariable, Real),
+    /// Gives a variable another value.
+    Assign(RealVariable, Real),
+    /// As `Let`, for a whole number.
+    LetWhole(WholeVariable, Whole),
+    /// As `Assign`, for a whole number.
+    AssignWhole(WholeVariable, Whole),
+    /// Gives an element of an array a value.
+    Set(Array, Whole, Real),
+    /// Runs the block with the variable at each number from the first on, and below the last.
+    Each(WholeVariable, Whole, Whole, Vec<Statement>),
+    /// Runs the block as long as the condition holds.
+    While(Truth, Vec<Statement>),
+    /// Runs the first block where the condition holds, otherwise the second.
+    If(Truth, Vec<Statement>, Vec<Statement>),
+}
+
+/// One step of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Program {
+    /// All arrays.
+    pub arrays: Vec<Declaration>,
+    /// The arguments, whose first is the input that a tangent refers to.
+    pub arguments: Array,
+    /// The outputs, the first of which is that of the model.
+    pub outputs: Array,
+    /// What a step does.
+    pub body: Vec<Statement>,
+    pub(crate) reals: usize,
+    pub(crate) wholes: usize,
+}
+
+impl Program {
+    /// An array's declaration.
+    pub fn declaration(&self, array: Array) -> &Declaration {
+        &self.arrays[array.0]
+    }
+
+    /// All arrays of the state, with their initial values.
+    pub fn states(&self) -> impl Iterator<Item = (Array, &str, &[f64])> {
+        self.arrays.iter().enumerate().filter_map(|(index, declaration)| match &declaration.storage {
+            Storage::State(values) => Some((Array(index), declaration.name.as_str(), values.as_slice())),
+            _ => None,
+        })
+    }
+
+    /// Numbers in the state.
+    pub fn state_len(&self) -> usize {
+        self.states().map(|(_, _, values)| values.len()).sum()
+    }
+
+    /// Numbers in the constants.
+    pub fn constants_len(&self) -> usize {
+        let constants = self.arrays.iter().filter(|array| matches!(array.storage, Storage::Constant(_)));
+        constants.map(|array| array.storage.len()).sum()
+    }
+}
+
+/// Writes a program, statement by statement.
+#[derive(Debug)]
+pub struct Builder {
+    program: Program,
+    /// Statements of the blocks that are open, outermost first.
+    blocks: Vec<Vec<Statement>>,
+}
+
+impl Builder {
+    /// An empty program with so many arguments and outputs.
+    pub fn new(arguments: usize, outputs: usize) -> Self {
+        let mut builder = Self {
+            program: Program {
+                arrays: Vec::new(),
+                arguments: Array(0),
+                outputs: Array(1),
+                body: Vec::new(),
+                reals: 0,
+                wholes: 0,
+            },
+            blocks: vec![Vec::new()],
+        };
+        builder.program.arguments = builder.array("argument", Storage::Argument(arguments));
+        builder.program.outputs = builder.array("output", Storage::Output(outputs));
+        builder
+    }
+
+    /// The program.
+    pub fn finish(mut self) -> Program {
+        self.program.body = self.blocks.pop().unwrap_or_default();
+        self.program
+    }
+
+    fn array(&mut self, name: &str, storage: Storage) -> Array {
+        let taken = |name: &str| self.program.arrays.iter().any(|array| array.name == name);
+        let mut unique = name.to_string();
+        let mut number = 2;
+        while taken(&unique) {
+            unique = format!("{name}_{number}");
+            number += 1;
+        }
+        self.program.arrays.push(Declaration { name: unique, storage });
+        Array(self.program.arrays.len() - 1)
+    }
+
+    /// An array of constants. A number is added to a name that is taken.
+    pub fn constants(&mut self, name: &str, values: Vec<f64>) -> Array {
+        self.array(name, Storage::Constant(values))
+    }
+
+    /// An array of the state, with its values before the first step.
+    pub fn state(&mut self, name: &str, initial: Vec<f64>) -> Array {
+        self.array(name, Storage::State(initial))
+    }
+
+    /// An array that one step needs.
+    pub fn scratch(&mut self, name: &str, length: usize) -> Array {
+        self.array(name, Storage::Scratch(length))
+    }
+
+    /// An argument of the step.
+    pub fn argument(&self, index: usize) -> Real {
+        self.program.arguments.at(index)
+    }
+
+    fn add(&mut self, statement: Statement) {
+        if let Some(block) = self.blocks.last_mut() {
+            block.push(statement);
+        }
+    }
+
+    fn block(&mut self, write: impl FnOnce(&mut Self)) -> Vec<Statement> {
+        self.blocks.push(Vec::new());
+        write(self);
+        self.blocks.pop().unwrap_or_default()
+    }
+
+    /// A remark for the reader of the source code.
+    pub fn remark(&mut self, text: impl Into<String>) {
+        self.add(Statement::Remark(text.into()));
+    }
+
+    /// Computes a value once, and returns the variable that has it.
+    pub fn value(&mut self, value: impl Into<Real>) -> Real {
+        self.variable(value).into()
+    }
+
+    /// A variable that can be given other values.
+    pub fn variable(&mut self, value: impl Into<Real>) -> RealVariable {
+        let variable = RealVariable(self.program.reals);
+        self.program.reals += 1;
+        self.add(Statement::Let(variable, value.into()));
+        variable
+    }
+
+    /// Gives a variable another value.
+    pub fn assign(&mut self, variable: RealVariable, value: impl Into<Real>) {
+        self.add(Statement::Assign(variable, value.into()));
+    }
+
+    /// As [`Builder::variable`], for a whole number.
+    pub fn whole_variable(&mut self, value: impl Into<Whole>) -> WholeVariable {
+        let variable = self.next_whole();
+        self.add(Statement::LetWhole(variable, value.into()));
+        variable
+    }
+
+    /// As [`Builder::assign`], for a whole number.
+    pub fn assign_whole(&mut self, variable: WholeVariable, value: impl Into<Whole>) {
+        self.add(Statement::AssignWhole(variable, value.into()));
+    }
+
+    fn next_whole(&mut self) -> WholeVariable {
+        let variable = WholeVariable(self.program.wholes);
+        self.program.wholes += 1;
+        variable
+    }
+
+    /// Gives an element of an array a value.
+    pub fn set(&mut self, array: Array, index: impl Into<Whole>, value: impl Into<Real>) {
+        self.add(Statement::Set(array, index.into(), value.into()));
+    }
+
+    /// Gives an output its value.
+    pub fn output(&mut self, index: usize, value: impl Into<Real>) {
+        self.set(self.program.outputs, index, value);
+    }
+
+    /// Runs a block for each number from `first` on and below `last`.
+    pub fn each(
+        &mut self,
+        first: impl Into<Whole>,
+        last: impl Into<Whole>,
+        write: impl FnOnce(&mut Self, Whole),
+    ) {
+        let variable = self.next_whole();
+        let body = self.block(|builder| write(builder, variable.into()));
+        self.add(Statement::Each(variable, first.into(), last.into(), body));
+    }
+
+    /// Runs a block as long as a condition holds.
+    pub fn while_true(&mut self, condition: Truth, write: impl FnOnce(&mut Self)) {
+        let body = self.block(write);
+        self.add(Statement::While(condition, body));
+    }
+
+    /// Runs a block where a condition holds.
+    pub fn when(&mut self, condition: Truth, write: impl FnOnce(&mut Self)) {
+        self.when_else(condition, write, |_| {});
+    }
+
+    /// Runs the first block where a condition holds, otherwise the second.
+    pub fn when_else(
+        &mut self,
+        condition: Truth,
+        yes: impl FnOnce(&mut Self),
+        no: impl FnOnce(&mut Self),
+    ) {
+        let (yes, no) = (self.block(yes), self.block(no));
+        self.add(Statement::If(condition, yes, no));
+    }
+}

@@ -1,0 +1,417 @@
+//! Expressions of a program: real numbers, whole numbers, and truth values.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::program::Array;
+
+/// Name of a variable: its number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct RealVariable(pub(crate) usize);
+
+/// Name of a variable with a whole number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct WholeVariable(pub(crate) usize);
+
+/// A function of one real number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unary {
+    /// `-a`
+    Negative,
+    /// `|a|`
+    Magnitude,
+    /// Square root.
+    SquareRoot,
+    /// `e^a`
+    Exp,
+    /// `e^a - 1`, accurate near 0.
+    ExpMinusOne,
+    /// Natural logarithm.
+    Ln,
+    /// `ln(1 + a)`, accurate near 0.
+    LnOnePlus,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Inverse hyperbolic sine: `ln(1 + |a| + |a|/(sqrt(1 + 1/a²) + 1/|a|))` with the sign of `a`.
+    InverseSinh,
+    /// The smallest whole number that is not below `a`.
+    Ceiling,
+    /// The whole number next to `a`, whose magnitude is below 1000; halves go to the even one. Its derivative is 0.
+    Rounded,
+    /// `2^a` for a whole number `a` whose magnitude is below 1000. Its derivative is 0.
+    PowerOfTwo,
+}
+
+/// A function of two real numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Binary {
+    /// `a + b`
+    Sum,
+    /// `a - b`
+    Difference,
+    /// `a b`
+    Product,
+    /// `a / b`
+    Quotient,
+    /// `a^b` for `a >= 0`.
+    Power,
+    /// The magnitude of `a` with the sign of `b`.
+    CopySign,
+    /// `sqrt(a² + b²)`
+    Hypotenuse,
+}
+
+/// A comparison.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Comparison {
+    /// `a < b`
+    Below,
+    /// `a <= b`
+    AtMost,
+    /// `a == b`
+    Equal,
+}
+
+/// A real number: what a program computes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Real {
+    /// A number.
+    Constant(f64),
+    /// The value of a variable.
+    Variable(RealVariable),
+    /// An element of an array.
+    Element(Array, Box<Whole>),
+    /// A function of one number.
+    Unary(Unary, Box<Real>),
+    /// A function of two numbers.
+    Binary(Binary, Box<Real>, Box<Real>),
+    /// The first number where the condition holds, otherwise the second. Only that one is computed.
+    Choice(Box<Truth>, Box<Real>, Box<Real>),
+    /// A whole number as a real one.
+    OfWhole(Box<Whole>),
+}
+
+/// A whole number: an index or a count.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Whole {
+    /// A number.
+    Constant(i64),
+    /// The value of a variable.
+    Variable(WholeVariable),
+    /// `a + b`
+    Sum(Box<Whole>, Box<Whole>),
+    /// `a - b`
+    Difference(Box<Whole>, Box<Whole>),
+    /// `a b`
+    Product(Box<Whole>, Box<Whole>),
+    /// A real number that is whole, such as a count that is kept in a state.
+    OfReal(Box<Real>),
+}
+
+/// A condition.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Truth {
+    /// A comparison of real numbers, false for NaN.
+    Real(Comparison, Box<Real>, Box<Real>),
+    /// A comparison of whole numbers.
+    Whole(Comparison, Box<Whole>, Box<Whole>),
+    /// Both; the second is computed only where the first holds.
+    And(Box<Truth>, Box<Truth>),
+    /// One or both; the second is computed only where the first does not hold.
+    Or(Box<Truth>, Box<Truth>),
+    /// The opposite.
+    Not(Box<Truth>),
+}
+
+impl From<f64> for Real {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<RealVariable> for Real {
+    fn from(variable: RealVariable) -> Self {
+        Self::Variable(variable)
+    }
+}
+
+impl From<&Real> for Real {
+    fn from(value: &Real) -> Self {
+        value.clone()
+    }
+}
+
+impl From<i64> for Whole {
+    fn from(value: i64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<usize> for Whole {
+    fn from(value: usize) -> Self {
+        Self::Constant(i64::try_from(value).unwrap_or(i64::MAX))
+    }
+}
+
+impl From<WholeVariable> for Whole {
+    fn from(variable: WholeVariable) -> Self {
+        Self::Variable(variable)
+    }
+}
+
+impl From<&Whole> for Whole {
+    fn from(value: &Whole) -> Self {
+        value.clone()
+    }
+}
+
+macro_rules! real_operator {
+    ($trait:ident, $method:ident, $binary:ident) => {
+        impl<T: Into<Real>> $trait<T> for Real {
+            type Output = Real;
+            fn $method(self, other: T) -> Real {
+                Real::Binary(Binary::$binary, Box::new(self), Box::new(other.into()))
+            }
+        }
+
+        impl<T: Into<Real>> $trait<T> for &Real {
+            type Output = Real;
+            fn $method(self, other: T) -> Real {
+                self.clone().$method(other)
+            }
+        }
+
+        impl $trait<Real> for f64 {
+            type Output = Real;
+            fn $method(self, other: Real) -> Real {
+                Real::from(self).$method(other)
+            }
+        }
+
+        impl $trait<&Real> for f64 {
+            type Output = Real;
+            fn $method(self, other: &Real) -> Real {
+                Real::from(self).$method(other)
+            }
+        }
+    };
+}
+
+real_operator!(Add, add, Sum);
+real_operator!(Sub, sub, Difference);
+real_operator!(Mul, mul, Product);
+real_operator!(Div, div, Quotient);
+
+impl Neg for Real {
+    type Output = Real;
+    fn neg(self) -> Real {
+        self.apply(Unary::Negative)
+    }
+}
+
+impl Neg for &Real {
+    type Output = Real;
+    fn neg(self) -> Real {
+        -self.clone()
+    }
+}
+
+macro_rules! whole_operator {
+    ($trait:ident, $method:ident, $variant:ident) => {
+        impl<T: Into<Whole>> $trait<T> for Whole {
+            type Output = Whole;
+            fn $method(self, other: T) -> Whole {
+                Whole::$variant(Box::new(self), Box::new(other.into()))
+            }
+        }
+
+        impl<T: Into<Whole>> $trait<T> for &Whole {
+            type Output = Whole;
+            fn $method(self, other: T) -> Whole {
+                self.clone().$method(other)
+            }
+        }
+    };
+}
+
+whole_operator!(Add, add, Sum);
+whole_operator!(Sub, sub, Difference);
+whole_operator!(Mul, mul, Product);
+
+impl Real {
+    /// A function of this number.
+    pub fn apply(self, function: Unary) -> Self {
+        Self::Unary(function, Box::new(self))
+    }
+
+    /// `|a|`
+    pub fn abs(&self) -> Self {
+        self.clone().apply(Unary::Magnitude)
+    }
+
+    /// `e^a`
+    pub fn exp(&self) -> Self {
+        self.clone().apply(Unary::Exp)
+    }
+
+    /// `e^a - 1`
+    pub fn exp_m1(&self) -> Self {
+        self.clone().apply(Unary::ExpMinusOne)
+    }
+
+    /// `ln a`
+    pub fn ln(&self) -> Self {
+        self.clone().apply(Unary::Ln)
+    }
+
+    /// `ln(1 + a)`
+    pub fn ln_1p(&self) -> Self {
+        self.clone().apply(Unary::LnOnePlus)
+    }
+
+    /// Square root.
+    pub fn sqrt(&self) -> Self {
+        self.clone().apply(Unary::SquareRoot)
+    }
+
+    /// Hyperbolic tangent of the standard library. Networks have one of their own.
+    pub fn tanh(&self) -> Self {
+        self.clone().apply(Unary::Tanh)
+    }
+
+    /// Inverse hyperbolic sine.
+    pub fn asinh(&self) -> Self {
+        self.clone().apply(Unary::InverseSinh)
+    }
+
+    /// The smallest whole number that is not below it.
+    pub fn ceil(&self) -> Self {
+        self.clone().apply(Unary::Ceiling)
+    }
+
+    /// The next whole number.
+    pub fn rounded(&self) -> Self {
+        self.clone().apply(Unary::Rounded)
+    }
+
+    /// `2^a` for a whole number.
+    pub fn power_of_two(&self) -> Self {
+        self.clone().apply(Unary::PowerOfTwo)
+    }
+
+    /// `a^b`
+    pub fn powf(&self, exponent: impl Into<Real>) -> Self {
+        Self::Binary(Binary::Power, Box::new(self.clone()), Box::new(exponent.into()))
+    }
+
+    /// The magnitude with the sign of another number.
+    pub fn copysign(&self, sign: impl Into<Real>) -> Self {
+        Self::Binary(Binary::CopySign, Box::new(self.clone()), Box::new(sign.into()))
+    }
+
+    /// `sqrt(a² + b²)`
+    pub fn hypot(&self, other: impl Into<Real>) -> Self {
+        Self::Binary(Binary::Hypotenuse, Box::new(self.clone()), Box::new(other.into()))
+    }
+
+    /// 1 with the sign of the number.
+    pub fn signum(&self) -> Self {
+        Self::Constant(1.0).copysign(self)
+    }
+
+    /// `a < b`
+    pub fn below(&self, other: impl Into<Real>) -> Truth {
+        Truth::Real(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
+    }
+
+    /// `a <= b`
+    pub fn at_most(&self, other: impl Into<Real>) -> Truth {
+        Truth::Real(Comparison::AtMost, Box::new(self.clone()), Box::new(other.into()))
+    }
+
+    /// `a > b`
+    pub fn above(&self, other: impl Into<Real>) -> Truth {
+        Truth::Real(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
+    }
+
+    /// `a >= b`
+    pub fn at_least(&self, other: impl Into<Real>) -> Truth {
+        Truth::Real(Comparison::AtMost, Box::new(other.into()), Box::new(self.clone()))
+    }
+
+    /// `a == b`
+    pub fn equals(&self, other: impl Into<Real>) -> Truth {
+        Truth::Real(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
+    }
+
+    /// The larger of two numbers; the first where they are equal.
+    pub fn max(&self, other: impl Into<Real>) -> Self {
+        let other = other.into();
+        self.below(&other).choose(other, self)
+    }
+
+    /// The smaller of two numbers; the first where they are equal.
+    pub fn min(&self, other: impl Into<Real>) -> Self {
+        let other = other.into();
+        self.above(&other).choose(other, self)
+    }
+
+    /// The number within bounds. It stands in the result more than once: give a variable.
+    pub fn clamp(&self, low: impl Into<Real>, high: impl Into<Real>) -> Self {
+        let (low, high) = (low.into(), high.into());
+        self.below(&low).choose(low, self.above(&high).choose(high, self))
+    }
+
+    /// The number as a whole one, which it is.
+    pub fn to_whole(&self) -> Whole {
+        Whole::OfReal(Box::new(self.clone()))
+    }
+}
+
+impl Whole {
+    /// The number as a real one.
+    pub fn to_real(&self) -> Real {
+        Real::OfWhole(Box::new(self.clone()))
+    }
+
+    /// `a < b`
+    pub fn below(&self, other: impl Into<Whole>) -> Truth {
+        Truth::Whole(Comparison::Below, Box::new(self.clone()), Box::new(other.into()))
+    }
+
+    /// `a > b`
+    pub fn above(&self, other: impl Into<Whole>) -> Truth {
+        Truth::Whole(Comparison::Below, Box::new(other.into()), Box::new(self.clone()))
+    }
+
+    /// `a >= b`
+    pub fn at_least(&self, other: impl Into<Whole>) -> Truth {
+        Truth::Whole(Comparison::AtMost, Box::new(other.into()), Box::new(self.clone()))
+    }
+
+    /// `a == b`
+    pub fn equals(&self, other: impl Into<Whole>) -> Truth {
+        Truth::Whole(Comparison::Equal, Box::new(self.clone()), Box::new(other.into()))
+    }
+}
+
+impl Truth {
+    /// The first number where the condition holds, otherwise the second.
+    pub fn choose(self, yes: impl Into<Real>, no: impl Into<Real>) -> Real {
+        Real::Choice(Box::new(self), Box::new(yes.into()), Box::new(no.into()))
+    }
+
+    /// Both.
+    pub fn and(self, other: Truth) -> Self {
+        Self::And(Box::new(self), Box::new(other))
+    }
+
+    /// One or both.
+    pub fn or(self, other: Truth) -> Self {
+        Self::Or(Box::new(self), Box::new(other))
+    }
+
+    /// The opposite.
+    pub fn negated(self) -> Self {
+        Self::Not(Box::new(self))
+    }
+}

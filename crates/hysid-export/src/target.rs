@@ -1,0 +1,3 @@
+//! The targets, one a file: each writes programs in its language.
+
+pub mod c;

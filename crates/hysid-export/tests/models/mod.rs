@@ -1,0 +1,87 @@
+//! Models of all kinds, fitted to short synthetic records, and paths that they have not seen.
+
+#![allow(dead_code)]
+
+use hysid::{ColumnNames, Dataset, Fit, Model, Record};
+use serde_json::{Value, json};
+
+/// A spring, two plays and a term of the rate, with time stamps and a further input.
+fn data(inputs: usize) -> Dataset {
+    let records = (0..2).map(|number| {
+        let rows = 240;
+        let time: Vec<f64> = (0..rows).map(|k| 0.02 * f64::from(k)).collect();
+        let x: Vec<f64> = time
+            .iter()
+            .map(|t| 40.0 + 3.0 * (1.0 + 0.3 * t).ln() * (2.1 * t + f64::from(number)).sin() + (7.3 * t).sin())
+            .collect();
+        let further: Vec<f64> = time.iter().map(|t| 5.0 + (0.9 * t).cos()).collect();
+        let mut plays: [f64; 2] = [40.0, 40.0];
+        let mut before = x[0];
+        let y: Vec<f64> = x
+            .iter()
+            .zip(&further)
+            .map(|(&x, f)| {
+                for (play, r) in plays.iter_mut().zip([0.4, 1.1]) {
+                    *play = f64::clamp(*play, x - r, x + r);
+                }
+                let rate = (x - before) / 0.02;
+                before = x;
+                let second = if inputs == 2 { 0.2 * f } else { 0.0 };
+                100.0 + 3.0 * (x - 40.0) + 4.0 * plays[0] + 2.0 * plays[1] + 0.02 * rate + second
+            })
+            .collect();
+        let columns = if inputs == 2 { vec![x, further] } else { vec![x] };
+        Record::new(format!("record {number}"), columns, y).unwrap().with_time(time).unwrap()
+    });
+    Dataset::new(ColumnNames::plain(inputs), records.collect()).unwrap()
+}
+
+/// A model by its name and further options.
+fn fitted(name: &str, inputs: usize, options: &[(&str, Value)]) -> (String, Model) {
+    let mut fit = Fit::new().model(name).seed(3);
+    for (option, value) in options {
+        fit = fit.option(option, value.clone());
+    }
+    let label = options.iter().map(|(name, value)| format!(" {name}={value}")).collect::<String>();
+    let model = fit.run(&data(inputs)).unwrap_or_else(|error| panic!("{name}{label}: {error}"));
+    (format!("{name}{label} of {inputs}"), model)
+}
+
+const SMALL: [(&str, i64); 4] = [("starts", 1), ("epochs", 3), ("stops", 9), ("hidden", 7)];
+
+/// Networks of all families, with every input transform.
+pub fn networks() -> Vec<(String, Model)> {
+    let small = || SMALL.map(|(name, value)| (name, json!(value))).to_vec();
+    let linear = || small().into_iter().filter(|(name, _)| *name != "hidden").collect::<Vec<_>>();
+    let with = |mut options: Vec<(&'static str, Value)>, more: &[(&'static str, Value)]| {
+        options.extend(more.iter().cloned());
+        options
+    };
+    vec![
+        fitted("pnn", 1, &linear()),
+        fitted("gpnn", 1, &linear()),
+        fitted("preisach-nn", 1, &with(small(), &[("companding", json!(0.2))])),
+        fitted("xpnn", 1, &with(small(), &[("rate_companding", json!(0.5))])),
+        fitted("xpnn+", 1, &with(small(), &[("history", json!(true)), ("companding", json!(0.1))])),
+        fitted("xpnn+", 2, &with(small(), &[("initial_state", json!("saturated-up")), ("history", json!(true))])),
+        fitted("random-stops", 1, &[("operators", json!(20))]),
+    ]
+}
+
+/// Rows that no model has seen: reversals inside and outside the trained range, rest, large values.
+pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
+    (0..rows)
+        .map(|k| {
+            let t = k as f64;
+            let rest = if k % 97 < 6 { 0.0 } else { 1.0 };
+            let size = 2.0 + (0.001 * t).sin() * 4.0 + if k % 1000 > 980 { 30.0 } else { 0.0 };
+            let x = 40.0 + rest * size * ((0.211 * t).sin() + 0.4 * (1.7 * t).sin());
+            if inputs == 2 { vec![x, 5.0 + (0.013 * t).cos()] } else { vec![x] }
+        })
+        .collect()
+}
+
+/// The time step before a row.
+pub fn time_step(row: usize) -> f64 {
+    0.004 + 0.01 * ((row * 7919) % 13) as f64
+}
