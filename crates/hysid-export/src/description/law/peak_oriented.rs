@@ -1,0 +1,12 @@
+//! TODO
+
+use hysid_core::law::peak_oriented::PeakOriented;
+
+use crate::description::Sample;
+use crate::error::Error;
+use crate::program::Builder;
+use crate::program::expression::Real;
+
+pub(super) fn step(_: &mut Builder, _: &str, _: &PeakOriented, _: &Sample) -> Result<Real, Error> {
+    Err(Error::NoDescription("peak-oriented"))
+}

@@ -1,0 +1,12 @@
+//! TODO
+
+use hysid_core::law::preisach::Preisach;
+
+use crate::description::Sample;
+use crate::error::Error;
+use crate::program::Builder;
+use crate::program::expression::Real;
+
+pub(super) fn step(_: &mut Builder, _: &str, _: &Preisach, _: &Sample) -> Result<Real, Error> {
+    Err(Error::NoDescription("preisach"))
+}
