@@ -13,7 +13,7 @@ use hysid_core::model::{Model, Predictor};
 
 use crate::error::Error;
 use crate::program::expression::{Real, Truth};
-use crate::program::{Array, Builder, Program};
+use crate::program::{Array, Builder, Precision, Program};
 
 /// How a model that needs the rate of its first input gets it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,7 +60,7 @@ impl Description {
     ///
     /// # Errors
     /// A model that has a part without a description.
-    pub fn of(model: &Model, rate: RateSource) -> Result<Self, Error> {
+    pub fn of(model: &Model, rate: RateSource, precision: Precision) -> Result<Self, Error> {
         let parts = Parts::of(model);
         let inputs = model.names().inputs.len();
         let mut arguments: Vec<Argument> = (0..inputs).map(Argument::Input).collect();
@@ -72,7 +72,7 @@ impl Description {
         if has_rate && rate == RateSource::Argument {
             arguments.push(Argument::Rate);
         }
-        let mut builder = Builder::new(arguments.len(), 1);
+        let mut builder = Builder::new(arguments.len(), 1, precision);
         let place = |wanted: Argument| arguments.iter().position(|argument| *argument == wanted);
 
         let started = builder.state("started", vec![0.0]);
@@ -99,7 +99,6 @@ impl Description {
         Ok(Self { program: builder.finish(), arguments })
     }
 }
-
 
 /// A row as the caller gives it.
 struct Row<'a> {
@@ -133,7 +132,13 @@ impl<'m> Parts<'m> {
     }
 
     /// Writes a step of the whole, with the lead-in before the first.
-    fn step(&self, builder: &mut Builder, model: &Model, row: &Row<'_>, started: Array) -> Result<Real, Error> {
+    fn step(
+        &self,
+        builder: &mut Builder,
+        model: &Model,
+        row: &Row<'_>,
+        started: Array,
+    ) -> Result<Real, Error> {
         let lead_in = model.lead_in();
         let histories: Vec<Vec<Real>> =
             self.0.iter().map(|part| history(builder, part.input_transform(), row, lead_in)).collect();
@@ -151,7 +156,8 @@ impl<'m> Parts<'m> {
                     inputs.push(transformed(builder, transform, input, x));
                 }
                 inputs.extend(history.iter().cloned());
-                let rate = part.rate().map_or(Real::Constant(0.0), |_| transformed_rate(builder, transform, rate));
+                let rate =
+                    part.rate().map_or(Real::Constant(0.0), |_| transformed_rate(builder, transform, rate));
                 let sample = Sample { inputs, rate, step: step.clone(), is_first: is_first.clone() };
                 let name = if self.0.len() == 1 { "network".into() } else { format!("member_{}", index + 1) };
                 builder.remark(format!("{}: {}", name.replace('_', " "), part.name().name()));
@@ -202,10 +208,17 @@ impl<'m> Parts<'m> {
     }
 }
 
+/// Largest magnitude of a value of the user's in single precision.
+const LARGEST_SINGLE: f64 = 1e12;
+
 /// A value of the user's, limited as the library limits it.
 fn limited(builder: &mut Builder, value: &Real) -> Real {
+    let largest = match builder.precision() {
+        Precision::Double => LARGEST_VALUE,
+        Precision::Single => LARGEST_SINGLE,
+    };
     let value = builder.value(value);
-    let value = value.clamp(-LARGEST_VALUE, LARGEST_VALUE);
+    let value = value.clamp(-largest, largest);
     builder.value(value)
 }
 

@@ -5,11 +5,16 @@
 //!                            └─► tangent
 //! ```
 //!
-//! A [`description::Description`] is one step of a model as a [`program::Program`]; a target writes it in its language.
+//! [`export`] gives the files of an export. A [`description::Description`] is one step of a model as a [`program::Program`]; a target writes it in its language.
 
 pub mod description;
 pub mod error;
+mod export;
+mod manifest;
 pub mod program;
-pub mod target;
+mod readme;
+mod target;
+pub mod vectors;
 
 pub use error::Error;
+pub use export::{File, Options, Target, export};

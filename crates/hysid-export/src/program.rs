@@ -10,6 +10,7 @@
 pub mod expression;
 pub mod interpreter;
 pub mod tangent;
+pub mod unused;
 
 use expression::{Real, RealVariable, Truth, Whole, WholeVariable};
 
@@ -86,9 +87,31 @@ pub enum Statement {
     If(Truth, Vec<Statement>, Vec<Statement>),
 }
 
+/// Precision of all real numbers of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// Double precision, `f64`.
+    #[default]
+    Double,
+    /// Single precision, `f32`.
+    Single,
+}
+
+impl Precision {
+    /// `f64` or `f32`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Double => "f64",
+            Self::Single => "f32",
+        }
+    }
+}
+
 /// One step of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Program {
+    /// Precision of its numbers.
+    pub precision: Precision,
     /// All arrays.
     pub arrays: Vec<Declaration>,
     /// The arguments, whose first is the input that a tangent refers to.
@@ -137,9 +160,10 @@ pub struct Builder {
 
 impl Builder {
     /// An empty program with so many arguments and outputs.
-    pub fn new(arguments: usize, outputs: usize) -> Self {
+    pub fn new(arguments: usize, outputs: usize, precision: Precision) -> Self {
         let mut builder = Self {
             program: Program {
+                precision,
                 arrays: Vec::new(),
                 arguments: Array(0),
                 outputs: Array(1),
@@ -152,6 +176,11 @@ impl Builder {
         builder.program.arguments = builder.array("argument", Storage::Argument(arguments));
         builder.program.outputs = builder.array("output", Storage::Output(outputs));
         builder
+    }
+
+    /// Precision of the program's numbers.
+    pub fn precision(&self) -> Precision {
+        self.program.precision
     }
 
     /// The program.
@@ -279,12 +308,7 @@ impl Builder {
     }
 
     /// Runs the first block where a condition holds, otherwise the second.
-    pub fn when_else(
-        &mut self,
-        condition: Truth,
-        yes: impl FnOnce(&mut Self),
-        no: impl FnOnce(&mut Self),
-    ) {
+    pub fn when_else(&mut self, condition: Truth, yes: impl FnOnce(&mut Self), no: impl FnOnce(&mut Self)) {
         let (yes, no) = (self.block(yes), self.block(no));
         self.add(Statement::If(condition, yes, no));
     }

@@ -42,7 +42,8 @@ pub(super) fn output(builder: &mut Builder, group: &Group, outside: &Real, of_me
     let values = builder.scratch("median_value", count);
     let weights = builder.scratch("median_weight", count);
     let of_inside = builder.constants("inside", group.nodes.iter().map(|node| node.weights.inside).collect());
-    let of_outside = builder.constants("outside", group.nodes.iter().map(|node| node.weights.outside).collect());
+    let of_outside =
+        builder.constants("outside", group.nodes.iter().map(|node| node.weights.outside).collect());
     builder.each(0_usize, count, |builder, k| {
         let (a, b) = (of_inside.at(&k), of_outside.at(&k));
         let between = a.powf(1.0 - outside) * b.powf(outside);
@@ -61,10 +62,14 @@ pub(super) fn output(builder: &mut Builder, group: &Group, outside: &Real, of_me
 
 /// The weights `(1-o) a/Σa + o b/Σb` (theory.md (11.9)).
 fn blend_where_all_are_zero(builder: &mut Builder, group: &Group, outside: &Real, weights: Array) {
-    let sum = |of: fn(&hysid_core::model::Weights) -> f64| -> f64 { group.nodes.iter().map(|node| of(&node.weights)).sum() };
+    let sum = |of: fn(&hysid_core::model::Weights) -> f64| -> f64 {
+        group.nodes.iter().map(|node| of(&node.weights)).sum()
+    };
     let (a, b) = (sum(|weights| weights.inside), sum(|weights| weights.outside));
     let total = builder.variable(0.0);
-    builder.each(0_usize, group.nodes.len(), |builder, k| builder.assign(total, Real::from(total) + weights.at(&k)));
+    builder.each(0_usize, group.nodes.len(), |builder, k| {
+        builder.assign(total, Real::from(total) + weights.at(&k))
+    });
     builder.when(Real::from(total).equals(0.0), |builder| {
         for (k, node) in group.nodes.iter().enumerate() {
             let weights_of = &node.weights;

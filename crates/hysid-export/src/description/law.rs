@@ -22,20 +22,31 @@ use crate::program::Builder;
 use crate::program::expression::Real;
 
 /// Writes a step of a law. The sample is in the user's units; the result is the output in its unit.
-pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &Sample) -> Result<Real, Error> {
+pub(super) fn step(
+    builder: &mut Builder,
+    name: &str,
+    law: &Classical,
+    sample: &Sample,
+) -> Result<Real, Error> {
     match law {
         Classical::BoucWen(law) => bouc_wen::step(builder, name, law, sample),
         Classical::DuhemNn(law) => duhem_nn::step(builder, name, law, sample),
-        Classical::GeneralizedPrandtlIshlinskii(law) => generalized_prandtl_ishlinskii::step(builder, name, law, sample),
+        Classical::GeneralizedPrandtlIshlinskii(law) => {
+            generalized_prandtl_ishlinskii::step(builder, name, law, sample)
+        }
         Classical::JilesAtherton(law) => jiles_atherton::step(builder, name, law, sample),
         Classical::Lugre(law) => lugre::step(builder, name, law, sample),
         Classical::Masing(law) => masing::step(builder, name, law, sample),
         Classical::MenegottoPinto(law) => menegotto_pinto::step(builder, name, law, sample),
-        Classical::ModifiedPrandtlIshlinskii(law) => modified_prandtl_ishlinskii::step(builder, name, law, sample),
+        Classical::ModifiedPrandtlIshlinskii(law) => {
+            modified_prandtl_ishlinskii::step(builder, name, law, sample)
+        }
         Classical::NeuroMadelung(law) => neuro_madelung::step(builder, name, law, sample),
         Classical::PeakOriented(law) => peak_oriented::step(builder, name, law, sample),
         Classical::PrandtlIshlinskii(law) => Ok(prandtl_ishlinskii::step(builder, name, law, sample)),
         Classical::Preisach(law) => preisach::step(builder, name, law, sample),
-        Classical::RateDependentPrandtlIshlinskii(law) => rate_dependent_prandtl_ishlinskii::step(builder, name, law, sample),
+        Classical::RateDependentPrandtlIshlinskii(law) => {
+            rate_dependent_prandtl_ishlinskii::step(builder, name, law, sample)
+        }
     }
 }

@@ -5,13 +5,24 @@ use hysid_core::network::{Layout, Network};
 
 use crate::description::Sample;
 use crate::program::expression::Real;
-use crate::program::{Array, Builder};
+use crate::program::{Array, Builder, Precision};
 
-/// Largest magnitude of a scaled input.
+/// Largest magnitude of a scaled input in each precision.
 const LARGEST_SCALED: f64 = 1e50;
+const LARGEST_SCALED_SINGLE: f64 = 1e9;
+
+/// From this many relaxation times on, nothing is left: `e^{-φ}` is 0.
+const LONGEST: f64 = 700.0;
+const LONGEST_SINGLE: f64 = 80.0;
 
 /// Writes a step of a network. The sample is in the user's units, transformed; the result is the output in its unit.
-pub(super) fn step(builder: &mut Builder, name: &str, network: &Network, scaling: &Scaling, sample: &Sample) -> Real {
+pub(super) fn step(
+    builder: &mut Builder,
+    name: &str,
+    network: &Network,
+    scaling: &Scaling,
+    sample: &Sample,
+) -> Real {
     let a = *network.architecture();
     let layout = Layout::new(a);
     let parameters = network.parameters();
@@ -26,7 +37,8 @@ pub(super) fn step(builder: &mut Builder, name: &str, network: &Network, scaling
     let z = builder.scratch(&format!("{name}_memory"), a.memory_neurons());
     stops(builder, name, network, &layout, &u, sample, z);
     if a.linear {
-        let weights = builder.constants(&format!("{name}_linear"), parameters[layout.linear.clone()].to_vec());
+        let weights =
+            builder.constants(&format!("{name}_linear"), parameters[layout.linear.clone()].to_vec());
         let mut sum = Real::Constant(0.0);
         for (channel, u) in u.iter().enumerate() {
             sum = sum + weights.at(channel) * u;
@@ -40,9 +52,13 @@ pub(super) fn step(builder: &mut Builder, name: &str, network: &Network, scaling
 }
 
 fn limited(builder: &mut Builder, u: Real) -> Real {
+    let largest = match builder.precision() {
+        Precision::Double => LARGEST_SCALED,
+        Precision::Single => LARGEST_SCALED_SINGLE,
+    };
     let u = builder.value(u);
-    let low = builder.value(u.above(-LARGEST_SCALED).choose(&u, -LARGEST_SCALED));
-    builder.value(low.below(LARGEST_SCALED).choose(&low, LARGEST_SCALED))
+    let low = builder.value(u.above(-largest).choose(&u, -largest));
+    builder.value(low.below(largest).choose(&low, largest))
 }
 
 fn stops(
@@ -81,7 +97,8 @@ fn stops(
     });
     let first = usize::from(a.linear);
     let deterioration = a.deterioration.then(|| {
-        let inverse_beta = parameters[layout.ln_beta.clone()].iter().map(|ln_beta| (-ln_beta).exp()).collect();
+        let inverse_beta =
+            parameters[layout.ln_beta.clone()].iter().map(|ln_beta| (-ln_beta).exp()).collect();
         (
             builder.state(&format!("{name}_slip"), vec![0.0; a.stops]),
             builder.constants(&format!("{name}_inverse_beta"), inverse_beta),
@@ -124,7 +141,8 @@ fn relaxation(
     if a.relaxation == 0 {
         return;
     }
-    let inverse_tau = network.parameters()[layout.ln_tau.clone()].iter().map(|ln_tau| (-ln_tau).exp()).collect();
+    let inverse_tau =
+        network.parameters()[layout.ln_tau.clone()].iter().map(|ln_tau| (-ln_tau).exp()).collect();
     let inverse_tau = builder.constants(&format!("{name}_inverse_tau"), inverse_tau);
     let stress = builder.state(&format!("{name}_stress"), vec![0.0; a.relaxation_neurons()]);
     let last = builder.state(&format!("{name}_last"), vec![0.0; a.inputs]);
@@ -159,10 +177,13 @@ fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
         0.5,
     ];
     const LN_2: [f64; 2] = [0.6931471801362932, 4.236521365809284e-10];
-    const LONGEST: f64 = 700.0;
+    let longest = match builder.precision() {
+        Precision::Double => LONGEST,
+        Precision::Single => LONGEST_SINGLE,
+    };
     let phi = builder.value(phi);
     let phi = builder.value(phi.above(0.0).choose(&phi, 0.0));
-    let bounded = builder.value(phi.below(LONGEST).choose(&phi, LONGEST));
+    let bounded = builder.value(phi.below(longest).choose(&phi, longest));
     let k = builder.value((&bounded * -std::f64::consts::LOG2_E).rounded());
     let power = builder.value(k.power_of_two());
     let s = builder.value(-&k * LN_2[1] + (-&k * LN_2[0] + -&bounded));
@@ -170,7 +191,7 @@ fn decay(builder: &mut Builder, phi: Real) -> (Real, Real) {
     let m = builder.value(&s * &s * square + &s);
     let left = builder.value(&power * &m + &power);
     let lost = builder.value(-&power * &m + (1.0 - &power));
-    let stress = builder.value(phi.below(LONGEST).choose(left, 0.0));
+    let stress = builder.value(phi.below(longest).choose(left, 0.0));
     let increment = builder.value(phi.above(0.0).choose(lost / &phi, 1.0));
     (stress, increment)
 }
@@ -219,7 +240,8 @@ fn readout(builder: &mut Builder, name: &str, network: &Network, z: Array) -> Re
         let bias = (0..a.hidden).map(|i| hidden[i * (1 + memory)]).collect();
         let bias = builder.constants(&format!("{name}_bias"), bias);
         // For each memory neuron in turn, its weights in all tanh neurons: neighbours are computed together.
-        let by_memory = (0..memory).flat_map(|j| (0..a.hidden).map(move |i| hidden[i * (1 + memory) + 1 + j]));
+        let by_memory =
+            (0..memory).flat_map(|j| (0..a.hidden).map(move |i| hidden[i * (1 + memory) + 1 + j]));
         let weights = builder.constants(&format!("{name}_hidden"), by_memory.collect());
         let output = builder.constants(&format!("{name}_output"), of_hidden.to_vec());
         let h = builder.scratch(&format!("{name}_tanh"), a.hidden);

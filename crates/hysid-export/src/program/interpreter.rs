@@ -1,11 +1,18 @@
-//! Runs a program, number by number, as the source code of a target does in double precision.
+//! Runs a program, number by number, as the source code of a target does.
+//!
+//! Numbers of single precision are held in double precision, which has them all.
+
+use std::cell::Cell;
 
 use crate::program::expression::{Binary, Comparison, Real, Truth, Unary, Whole};
-use crate::program::{Array, Program, Statement, Storage};
+use crate::program::{Array, Precision, Program, Statement, Storage};
 
 /// Adding this and subtracting it rounds to a whole number; the low bits of the sum are that number plus the exponent
 /// bias 1023.
 const ROUND: f64 = 6_755_399_441_055_744.0 + 1023.0;
+
+/// The same in single precision, with the bias 127.
+const ROUND_SINGLE: f32 = 12_582_912.0 + 127.0;
 
 /// A program with its state.
 #[derive(Debug, Clone)]
@@ -14,6 +21,7 @@ pub struct Machine<'p> {
     arrays: Vec<Vec<f64>>,
     reals: Vec<f64>,
     wholes: Vec<i64>,
+    operations: Cell<u64>,
 }
 
 impl<'p> Machine<'p> {
@@ -21,24 +29,38 @@ impl<'p> Machine<'p> {
     pub fn new(program: &'p Program) -> Self {
         let initial = |storage: &Storage| match storage {
             Storage::Constant(values) | Storage::State(values) => values.clone(),
-            Storage::Scratch(length) | Storage::Argument(length) | Storage::Output(length) => vec![0.0; *length],
+            Storage::Scratch(length) | Storage::Argument(length) | Storage::Output(length) => {
+                vec![0.0; *length]
+            }
         };
         Self {
             program,
             arrays: program.arrays.iter().map(|array| initial(&array.storage)).collect(),
             reals: vec![0.0; program.reals],
             wholes: vec![0; program.wholes],
+            operations: Cell::new(0),
         }
     }
 
     /// Takes a step with these arguments, and returns the outputs.
     ///
     /// # Panics
-    /// Another number of arguments than the program has; an index outside an array, which is an error of the program.
+    /// An index outside an array, which is an error of the program.
     pub fn step(&mut self, arguments: &[f64]) -> &[f64] {
-        self.arrays[self.program.arguments.0].copy_from_slice(arguments);
+        for (to, argument) in self.arrays[self.program.arguments.0].iter_mut().zip(arguments) {
+            *to = rounded(self.program.precision, *argument);
+        }
         self.run(&self.program.body);
         &self.arrays[self.program.outputs.0]
+    }
+
+    /// Operations with real numbers in all steps so far: sums, products, quotients, functions. Comparisons are not counted.
+    pub fn operations(&self) -> u64 {
+        self.operations.get()
+    }
+
+    fn count(&self) {
+        self.operations.set(self.operations.get() + 1);
     }
 
     /// All numbers of the state, array by array.
@@ -96,12 +118,27 @@ impl<'p> Machine<'p> {
     }
 
     fn real(&self, value: &Real) -> f64 {
+        let precision = self.program.precision;
         match value {
-            Real::Constant(value) => *value,
+            Real::Constant(value) => rounded(precision, *value),
             Real::Variable(variable) => self.reals[variable.0],
-            Real::Element(array, index) => self.arrays[array.0][self.index(index)],
-            Real::Unary(function, a) => unary(*function, self.real(a)),
-            Real::Binary(function, a, b) => binary(*function, self.real(a), self.real(b)),
+            Real::Element(array, index) => rounded(precision, self.arrays[array.0][self.index(index)]),
+            Real::Unary(function, a) => {
+                self.count();
+                let a = self.real(a);
+                match precision {
+                    Precision::Double => unary(*function, a),
+                    Precision::Single => f64::from(unary_single(*function, a as f32)),
+                }
+            }
+            Real::Binary(function, a, b) => {
+                self.count();
+                let (a, b) = (self.real(a), self.real(b));
+                match precision {
+                    Precision::Double => binary(*function, a, b),
+                    Precision::Single => f64::from(binary_single(*function, a as f32, b as f32)),
+                }
+            }
             Real::Choice(condition, yes, no) => self.real(if self.holds(condition) { yes } else { no }),
             Real::OfWhole(value) => self.whole(value) as f64,
         }
@@ -143,6 +180,13 @@ impl<'p> Machine<'p> {
     }
 }
 
+fn rounded(precision: Precision, value: f64) -> f64 {
+    match precision {
+        Precision::Double => value,
+        Precision::Single => f64::from(value as f32),
+    }
+}
+
 fn unary(function: Unary, a: f64) -> f64 {
     match function {
         Unary::Negative => -a,
@@ -161,6 +205,35 @@ fn unary(function: Unary, a: f64) -> f64 {
 }
 
 fn binary(function: Binary, a: f64, b: f64) -> f64 {
+    match function {
+        Binary::Sum => a + b,
+        Binary::Difference => a - b,
+        Binary::Product => a * b,
+        Binary::Quotient => a / b,
+        Binary::Power => a.powf(b),
+        Binary::CopySign => a.copysign(b),
+        Binary::Hypotenuse => a.hypot(b),
+    }
+}
+
+fn unary_single(function: Unary, a: f32) -> f32 {
+    match function {
+        Unary::Negative => -a,
+        Unary::Magnitude => a.abs(),
+        Unary::SquareRoot => a.sqrt(),
+        Unary::Exp => a.exp(),
+        Unary::ExpMinusOne => a.exp_m1(),
+        Unary::Ln => a.ln(),
+        Unary::LnOnePlus => a.ln_1p(),
+        Unary::Tanh => a.tanh(),
+        Unary::InverseSinh => a.asinh(),
+        Unary::Ceiling => a.ceil(),
+        Unary::Rounded => (a + ROUND_SINGLE) - ROUND_SINGLE,
+        Unary::PowerOfTwo => f32::from_bits((a + ROUND_SINGLE).to_bits() << 23),
+    }
+}
+
+fn binary_single(function: Binary, a: f32, b: f32) -> f32 {
     match function {
         Binary::Sum => a + b,
         Binary::Difference => a - b,

@@ -17,7 +17,8 @@ pub fn with_tangent(program: &Program) -> Program {
     let mut tangent = program.clone();
     let outputs = program.declaration(program.outputs).storage.len();
     tangent.arrays[program.outputs.0].storage = Storage::Output(outputs + 1);
-    let mut derivative = Derivative { variables: BTreeMap::new(), arrays: BTreeMap::new(), reals: program.reals };
+    let mut derivative =
+        Derivative { variables: BTreeMap::new(), arrays: BTreeMap::new(), reals: program.reals };
     for &Array(index) in &active.arrays {
         let Declaration { name, storage } = &program.arrays[index];
         if Array(index) == program.arguments {
@@ -43,7 +44,8 @@ pub fn with_tangent(program: &Program) -> Program {
         }
     }
     body.extend(derivative.block(program, &program.body));
-    let slope = derivative.arrays.get(&program.outputs).map_or(Real::Constant(0.0), |slope| slope.at(0_usize));
+    let slope =
+        derivative.arrays.get(&program.outputs).map_or(Real::Constant(0.0), |slope| slope.at(0_usize));
     body.push(Statement::Set(program.outputs, Whole::from(outputs), slope));
     tangent.body = body;
     tangent.reals = derivative.reals;
@@ -73,7 +75,9 @@ impl Active {
     fn take(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Let(variable, value) | Statement::Assign(variable, value) if self.depends(value) => {
+                Statement::Let(variable, value) | Statement::Assign(variable, value)
+                    if self.depends(value) =>
+                {
                     self.variables.insert(*variable);
                 }
                 Statement::Set(array, _, value) if self.depends(value) => {
@@ -95,7 +99,9 @@ impl Active {
             Real::Unary(Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo, _) => false,
             Real::Variable(variable) => self.variables.contains(variable),
             // Of the arguments, only the first.
-            Real::Element(array @ Array(0), index) => self.arrays.contains(array) && **index == Whole::Constant(0),
+            Real::Element(array @ Array(0), index) => {
+                self.arrays.contains(array) && **index == Whole::Constant(0)
+            }
             Real::Element(array, _) => self.arrays.contains(array),
             Real::Unary(_, a) => self.depends(a),
             Real::Binary(_, a, b) | Real::Choice(_, a, b) => self.depends(a) || self.depends(b),
@@ -118,7 +124,10 @@ impl Derivative {
             match statement {
                 Statement::Let(variable, value) => {
                     if let Some(&slope) = self.variables.get(variable) {
-                        block.push(Statement::Let(slope, self.of(program, value).unwrap_or(Real::Constant(0.0))));
+                        block.push(Statement::Let(
+                            slope,
+                            self.of(program, value).unwrap_or(Real::Constant(0.0)),
+                        ));
                     }
                     block.push(statement.clone());
                 }
@@ -206,9 +215,7 @@ fn of_binary(
         Binary::Sum => sum(slope_a, slope_b),
         Binary::Difference => sum(slope_a, slope_b.map(|slope| -slope)),
         Binary::Product => sum(slope_a.map(|slope| slope * b), slope_b.map(|slope| a * slope)),
-        Binary::Quotient => {
-            sum(slope_a.map(|slope| slope / b), slope_b.map(|slope| -(a / b * slope / b)))
-        }
+        Binary::Quotient => sum(slope_a.map(|slope| slope / b), slope_b.map(|slope| -(a / b * slope / b))),
         Binary::Power => {
             let of_base = slope_a.map(|slope| b * a.powf(b - 1.0) * slope);
             let of_exponent = slope_b.map(|slope| a.above(0.0).choose(a.ln() * a.powf(b) * slope, 0.0));

@@ -12,7 +12,9 @@ fn data(inputs: usize) -> Dataset {
         let time: Vec<f64> = (0..rows).map(|k| 0.02 * f64::from(k)).collect();
         let x: Vec<f64> = time
             .iter()
-            .map(|t| 40.0 + 3.0 * (1.0 + 0.3 * t).ln() * (2.1 * t + f64::from(number)).sin() + (7.3 * t).sin())
+            .map(|t| {
+                40.0 + 3.0 * (1.0 + 0.3 * t).ln() * (2.1 * t + f64::from(number)).sin() + (7.3 * t).sin()
+            })
             .collect();
         let further: Vec<f64> = time.iter().map(|t| 5.0 + (0.9 * t).cos()).collect();
         let mut plays: [f64; 2] = [40.0, 40.0];
@@ -63,7 +65,11 @@ pub fn networks() -> Vec<(String, Model)> {
         fitted("preisach-nn", 1, &with(small(), &[("companding", json!(0.2))])),
         fitted("xpnn", 1, &with(small(), &[("rate_companding", json!(0.5))])),
         fitted("xpnn+", 1, &with(small(), &[("history", json!(true)), ("companding", json!(0.1))])),
-        fitted("xpnn+", 2, &with(small(), &[("initial_state", json!("saturated-up")), ("history", json!(true))])),
+        fitted(
+            "xpnn+",
+            2,
+            &with(small(), &[("initial_state", json!("saturated-up")), ("history", json!(true))]),
+        ),
         fitted("random-stops", 1, &[("operators", json!(20))]),
     ]
 }

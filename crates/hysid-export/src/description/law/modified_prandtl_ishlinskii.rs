@@ -7,6 +7,11 @@ use crate::error::Error;
 use crate::program::Builder;
 use crate::program::expression::Real;
 
-pub(super) fn step(_: &mut Builder, _: &str, _: &ModifiedPrandtlIshlinskii, _: &Sample) -> Result<Real, Error> {
+pub(super) fn step(
+    _: &mut Builder,
+    _: &str,
+    _: &ModifiedPrandtlIshlinskii,
+    _: &Sample,
+) -> Result<Real, Error> {
     Err(Error::NoDescription("modified-prandtl-ishlinskii"))
 }

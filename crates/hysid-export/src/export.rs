@@ -1,0 +1,242 @@
+//! An export: what is asked for, and the files that it consists of.
+
+use hysid_core::model::Model;
+
+use crate::description::{Argument, Description, RateSource};
+use crate::error::Error;
+use crate::program::interpreter::Machine;
+use crate::program::tangent::with_tangent;
+use crate::program::unused::without_unused;
+use crate::program::{Precision, Program};
+use crate::target;
+use crate::vectors::{Action, Vector, vectors};
+
+/// Where the exported model is to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// C99.
+    C,
+}
+
+impl Target {
+    /// All targets.
+    pub const ALL: [Self; 1] = [Self::C];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::C => "c",
+        }
+    }
+}
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// An identifier, with which all names of the export begin.
+    pub name: String,
+    /// Precision of the arithmetic.
+    pub precision: Precision,
+    /// How a model that needs the rate gets it.
+    pub rate: RateSource,
+    /// Facts about the source that the model itself does not have, as they are to be shown: its file, the date.
+    pub source: Vec<(String, String)>,
+}
+
+impl Options {
+    /// Double precision and backward differences.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            precision: Precision::default(),
+            rate: RateSource::default(),
+            source: Vec::new(),
+        }
+    }
+}
+
+/// A file of an export.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Its path in the folder of the export.
+    pub path: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl File {
+    pub(crate) fn new(path: impl Into<String>, text: String) -> Self {
+        Self { path: path.into(), text }
+    }
+}
+
+/// Exports a model: the files that belong in one folder.
+///
+/// # Errors
+/// A name that is no identifier; a model that has a part that cannot be exported.
+pub fn export(model: &Model, to: Target, options: &Options) -> Result<Vec<File>, Error> {
+    let subject = Subject::of(model, options)?;
+    let mut files = match to {
+        Target::C => target::c::files(&subject),
+    };
+    files.push(File::new("test_vectors.csv", subject.vectors_csv()));
+    files.push(File::new("README.md", crate::readme::readme(&subject, to, &files)));
+    files.push(File::new("manifest.json", crate::manifest::manifest(&subject, to, &files)));
+    Ok(files)
+}
+
+/// A model with all that targets write of it.
+pub(crate) struct Subject<'m> {
+    model: &'m Model,
+    options: &'m Options,
+    description: Description,
+    tangent: Program,
+    vectors: Vec<Vector>,
+}
+
+impl<'m> Subject<'m> {
+    fn of(model: &'m Model, options: &'m Options) -> Result<Self, Error> {
+        let is_identifier = options.name.starts_with(|first: char| first.is_ascii_alphabetic())
+            && options.name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !is_identifier {
+            return Err(Error::Name(options.name.clone()));
+        }
+        let described = Description::of(model, options.rate, options.precision)?;
+        let tangent = without_unused(&with_tangent(&described.program));
+        let description = Description { program: without_unused(&described.program), ..described };
+        let ranges = model.trained_ranges();
+        let rate = ranges.rate.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
+        let vectors = vectors(&description, &tangent, &ranges.inputs, rate);
+        Ok(Self { model, options, description, tangent, vectors })
+    }
+
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
+    pub fn name(&self) -> &str {
+        &self.options.name
+    }
+
+    pub fn precision(&self) -> Precision {
+        self.options.precision
+    }
+
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    pub fn program(&self) -> &Program {
+        &self.description.program
+    }
+
+    pub fn tangent(&self) -> &Program {
+        &self.tangent
+    }
+
+    pub fn vectors(&self) -> &[Vector] {
+        &self.vectors
+    }
+
+    /// Bytes of a number.
+    pub fn bytes(&self) -> usize {
+        match self.precision() {
+            Precision::Double => 8,
+            Precision::Single => 4,
+        }
+    }
+
+    /// Largest difference of the outputs in single precision from those in double precision over the test vectors, as a
+    /// share of the range of the trained output; `None` in double precision.
+    pub fn rounding(&self) -> Option<f64> {
+        if self.precision() == Precision::Double {
+            return None;
+        }
+        let double = Description::of(self.model, self.options.rate, Precision::Double).ok()?;
+        let mut machine = Machine::new(&double.program);
+        let mut single = Machine::new(self.program());
+        let (low, high) = self.model.trained_ranges().output;
+        let steps = self.vectors.iter().filter(|vector| vector.action == Action::Step);
+        let difference = |vector: &Vector| {
+            (single.step(&vector.arguments)[0] - machine.step(&vector.arguments)[0]).abs() / (high - low)
+        };
+        Some(steps.map(difference).fold(0.0, f64::max))
+    }
+
+    /// Facts about the model, for the head of a file: each a name and a text.
+    pub fn facts(&self) -> Vec<(String, String)> {
+        let mut facts = vec![("model".to_string(), self.model.name().name().to_string())];
+        facts.extend(self.options.source.iter().cloned());
+        facts.push(("model's checksum".into(), checksum_of(self.model)));
+        let names = self.model.names();
+        let ranges = self.model.trained_ranges();
+        for (index, argument) in self.description.arguments.iter().enumerate() {
+            let text = match *argument {
+                Argument::Input(input) => {
+                    let (low, high) = ranges.inputs[input];
+                    format!("{}, trained from {low} to {high}", names.inputs[input])
+                }
+                Argument::TimeStep => {
+                    let time = names.time.as_deref().unwrap_or("time");
+                    format!("time since the step before, in the unit of {time}; ignored in the first step")
+                }
+                Argument::Rate => {
+                    let of = &names.inputs[0];
+                    let range = ranges
+                        .rate
+                        .map_or(String::new(), |(low, high)| format!(", trained from {low} to {high}"));
+                    format!("rate of {of} per unit of time{range}")
+                }
+            };
+            facts.push((format!("argument {}", index + 1), text));
+        }
+        let (low, high) = ranges.output;
+        facts.push(("output".into(), format!("{}, {low} to {high} in training", names.output)));
+        let provenance = self.model.provenance();
+        let percent = |errors: &hysid_core::data::metrics::Errors| {
+            let relative = errors.nrmse_std_percent.map_or(String::new(), |percent| {
+                format!(", {percent:.3} % of the output's standard deviation")
+            });
+            format!("RMSE {:.4e}{relative}", errors.rmse)
+        };
+        facts.push(("error in training".into(), percent(provenance.trained_error())));
+        facts.push((
+            "error on held-out data".into(),
+            provenance.validation.as_ref().map_or("not measured".into(), percent),
+        ));
+        facts.push(("precision".into(), self.precision().name().into()));
+        if let Some(rounding) = self.rounding() {
+            let text = format!(
+                "at most {rounding:.1e} of the range of the output, over the steps of the test vectors"
+            );
+            facts.push(("difference from f64".into(), text));
+        }
+        facts
+    }
+
+    /// The test vectors as a table.
+    fn vectors_csv(&self) -> String {
+        let names = target::c::argument_names(self);
+        let mut text = format!("action,{},output,tangent\n", names.join(","));
+        for vector in &self.vectors {
+            let arguments: Vec<String> = match vector.arguments.is_empty() {
+                true => vec![String::new(); names.len()],
+                false => vector.arguments.iter().map(|value| format!("{value:?}")).collect(),
+            };
+            let (output, tangent) = match vector.action {
+                Action::Trial => (format!("{:?}", vector.output), format!("{:?}", vector.tangent)),
+                Action::Step => (format!("{:?}", vector.output), String::new()),
+                _ => (String::new(), String::new()),
+            };
+            text += &format!("{},{},{output},{tangent}\n", vector.action.name(), arguments.join(","));
+        }
+        text
+    }
+}
+
+/// The checksum that stands in the model's file.
+fn checksum_of(model: &Model) -> String {
+    let text = model.to_json();
+    let behind = text.rsplit("\"checksum\"").next().unwrap_or_default();
+    behind.chars().filter(char::is_ascii_hexdigit).collect()
+}

@@ -1,0 +1,54 @@
+//! The list of an export's files with their checksums.
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use crate::export::{File, Subject, Target};
+
+#[derive(Serialize)]
+struct Manifest<'a> {
+    format: &'static str,
+    version: u32,
+    name: &'a str,
+    target: &'static str,
+    precision: &'static str,
+    model: Vec<Fact<'a>>,
+    files: Vec<Entry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Fact<'a> {
+    fact: &'a str,
+    value: &'a str,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    path: &'a str,
+    bytes: usize,
+    sha256: String,
+}
+
+/// The text of `manifest.json`.
+pub(crate) fn manifest(subject: &Subject<'_>, to: Target, files: &[File]) -> String {
+    let facts = subject.facts();
+    let manifest = Manifest {
+        format: "hysid-export",
+        version: 1,
+        name: subject.name(),
+        target: to.name(),
+        precision: subject.precision().name(),
+        model: facts.iter().map(|(fact, value)| Fact { fact, value }).collect(),
+        files: files.iter().map(Entry::of).collect(),
+    };
+    let text = serde_json::to_string_pretty(&manifest).unwrap_or_default();
+    text + "\n"
+}
+
+impl<'a> Entry<'a> {
+    fn of(file: &'a File) -> Self {
+        let digest = Sha256::digest(file.text.as_bytes());
+        let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        Self { path: &file.path, bytes: file.text.len(), sha256 }
+    }
+}

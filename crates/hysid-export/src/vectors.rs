@@ -1,0 +1,149 @@
+//! Test vectors: what is done with a model, and what it must give.
+
+use crate::description::{Argument, Description};
+use crate::program::Program;
+use crate::program::interpreter::Machine;
+
+/// Rows of the path.
+const ROWS: usize = 300;
+
+/// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
+const SAVED: usize = 120;
+const REPEATED: usize = 25;
+
+/// What is done with a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    /// To the initial state.
+    Reset,
+    /// A trial step with tangent, from the committed state.
+    Trial,
+    /// The last trial becomes the committed state.
+    Commit,
+    /// The last trial is forgotten.
+    Revert,
+    /// A step that is committed at once.
+    Step,
+    /// The committed state is saved.
+    Save,
+    /// The saved state becomes the committed one.
+    Restore,
+}
+
+impl Action {
+    /// Its name in files of test vectors.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reset => "reset",
+            Self::Trial => "trial",
+            Self::Commit => "commit",
+            Self::Revert => "revert",
+            Self::Step => "step",
+            Self::Save => "save",
+            Self::Restore => "restore",
+        }
+    }
+}
+
+/// One action with its arguments and what it gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vector {
+    /// The action.
+    pub action: Action,
+    /// Arguments of a trial or a step, in their order; otherwise empty.
+    pub arguments: Vec<f64>,
+    /// Output of a trial or a step, otherwise 0.
+    pub output: f64,
+    /// Tangent of a trial, otherwise 0.
+    pub tangent: f64,
+}
+
+/// Vectors for a model whose inputs and rate have these trained ranges. `tangent` is its program with the tangent.
+pub fn vectors(
+    description: &Description,
+    tangent: &Program,
+    inputs: &[(f64, f64)],
+    rate: f64,
+) -> Vec<Vector> {
+    let mut machine = Machine::new(tangent);
+    let mut committed = machine.state();
+    let initial = committed.clone();
+    let mut saved = initial.clone();
+    let mut trial = committed.clone();
+    let mut all = Vec::new();
+    let mut act = |action: Action, arguments: Vec<f64>| {
+        let (mut output, mut slope) = (0.0, 0.0);
+        match action {
+            Action::Trial | Action::Step => {
+                machine.set_state(&committed);
+                let outputs = machine.step(&arguments);
+                (output, slope) = (outputs[0], outputs[1]);
+                trial = machine.state();
+                if action == Action::Step {
+                    (committed, slope) = (trial.clone(), 0.0);
+                }
+            }
+            Action::Commit => committed = trial.clone(),
+            Action::Revert => {}
+            Action::Save => saved = committed.clone(),
+            Action::Restore => committed = saved.clone(),
+            Action::Reset => committed = initial.clone(),
+        }
+        all.push(Vector { action, arguments, output, tangent: slope });
+    };
+    let path = Path { arguments: &description.arguments, inputs, rate };
+    act(Action::Reset, Vec::new());
+    for row in 0..ROWS {
+        if row == SAVED {
+            act(Action::Save, Vec::new());
+        }
+        if row == SAVED + REPEATED {
+            act(Action::Restore, Vec::new());
+            for row in SAVED..SAVED + REPEATED {
+                act(Action::Step, path.row(row, 0.0));
+            }
+        }
+        match row % 5 {
+            // An iteration of a solver: two trials that are left, and one that is taken.
+            0 => {
+                act(Action::Trial, path.row(row, 0.3));
+                act(Action::Trial, path.row(row, -0.2));
+                act(Action::Revert, Vec::new());
+                act(Action::Trial, path.row(row, 0.0));
+                act(Action::Commit, Vec::new());
+            }
+            _ => act(Action::Step, path.row(row, 0.0)),
+        }
+    }
+    act(Action::Reset, Vec::new());
+    act(Action::Step, path.row(0, 0.0));
+    all
+}
+
+/// A path through the trained ranges and a little beyond.
+struct Path<'a> {
+    arguments: &'a [Argument],
+    inputs: &'a [(f64, f64)],
+    rate: f64,
+}
+
+impl Path<'_> {
+    /// Arguments of a row; the first input is displaced by this share of half its range.
+    fn row(&self, row: usize, displaced: f64) -> Vec<f64> {
+        let t = row as f64;
+        let wave = 1.05 * ((0.23 * t).sin() * (0.6 + 0.4 * (0.031 * t).cos()) + 0.15 * (1.9 * t).sin());
+        let value = |argument: &Argument| match *argument {
+            Argument::Input(0) => within(self.inputs[0], wave + displaced),
+            Argument::Input(input) => within(self.inputs[input], (0.11 * t + input as f64).sin()),
+            Argument::TimeStep => 0.01 * (1.0 + 0.5 * (0.7 * t).sin()),
+            Argument::Rate => self.rate * (0.37 * t).cos(),
+        };
+        // Single precision has these numbers too.
+        self.arguments.iter().map(|argument| f64::from(value(argument) as f32)).collect()
+    }
+}
+
+/// The place between -1 and 1 in a range.
+fn within((low, high): (f64, f64), place: f64) -> f64 {
+    0.5 * (low + high) + 0.5 * (high - low) * place
+}
