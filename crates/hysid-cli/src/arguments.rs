@@ -16,6 +16,7 @@ use hysid::options::ModelName;
 use hysid::options::chosen::RateChoice;
 use hysid::options::network::SEED;
 use hysid::specimens::Specimen;
+use hysid_export::Target;
 
 use crate::reproduction::Experiment;
 pub use model_options::{ModelOptions, flag};
@@ -76,6 +77,8 @@ pub enum Command {
     Reproduce(Reproduce),
     /// Write training and test data of a synthetic specimen
     Generate(Generate),
+    /// Write a model as source code for other programs, with tests and test vectors
+    Export(Export),
     /// Measure the speed of Hysid on this machine
     Bench(Bench),
 }
@@ -270,6 +273,11 @@ Examples:
   hysid generate --list
   hysid generate terfenol-rod -o train.csv --test test.csv
   hysid generate ferromagnet -o train.csv --noise 1 --seed 2";
+
+const EXPORT_EXAMPLES: &str = "\
+Examples:
+  hysid export model.json --to c                      the folder model_c
+  hysid export model.json --to c --name piezo -o src/piezo --precision f32";
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
@@ -602,6 +610,44 @@ fn specimen() -> impl TypedValueParser<Value = &'static Specimen> {
 fn noise(text: &str) -> Result<f64, String> {
     let percent = text.parse().ok().filter(|percent: &f64| (0.0..1e9).contains(percent));
     percent.ok_or_else(|| "a number of percent, 0 or more, is needed".into())
+}
+
+/// Arguments of `export`.
+#[derive(Debug, Args)]
+#[command(after_help = EXPORT_EXAMPLES)]
+pub struct Export {
+    /// Model file
+    #[arg(value_name = "MODEL.json")]
+    pub model: PathBuf,
+    /// Where the model is to run
+    #[arg(long, value_name = "TARGET", value_parser = target())]
+    pub to: Target,
+    /// Folder of the export, which appears whole or not at all [default: NAME_TARGET]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Identifier with which all names of the export begin [default: that of the model file]
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// Precision of the arithmetic: f64 or f32
+    #[arg(long, value_name = "f64|f32", default_value = "f64", value_parser = ["f64", "f32"], hide_possible_values = true)]
+    pub precision: String,
+    /// How the model gets the rate of its first input: backward or argument
+    ///
+    /// By backward differences of the input, from the time step; or as an argument of each step. A model without rate
+    /// ignores it.
+    #[arg(long, value_name = "SOURCE", default_value = "backward", value_parser = ["backward", "argument"], hide_possible_values = true)]
+    pub rate: String,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn target() -> impl TypedValueParser<Value = Target> {
+    let names = Target::ALL.map(Target::name);
+    PossibleValuesParser::new(names).map(|name| Target::named(&name).expect("one of the possible values"))
 }
 
 /// Arguments of `bench`.

@@ -5,6 +5,7 @@ pub mod compare;
 pub mod demo;
 pub mod diagnose;
 pub mod evaluate;
+pub mod export;
 pub mod fit;
 pub mod generate;
 pub mod reproduce;

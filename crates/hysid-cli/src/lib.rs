@@ -12,6 +12,7 @@ mod commands;
 mod comparison;
 mod csv_text;
 mod data;
+mod date;
 mod diagnosis;
 mod errors_table;
 mod files;
@@ -67,6 +68,7 @@ pub fn run() -> ExitCode {
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
+        Command::Export(arguments) => commands::export::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
     };
     match outcome {

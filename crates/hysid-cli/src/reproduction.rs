@@ -1,6 +1,5 @@
 //! `hysid reproduce`: runs the paper's experiments, stores what is finished, and writes pages and tables of it.
 
-mod date;
 mod outputs;
 mod rendering;
 mod run;

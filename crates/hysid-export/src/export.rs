@@ -22,6 +22,11 @@ impl Target {
     /// All targets.
     pub const ALL: [Self; 1] = [Self::C];
 
+    /// The target of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|target| target.name() == name)
+    }
+
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -81,7 +86,7 @@ pub fn export(model: &Model, to: Target, options: &Options) -> Result<Vec<File>,
     };
     files.push(File::new("test_vectors.csv", subject.vectors_csv()));
     files.push(File::new("README.md", crate::readme::readme(&subject, to, &files)));
-    files.push(File::new("manifest.json", crate::manifest::manifest(&subject, to, &files)));
+    files.push(File::new(crate::manifest::MANIFEST, crate::manifest::manifest(&subject, to, &files)));
     Ok(files)
 }
 

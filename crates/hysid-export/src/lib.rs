@@ -18,3 +18,5 @@ pub mod vectors;
 
 pub use error::Error;
 pub use export::{File, Options, Target, export};
+pub use manifest::{MANIFEST, files_of};
+pub use program::Precision;

@@ -5,6 +5,22 @@ use sha2::{Digest, Sha256};
 
 use crate::export::{File, Subject, Target};
 
+/// Name of the file.
+pub const MANIFEST: &str = "manifest.json";
+
+const FORMAT: &str = "hysid-export";
+
+/// The files of an export, from the text of its manifest; `None` if it is none.
+pub fn files_of(manifest: &str) -> Option<Vec<String>> {
+    let manifest: serde_json::Value = serde_json::from_str(manifest).ok()?;
+    if manifest["format"] != FORMAT {
+        return None;
+    }
+    let paths =
+        manifest["files"].as_array()?.iter().filter_map(|file| file["path"].as_str().map(String::from));
+    Some(paths.collect())
+}
+
 #[derive(Serialize)]
 struct Manifest<'a> {
     format: &'static str,
@@ -33,7 +49,7 @@ struct Entry<'a> {
 pub(crate) fn manifest(subject: &Subject<'_>, to: Target, files: &[File]) -> String {
     let facts = subject.facts();
     let manifest = Manifest {
-        format: "hysid-export",
+        format: FORMAT,
         version: 1,
         name: subject.name(),
         target: to.name(),

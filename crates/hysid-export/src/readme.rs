@@ -73,7 +73,7 @@ Compile with `-ffp-contract=off` where the machine fuses products and sums: the 
 the last bit, if the C library computes `exp` and its like as that of Hysid does. `-ffast-math` is refused.
 
 ```
-cc -std=c99 -O2 -ffp-contract=off -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
+cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
 ```
 
 "

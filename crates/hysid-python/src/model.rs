@@ -8,7 +8,9 @@ use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, Prediction};
-use hysid_files::{Destination, Kind};
+use hysid_export::description::RateSource;
+use hysid_export::{MANIFEST, Options, Precision, Target, files_of};
+use hysid_files::{Destination, Folder, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -49,6 +51,33 @@ impl Model {
             destination.write(self.model.to_json().as_bytes())
         });
         written.map(drop).map_err(not_written)
+    }
+
+    /// Writes an export of the model into a folder; gives the names of its files.
+    #[allow(clippy::too_many_arguments)]
+    fn export(
+        &self,
+        py: Python<'_>,
+        to: &str,
+        folder: PathBuf,
+        name: String,
+        precision: &str,
+        rate: &str,
+        force: bool,
+    ) -> PyResult<Vec<String>> {
+        let target = Target::named(to).ok_or_else(|| refused(format!("there is no target {to:?}")))?;
+        let options = Options {
+            precision: if precision == "f32" { Precision::Single } else { Precision::Double },
+            rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+            ..Options::named(name)
+        };
+        let files = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
+        let contents: Vec<(&str, &[u8])> =
+            files.iter().map(|file| (file.path.as_str(), file.text.as_bytes())).collect();
+        let destination =
+            Folder { path: &folder, what: "export of Hysid", manifest: MANIFEST, listed: files_of, force };
+        destination.write(&contents).map_err(not_written)?;
+        Ok(files.into_iter().map(|file| file.path).collect())
     }
 
     /// Number of fitted parameters.

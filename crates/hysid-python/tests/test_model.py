@@ -3,6 +3,7 @@
 import os
 import pickle
 import stat
+import subprocess
 import threading
 
 import numpy as np
@@ -46,6 +47,29 @@ def test_only_a_model_is_replaced_and_it_is_kept(quick_model, quick_ensemble, tm
 
 
 @pytest.mark.skipif(os.name != "posix", reason="links and pipes of Unix")
+def test_an_export_is_compiled_and_passes_its_own_test(quick_model, tmp_path):
+    folder = tmp_path / "piezo-stage"
+    files = quick_model.export("c", folder)
+    assert sorted(files) == sorted(os.listdir(folder))
+    assert {"piezo_stage.c", "piezo_stage.h", "manifest.json", "README.md"} <= set(files)
+    sources = ["piezo_stage.c", "piezo_stage_test.c"]
+    subprocess.run(["cc", "-std=c99", "-ffp-contract=off", "-o", "test", *sources, "-lm"], cwd=folder, check=True)
+    subprocess.run(["./test"], cwd=folder, check=True)
+    with pytest.raises(FileExistsError, match="force=True"):
+        quick_model.export("c", folder)
+    quick_model.export("c", folder, name="stage", precision="f32", force=True)
+    assert "stage.c" in os.listdir(folder) and "test" not in os.listdir(folder)
+    for arguments, message in [
+        ({"to": "cobol"}, "target"),
+        ({"name": "2 x"}, "identifier"),
+        ({"precision": "f16"}, "precision 'f16'"),
+        ({"rate": "central"}, "rate 'central'"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            quick_model.export(**{"to": "c", "folder": tmp_path / "new", **arguments})
+    assert not (tmp_path / "new").exists()
+
+
 def test_links_and_pipes_stay_what_they_are(quick_model, tmp_path):
     link, path = tmp_path / "link.json", tmp_path / "model.json"
     link.symlink_to("model.json")

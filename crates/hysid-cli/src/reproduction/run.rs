@@ -10,7 +10,8 @@ use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
 
 use super::storage::{self, Finished};
-use super::{Outputs, date, rendering};
+use super::{Outputs, rendering};
+use crate::date;
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
 

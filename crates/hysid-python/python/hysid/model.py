@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -210,6 +211,60 @@ class Model:
             The file cannot be written.
         """
         self._native.save(path, truth("force", force))
+
+    def export(
+        self,
+        to: str,
+        folder: str | os.PathLike[str],
+        *,
+        name: str | None = None,
+        precision: str = "f64",
+        rate: str = "backward",
+        force: bool = False,
+    ) -> list[str]:
+        """Write the model as source code for other programs, with tests and test vectors.
+
+        The folder appears whole or not at all.
+
+        Parameters
+        ----------
+        to : {"c"}
+            Where the model is to run.
+        folder : path
+            The folder of the export. One that is there already is replaced only if Hysid wrote all that is in it.
+        name : str, optional
+            Identifier with which all names of the export begin. By default, the name of the folder.
+        precision : {"f64", "f32"}
+            Precision of the arithmetic.
+        rate : {"backward", "argument"}
+            How the model gets the rate of its first input: by backward differences, from the time step, or as an
+            argument of each step. A model without rate ignores it.
+        force : bool
+            Replace a folder even if Hysid did not write it, with all that is in it.
+
+        Returns
+        -------
+        list of str
+            The files, by their paths in the folder.
+
+        Raises
+        ------
+        ValueError
+            A target, precision, rate or name that cannot be used; a model that cannot be exported.
+        FileExistsError
+            The folder has other files, and `force` is False.
+        OSError
+            The folder cannot be written.
+        """
+        for what, given, known in (
+            ("precision", precision, ("f64", "f32")),
+            ("rate", rate, ("backward", "argument")),
+        ):
+            if given not in known:
+                raise ValueError(f"{what} {given!r}: it is {' or '.join(map(repr, known))}")
+        if name is None:
+            name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
+        return self._native.export(to, folder, name, precision, rate, truth("force", force))
 
     def to_json(self) -> str:
         """Give the text of the model file.

@@ -1,10 +1,15 @@
-//! Today's date.
+//! Dates.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Today in UTC, such as `2026-03-01`.
 pub fn today() -> String {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    of(SystemTime::now())
+}
+
+/// The date of a time, in UTC.
+pub fn of(time: SystemTime) -> String {
+    let since = time.duration_since(UNIX_EPOCH).unwrap_or_default();
     written(since.as_secs() / 86_400)
 }
 

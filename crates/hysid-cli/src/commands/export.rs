@@ -1,0 +1,108 @@
+//! `hysid export`: a model as source code for other programs.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+use hysid_document::count;
+use hysid_export::description::RateSource;
+use hysid_export::{File, MANIFEST, Options, Precision, files_of};
+use hysid_files::Folder;
+use serde::Serialize;
+
+use crate::Outcome;
+use crate::arguments::Export;
+use crate::commands::read_model;
+use crate::messages::{Usage, json_results, note};
+use crate::{date, files};
+
+/// Runs the command.
+pub fn run(arguments: &Export) -> Result<Outcome> {
+    let model = read_model(&arguments.model)?;
+    let name = match &arguments.name {
+        Some(name) => name.clone(),
+        None => identifier(&arguments.model)?,
+    };
+    let folder = arguments.out.clone().unwrap_or_else(|| format!("{name}_{}", arguments.to.name()).into());
+    let options = Options {
+        name,
+        precision: if arguments.precision == "f32" { Precision::Single } else { Precision::Double },
+        rate: if arguments.rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+        source: source(&arguments.model),
+    };
+    let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
+        hysid_export::Error::Name(_) if arguments.name.is_some() => Usage(format!("--name: {error}")).into(),
+        error => anyhow!("{}: {error}", arguments.model.display()),
+    })?;
+    let contents: Vec<(&str, &[u8])> =
+        exported.iter().map(|file| (file.path.as_str(), file.text.as_bytes())).collect();
+    let destination = Folder {
+        path: &folder,
+        what: "export of Hysid",
+        manifest: MANIFEST,
+        listed: files_of,
+        force: arguments.overwriting.force,
+    };
+    destination.write(&contents).map_err(files::explained)?;
+    match arguments.json {
+        true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
+        false => {
+            let (shown, files) = (files::shown(&folder), count(exported.len(), "file"));
+            note(format_args!("wrote {shown}: {files}; {shown}/README.md says how to use them"));
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// What the name of a model file becomes as an identifier.
+fn identifier(path: &Path) -> Result<String> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name: String =
+        stem.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
+    match name.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        true => Ok(name),
+        false => Err(Usage(format!("{stem} is no identifier: name the export with --name")).into()),
+    }
+}
+
+/// File and date of the model.
+fn source(path: &Path) -> Vec<(String, String)> {
+    let mut facts = vec![("model file".to_string(), path.display().to_string())];
+    if let Ok(time) = fs::metadata(path).and_then(|file| file.modified()) {
+        facts.push(("date of the model file".into(), date::of(time)));
+    }
+    facts
+}
+
+/// The object that `--json` prints.
+#[derive(Serialize)]
+struct Printed<'a> {
+    folder: PathBuf,
+    target: &'static str,
+    name: &'a str,
+    precision: &'static str,
+    files: Vec<&'a str>,
+}
+
+impl<'a> Printed<'a> {
+    fn of(folder: &Path, arguments: &Export, options: &'a Options, files: &'a [File]) -> Self {
+        Self {
+            folder: folder.to_path_buf(),
+            target: arguments.to.name(),
+            name: &options.name,
+            precision: options.precision.name(),
+            files: files.iter().map(|file| file.path.as_str()).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_name_becomes_an_identifier() {
+        assert_eq!(identifier(Path::new("a/piezo-2.model.json")).unwrap(), "piezo_2_model");
+        assert!(identifier(Path::new("2.json")).is_err());
+    }
+}

@@ -1,0 +1,80 @@
+//! `hysid export` as a user runs it.
+
+mod workbench;
+
+use std::fs;
+
+use workbench::Workbench;
+
+/// A bench with a model of a few stops.
+fn with_model() -> Workbench {
+    let bench = Workbench::new();
+    let rows: String = (0..300)
+        .map(|k| {
+            let x = (0.1 * f64::from(k)).sin() * f64::from(k) / 100.0;
+            format!("{x},{}\n", 2.0 * x + 0.3 * (0.1 * f64::from(k)).cos())
+        })
+        .collect();
+    bench.put("train.csv", format!("x_mm,F_kN\n{rows}"));
+    let fit = "fit train.csv --model pnn --starts 1 --epochs 3 -o stage-2.json --no-report";
+    assert_eq!(bench.run(fit).status, Some(0));
+    bench
+}
+
+#[test]
+fn a_folder_appears_with_all_that_its_manifest_lists() {
+    let bench = with_model();
+    let ran = bench.run("export stage-2.json --to c");
+    assert_eq!((ran.status, ran.stdout.as_str()), (Some(0), ""), "{}", ran.stderr);
+    assert_eq!(ran.stderr, "wrote stage_2_c: 6 files; stage_2_c/README.md says how to use them\n");
+    let folder = bench.path("stage_2_c");
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap();
+    assert_eq!((&manifest["target"], &manifest["name"]), (&"c".into(), &"stage_2".into()));
+    for file in manifest["files"].as_array().unwrap() {
+        let content = fs::read(folder.join(file["path"].as_str().unwrap())).unwrap();
+        assert_eq!(file["bytes"], content.len());
+        assert_eq!(file["sha256"].as_str().unwrap().len(), 64);
+    }
+    let header = fs::read_to_string(folder.join("stage_2.h")).unwrap();
+    for fact in ["x_mm, trained from", "F_kN", "error in training", "date of the model file: 20"] {
+        assert!(header.contains(fact), "{header}");
+    }
+
+    // The same again replaces it; a file that was added does not vanish.
+    assert_eq!(bench.run("export stage-2.json --to c --json").status, Some(0));
+    fs::write(folder.join("mine.c"), "mine").unwrap();
+    let ran = bench.run("export stage-2.json --to c");
+    assert_eq!(ran.status, Some(2));
+    assert!(
+        ran.stderr.contains("stage_2_c: a file is there already and is no export of Hysid"),
+        "{}",
+        ran.stderr
+    );
+    assert_eq!(fs::read_to_string(folder.join("mine.c")).unwrap(), "mine");
+    assert_eq!(bench.run("export stage-2.json --to c --force").status, Some(0));
+    assert!(!folder.join("mine.c").exists());
+}
+
+#[test]
+fn bad_requests_are_one_line_and_leave_nothing() {
+    let bench = with_model();
+    bench.put("file", "mine");
+    for (arguments, status, text) in [
+        ("--to c --name 2nd", 2, "--name: the name \"2nd\" is no identifier"),
+        ("--to c --precision f16", 2, "f16"),
+        ("--to cobol", 2, "cobol"),
+        ("--to c -o file", 2, "file: a file is there already"),
+        ("--to c -o train.csv/new", 1, "train.csv/new: cannot be written"),
+    ] {
+        let ran = bench.run(&format!("export stage-2.json {arguments}"));
+        assert_eq!(ran.status, Some(status), "{arguments}: {}", ran.stderr);
+        assert!(ran.stderr.contains(text) && ran.stderr.lines().count() == 1, "{arguments}: {}", ran.stderr);
+    }
+    let ran = bench.run("export missing.json --to c");
+    assert_eq!(ran.status, Some(1), "{}", ran.stderr);
+    let mut left: Vec<_> =
+        fs::read_dir(bench.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["file", "stage-2.json", "train.csv"]);
+}
