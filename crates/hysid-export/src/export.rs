@@ -221,7 +221,7 @@ impl<'m> Subject<'m> {
 
     /// The test vectors as a table.
     fn vectors_csv(&self) -> String {
-        let names = target::c::argument_names(self);
+        let names = target::argument_names(self);
         let mut text = format!("action,{},output,tangent\n", names.join(","));
         for vector in &self.vectors {
             let arguments: Vec<String> = match vector.arguments.is_empty() {

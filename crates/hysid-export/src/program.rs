@@ -7,7 +7,9 @@
 //! A target writes the statements in its language, each in one line or one loop. [`interpreter`] runs them here, for
 //! tests and for test vectors, and [`tangent`] derives the program of the slope `dy/dx`.
 
+pub mod choices;
 pub mod expression;
+pub mod functions;
 pub mod interpreter;
 pub mod tangent;
 pub mod unused;

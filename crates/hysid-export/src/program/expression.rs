@@ -13,7 +13,7 @@ pub struct RealVariable(pub(crate) usize);
 pub struct WholeVariable(pub(crate) usize);
 
 /// A function of one real number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Unary {
     /// `-a`
     Negative,
@@ -42,7 +42,7 @@ pub enum Unary {
 }
 
 /// A function of two real numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Binary {
     /// `a + b`
     Sum,

@@ -15,15 +15,3 @@ pub(crate) fn files(subject: &Subject<'_>) -> Vec<File> {
         File::new(format!("{name}_test.c"), self_test::self_test(subject)),
     ]
 }
-
-/// Name of an argument of the step.
-pub(crate) fn argument_names(subject: &Subject<'_>) -> Vec<String> {
-    use crate::description::Argument;
-    let name = |argument: &Argument| match argument {
-        Argument::Input(0) => "x".to_string(),
-        Argument::Input(input) => format!("x{}", input + 1),
-        Argument::TimeStep => "time_step".to_string(),
-        Argument::Rate => "rate".to_string(),
-    };
-    subject.description().arguments.iter().map(name).collect()
-}

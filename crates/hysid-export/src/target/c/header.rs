@@ -2,7 +2,7 @@
 
 use crate::export::Subject;
 use crate::program::Precision;
-use crate::target::c::argument_names;
+use crate::target::argument_names;
 
 /// The text of the header file.
 pub(super) fn header(subject: &Subject<'_>) -> String {

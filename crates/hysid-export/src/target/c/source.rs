@@ -4,85 +4,82 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::export::Subject;
-use crate::program::expression::{Binary, Comparison, Real, RealVariable, Truth, Unary, Whole};
+use crate::program::expression::{Binary, Unary};
+use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
-use crate::program::{Array, Precision, Program, Statement, Storage};
-use crate::target::c::argument_names;
+use crate::program::{Array, Declaration, Precision, Program, Storage};
+use crate::target::argument_names;
+use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 
 /// The text of the source file.
 pub(super) fn source(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let (step, tangent) = (subject.program(), subject.tangent());
-    let printer = Printer { name, precision: subject.precision(), arguments: argument_names(subject) };
-    let mut functions = Functions::default();
-    functions.of_block(&step.body);
-    functions.of_block(&tangent.body);
+    let c = C { precision: subject.precision(), arguments: argument_names(subject) };
+    let functions = Functions::of(&[step, tangent]);
 
     let mut text = format!("/* {name}.c: see {name}.h. */\n\n");
-    if functions.uses_math() {
+    if functions.infinity || uses_math(&functions) {
         text += "#include <math.h>\n";
     }
-    if functions.power_of_two {
+    if functions.unary.contains(&Unary::PowerOfTwo) {
         text += "#include <stdint.h>\n";
     }
     text += &format!("#include \"{name}.h\"\n\n");
     text += "#ifdef __FAST_MATH__\n#error \"-ffast-math changes the results of this file\"\n#endif\n\n";
     text += &format!("typedef {name}_real real;\n\n");
-    text += &functions.prelude(subject.precision());
-    text += &constants(&printer, &[step, tangent]);
-    text += &initial_state(&printer, step);
-    text += &function(&printer, step, "advance", false);
-    text += &function(&printer, tangent, "advance_with_tangent", true);
-    text += &around(&printer);
+    text += &prelude(&functions, subject.precision());
+    text += &constants(&c, &[step, tangent]);
+    text += &initial_state(&c, name, step);
+    text += &function(&c, name, step, "advance", false);
+    text += &function(&c, name, tangent, "advance_with_tangent", true);
+    text += &around(&c, name);
     text
 }
 
+fn uses_math(functions: &Functions) -> bool {
+    let own = [Unary::Negative, Unary::Rounded, Unary::PowerOfTwo];
+    let infix = [Binary::Sum, Binary::Difference, Binary::Product, Binary::Quotient];
+    functions.unary.iter().any(|function| !own.contains(function))
+        || functions.binary.iter().any(|function| !infix.contains(function))
+}
+
 /// All arrays of constants that the programs use.
-fn constants(printer: &Printer<'_>, programs: &[&Program]) -> String {
+fn constants(c: &C, programs: &[&Program]) -> String {
     let used: BTreeSet<Array> = programs.iter().flat_map(|program| used_arrays(program)).collect();
     let mut text = String::new();
     for array in used {
-        // The second program has the arrays of the first, and more.
+        // The last program has the arrays of those before, and more.
         let declaration = programs[programs.len() - 1].declaration(array);
         if let Storage::Constant(values) = &declaration.storage {
-            text += &format!(
-                "static const real {}[{}] = {};\n",
-                declaration.name,
-                values.len(),
-                printer.list(values)
-            );
+            let rows = rows_of_numbers(c, values, "    ");
+            let _ =
+                writeln!(text, "static const real {}[{}] = {{\n{rows}\n}};", declaration.name, values.len());
         }
     }
     text + "\n"
 }
 
-fn initial_state(printer: &Printer<'_>, program: &Program) -> String {
-    let name = printer.name;
+fn initial_state(c: &C, name: &str, program: &Program) -> String {
     let mut text = format!("static const {name}_state initial_state = {{\n");
     for (_, array, values) in program.states() {
-        let _ = writeln!(text, "    {}, /* {array} */", printer.list(values));
+        let _ = writeln!(text, "    {{ /* {array} */\n{}\n    }},", rows_of_numbers(c, values, "        "));
     }
     text + "};\n\n"
 }
 
 /// One of the two steps, as a function that advances a state.
-fn function(printer: &Printer<'_>, program: &Program, function: &str, with_tangent: bool) -> String {
-    let parameters: String = printer.arguments.iter().map(|argument| format!(", real {argument}")).collect();
+fn function(c: &C, name: &str, program: &Program, function: &str, with_tangent: bool) -> String {
+    let parameters: String = c.arguments.iter().map(|argument| format!(", real {argument}")).collect();
     let tangent = if with_tangent { ", real *tangent" } else { "" };
-    let mut text =
-        format!("static real {function}({}_state *state{parameters}{tangent})\n{{\n", printer.name);
+    let mut text = format!("static real {function}({name}_state *state{parameters}{tangent})\n{{\n");
     for array in used_arrays(program) {
         let declaration = program.declaration(array);
-        match declaration.storage {
-            Storage::Scratch(length) | Storage::Output(length) => {
-                let _ = writeln!(text, "    real {}[{length}];", declaration.name);
-            }
-            Storage::Constant(_) | Storage::State(_) | Storage::Argument(_) => {}
+        if let Storage::Scratch(length) | Storage::Output(length) = declaration.storage {
+            let _ = writeln!(text, "    real {}[{length}];", declaration.name);
         }
     }
-    let mut assigned = BTreeSet::new();
-    collect_assigned(&program.body, &mut assigned);
-    printer.block(program, &assigned, &program.body, 1, &mut text);
+    text += &Printer::new(c, program).body(1);
     let output = &program.declaration(program.outputs).name;
     if with_tangent {
         let last = program.declaration(program.outputs).storage.len() - 1;
@@ -92,27 +89,10 @@ fn function(printer: &Printer<'_>, program: &Program, function: &str, with_tange
     text
 }
 
-fn collect_assigned(statements: &[Statement], assigned: &mut BTreeSet<RealVariable>) {
-    for statement in statements {
-        match statement {
-            Statement::Assign(variable, _) => {
-                assigned.insert(*variable);
-            }
-            Statement::Each(_, _, _, body) | Statement::While(_, body) => collect_assigned(body, assigned),
-            Statement::If(_, yes, no) => {
-                collect_assigned(yes, assigned);
-                collect_assigned(no, assigned);
-            }
-            _ => {}
-        }
-    }
-}
-
 /// The public functions.
-fn around(printer: &Printer<'_>) -> String {
-    let name = printer.name;
-    let parameters: String = printer.arguments.iter().map(|argument| format!(", real {argument}")).collect();
-    let arguments: String = printer.arguments.iter().map(|argument| format!(", {argument}")).collect();
+fn around(c: &C, name: &str) -> String {
+    let parameters: String = c.arguments.iter().map(|argument| format!(", real {argument}")).collect();
+    let arguments: String = c.arguments.iter().map(|argument| format!(", {argument}")).collect();
     format!(
         "void {name}_reset({name}_model *model)
 {{
@@ -174,127 +154,27 @@ void {name}_restore({name}_model *model, const unsigned char *bytes)
     )
 }
 
-/// Functions of the standard library and of the prelude that a program uses.
-#[derive(Default)]
-struct Functions {
-    library: BTreeSet<&'static str>,
-    rounded: bool,
-    power_of_two: bool,
-    inverse_sinh: bool,
-    infinity: bool,
-}
-
-impl Functions {
-    fn of_block(&mut self, statements: &[Statement]) {
-        for statement in statements {
-            match statement {
-                Statement::Remark(_) => {}
-                Statement::Let(_, value) | Statement::Assign(_, value) => self.of_real(value),
-                Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.of_whole(value),
-                Statement::Set(_, index, value) => {
-                    self.of_whole(index);
-                    self.of_real(value);
-                }
-                Statement::Each(_, first, last, body) => {
-                    self.of_whole(first);
-                    self.of_whole(last);
-                    self.of_block(body);
-                }
-                Statement::While(condition, body) => {
-                    self.of_truth(condition);
-                    self.of_block(body);
-                }
-                Statement::If(condition, yes, no) => {
-                    self.of_truth(condition);
-                    self.of_block(yes);
-                    self.of_block(no);
-                }
-            }
-        }
-    }
-
-    fn of_real(&mut self, value: &Real) {
-        match value {
-            Real::Constant(value) => self.infinity |= value.is_infinite(),
-            Real::Variable(_) => {}
-            Real::Element(_, index) | Real::OfWhole(index) => self.of_whole(index),
-            Real::Unary(function, a) => {
-                match function {
-                    Unary::Rounded => self.rounded = true,
-                    Unary::PowerOfTwo => self.power_of_two = true,
-                    Unary::InverseSinh => self.inverse_sinh = true,
-                    other => self.library.extend(unary_name(*other)),
-                }
-                self.of_real(a);
-            }
-            Real::Binary(function, a, b) => {
-                self.library.extend(binary_name(*function));
-                self.of_real(a);
-                self.of_real(b);
-            }
-            Real::Choice(condition, yes, no) => {
-                self.of_truth(condition);
-                self.of_real(yes);
-                self.of_real(no);
-            }
-        }
-    }
-
-    fn of_whole(&mut self, value: &Whole) {
-        match value {
-            Whole::Constant(_) | Whole::Variable(_) => {}
-            Whole::Sum(a, b) | Whole::Difference(a, b) | Whole::Product(a, b) => {
-                self.of_whole(a);
-                self.of_whole(b);
-            }
-            Whole::OfReal(value) => self.of_real(value),
-        }
-    }
-
-    fn of_truth(&mut self, condition: &Truth) {
-        match condition {
-            Truth::Real(_, a, b) => {
-                self.of_real(a);
-                self.of_real(b);
-            }
-            Truth::Whole(_, a, b) => {
-                self.of_whole(a);
-                self.of_whole(b);
-            }
-            Truth::And(a, b) | Truth::Or(a, b) => {
-                self.of_truth(a);
-                self.of_truth(b);
-            }
-            Truth::Not(a) => self.of_truth(a),
-        }
-    }
-
-    fn uses_math(&self) -> bool {
-        !self.library.is_empty() || self.inverse_sinh || self.infinity
-    }
-
-    /// Functions that the C library does not have.
-    fn prelude(&self, precision: Precision) -> String {
-        let suffix = math_suffix(precision);
-        let (round, bits, shift) = match precision {
-            Precision::Double => ("6755399441056767.0", "uint64_t", 52),
-            Precision::Single => ("12583039.0f", "uint32_t", 23),
-        };
-        let mut text = String::new();
-        if self.rounded {
-            text += &format!(
-                "/* The next whole number: the sum has no digits behind the point. */
+/// Functions that the C library does not have.
+fn prelude(functions: &Functions, precision: Precision) -> String {
+    let (f, round, bits, shift) = match precision {
+        Precision::Double => ("", "6755399441056767.0", "uint64_t", 52),
+        Precision::Single => ("f", "12583039.0f", "uint32_t", 23),
+    };
+    let mut text = String::new();
+    if functions.unary.contains(&Unary::Rounded) {
+        text += &format!(
+            "/* The next whole number: the sum has no digits behind the point. */
 static real rounded(real a)
 {{
     return (a + {round}) - {round};
 }}
 
 "
-            );
-        }
-        if self.power_of_two {
-            text += &format!(
-                "/* 2^a of a whole number: it becomes the exponent. */
+        );
+    }
+    if functions.unary.contains(&Unary::PowerOfTwo) {
+        text += &format!(
+            "/* 2^a of a whole number: it becomes the exponent. */
 static real power_of_two(real a)
 {{
     union {{ real value; {bits} bits; }} number;
@@ -304,305 +184,138 @@ static real power_of_two(real a)
 }}
 
 "
-            );
-        }
-        if self.inverse_sinh {
-            let one = if precision == Precision::Single { "1.0f" } else { "1.0" };
-            text += &format!(
-                "static real inverse_sinh(real a)
+        );
+    }
+    if functions.unary.contains(&Unary::InverseSinh) {
+        text += &format!(
+            "static real inverse_sinh(real a)
 {{
-    const real magnitude = fabs{suffix}(a);
-    const real inverse = {one} / magnitude;
-    const real root = hypot{suffix}({one}, inverse) + inverse;
-    return copysign{suffix}(log1p{suffix}(magnitude + magnitude / root), a);
+    const real magnitude = fabs{f}(a);
+    const real inverse = 1 / magnitude;
+    const real root = hypot{f}(1, inverse) + inverse;
+    return copysign{f}(log1p{f}(magnitude + magnitude / root), a);
 }}
 
 "
-            );
-        }
-        text
+        );
     }
+    text
 }
 
-fn math_suffix(precision: Precision) -> &'static str {
-    match precision {
-        Precision::Double => "",
-        Precision::Single => "f",
-    }
-}
-
-fn unary_name(function: Unary) -> Option<&'static str> {
-    match function {
-        Unary::Negative | Unary::Rounded | Unary::PowerOfTwo | Unary::InverseSinh => None,
-        Unary::Magnitude => Some("fabs"),
-        Unary::SquareRoot => Some("sqrt"),
-        Unary::Exp => Some("exp"),
-        Unary::ExpMinusOne => Some("expm1"),
-        Unary::Ln => Some("log"),
-        Unary::LnOnePlus => Some("log1p"),
-        Unary::Tanh => Some("tanh"),
-        Unary::Ceiling => Some("ceil"),
-    }
-}
-
-fn binary_name(function: Binary) -> Option<&'static str> {
-    match function {
-        Binary::Sum | Binary::Difference | Binary::Product | Binary::Quotient => None,
-        Binary::Power => Some("pow"),
-        Binary::CopySign => Some("copysign"),
-        Binary::Hypotenuse => Some("hypot"),
-    }
-}
-
-/// How strongly the outermost operation of an expression binds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Choice,
-    Or,
-    And,
-    Comparison,
-    Sum,
-    Product,
-    Sign,
-    Atom,
-}
-
-/// Writes statements and expressions in C.
-struct Printer<'a> {
-    name: &'a str,
+/// The language.
+struct C {
     precision: Precision,
     arguments: Vec<String>,
 }
 
-impl Printer<'_> {
+impl C {
+    /// The function of this precision.
+    fn of_precision(&self, double: &'static str, single: &'static str) -> &'static str {
+        match self.precision {
+            Precision::Double => double,
+            Precision::Single => single,
+        }
+    }
+}
+
+impl Language for C {
     fn number(&self, value: f64) -> String {
         match self.precision {
             _ if value.is_infinite() => {
                 let sign = if value < 0.0 { "-" } else { "" };
-                format!("{sign}HUGE_VAL{}", math_suffix(self.precision).to_uppercase())
+                format!("{sign}{}", self.of_precision("HUGE_VAL", "HUGE_VALF"))
             }
             Precision::Double => format!("{value:?}"),
             Precision::Single => format!("{:?}f", value as f32),
         }
     }
 
-    /// Numbers in braces, some in a line.
-    fn list(&self, values: &[f64]) -> String {
-        const IN_A_LINE: usize = 4;
-        let numbers: Vec<String> = values.iter().map(|value| self.number(*value)).collect();
-        if numbers.len() <= IN_A_LINE {
-            return format!("{{ {} }}", numbers.join(", "));
-        }
-        let lines: Vec<String> =
-            numbers.chunks(IN_A_LINE).map(|line| format!("    {}", line.join(", "))).collect();
-        format!("{{\n{}\n}}", lines.join(",\n"))
-    }
-
-    fn block(
-        &self,
-        program: &Program,
-        assigned: &BTreeSet<RealVariable>,
-        statements: &[Statement],
-        depth: usize,
-        text: &mut String,
-    ) {
-        let indent = "    ".repeat(depth);
-        for statement in statements {
-            let _ = match statement {
-                Statement::Remark(remark) => writeln!(text, "{indent}/* {} */", remark.replace("*/", "* /")),
-                Statement::Let(variable, value) => {
-                    let constant = if assigned.contains(variable) { "" } else { "const " };
-                    let value = self.real(program, value, Binding::Choice);
-                    writeln!(text, "{indent}{constant}real v{} = {value};", variable.0)
-                }
-                Statement::Assign(variable, value) => {
-                    writeln!(
-                        text,
-                        "{indent}v{} = {};",
-                        variable.0,
-                        self.real(program, value, Binding::Choice)
-                    )
-                }
-                Statement::LetWhole(variable, value) => {
-                    writeln!(
-                        text,
-                        "{indent}int k{} = {};",
-                        variable.0,
-                        self.whole(program, value, Binding::Sum)
-                    )
-                }
-                Statement::AssignWhole(variable, value) => {
-                    writeln!(text, "{indent}k{} = {};", variable.0, self.whole(program, value, Binding::Sum))
-                }
-                Statement::Set(array, index, value) => writeln!(
-                    text,
-                    "{indent}{} = {};",
-                    self.element(program, *array, index),
-                    self.real(program, value, Binding::Choice)
-                ),
-                Statement::Each(variable, first, last, body) => {
-                    let (first, last) =
-                        (self.whole(program, first, Binding::Sum), self.whole(program, last, Binding::Sum));
-                    let _ = writeln!(
-                        text,
-                        "{indent}for (int k{0} = {first}; k{0} < {last}; k{0}++) {{",
-                        variable.0
-                    );
-                    self.block(program, assigned, body, depth + 1, text);
-                    writeln!(text, "{indent}}}")
-                }
-                Statement::While(condition, body) => {
-                    let _ = writeln!(
-                        text,
-                        "{indent}while ({}) {{",
-                        self.truth(program, condition, Binding::Choice)
-                    );
-                    self.block(program, assigned, body, depth + 1, text);
-                    writeln!(text, "{indent}}}")
-                }
-                Statement::If(condition, yes, no) => {
-                    let (condition, yes, no) = match (yes.is_empty(), condition) {
-                        (false, condition) => (condition.clone(), yes, no),
-                        (true, condition) => (condition.clone().negated(), no, yes),
-                    };
-                    let _ = writeln!(
-                        text,
-                        "{indent}if ({}) {{",
-                        self.truth(program, &condition, Binding::Choice)
-                    );
-                    self.block(program, assigned, yes, depth + 1, text);
-                    if !no.is_empty() {
-                        let _ = writeln!(text, "{indent}}} else {{");
-                        self.block(program, assigned, no, depth + 1, text);
-                    }
-                    writeln!(text, "{indent}}}")
-                }
-            };
+    fn element(&self, declaration: &Declaration, index: &str) -> String {
+        let name = &declaration.name;
+        match declaration.storage {
+            Storage::Argument(_) => index
+                .parse::<usize>()
+                .map_or_else(|_| format!("{name}[{index}]"), |index| self.arguments[index].clone()),
+            Storage::State(_) => format!("state->{name}[{index}]"),
+            _ => format!("{name}[{index}]"),
         }
     }
 
-    fn element(&self, program: &Program, array: Array, index: &Whole) -> String {
-        if array == program.arguments
-            && let Whole::Constant(index) = index
-        {
-            return self.arguments[usize::try_from(*index).unwrap_or_default()].clone();
-        }
-        let declaration = program.declaration(array);
-        let state = if matches!(declaration.storage, Storage::State(_)) { "state->" } else { "" };
-        format!("{state}{}[{}]", declaration.name, self.whole(program, index, Binding::Sum))
+    fn unary(&self, function: Unary) -> Option<&'static str> {
+        Some(match function {
+            Unary::Negative => return None,
+            Unary::Rounded => "rounded",
+            Unary::PowerOfTwo => "power_of_two",
+            Unary::InverseSinh => "inverse_sinh",
+            Unary::Magnitude => self.of_precision("fabs", "fabsf"),
+            Unary::SquareRoot => self.of_precision("sqrt", "sqrtf"),
+            Unary::Exp => self.of_precision("exp", "expf"),
+            Unary::ExpMinusOne => self.of_precision("expm1", "expm1f"),
+            Unary::Ln => self.of_precision("log", "logf"),
+            Unary::LnOnePlus => self.of_precision("log1p", "log1pf"),
+            Unary::Tanh => self.of_precision("tanh", "tanhf"),
+            Unary::Ceiling => self.of_precision("ceil", "ceilf"),
+        })
     }
 
-    /// An expression, in parentheses if it binds more weakly than what stands around it.
-    fn real(&self, program: &Program, value: &Real, around: Binding) -> String {
-        let (text, binding) = match value {
-            // The sign of a number binds as an operation.
-            Real::Constant(value) if value.is_sign_negative() => (self.number(*value), Binding::Sign),
-            Real::Constant(value) => (self.number(*value), Binding::Atom),
-            Real::Variable(variable) => (format!("v{}", variable.0), Binding::Atom),
-            Real::Element(array, index) => (self.element(program, *array, index), Binding::Atom),
-            Real::Unary(Unary::Negative, a) => {
-                (format!("-{}", self.real(program, a, Binding::Atom)), Binding::Sign)
-            }
-            Real::Unary(function, a) => {
-                let a = self.real(program, a, Binding::Choice);
-                let name = match function {
-                    Unary::Rounded => "rounded".to_string(),
-                    Unary::PowerOfTwo => "power_of_two".to_string(),
-                    Unary::InverseSinh => "inverse_sinh".to_string(),
-                    other => {
-                        format!("{}{}", unary_name(*other).unwrap_or_default(), math_suffix(self.precision))
-                    }
-                };
-                (format!("{name}({a})"), Binding::Atom)
-            }
-            Real::Binary(function, a, b) => self.binary(program, *function, a, b),
-            Real::Choice(condition, yes, no) => {
-                let condition = self.truth(program, condition, Binding::Or);
-                let (yes, no) =
-                    (self.real(program, yes, Binding::Or), self.real(program, no, Binding::Choice));
-                (format!("{condition} ? {yes} : {no}"), Binding::Choice)
-            }
-            Real::OfWhole(value) => {
-                (format!("(real){}", self.whole(program, value, Binding::Atom)), Binding::Sign)
-            }
-        };
-        bracketed(text, binding, around)
-    }
-
-    fn binary(&self, program: &Program, function: Binary, a: &Real, b: &Real) -> (String, Binding) {
-        let infix = |sign: &str, binding: Binding, above: Binding| {
-            let (a, b) = (self.real(program, a, binding), self.real(program, b, above));
-            (format!("{a} {sign} {b}"), binding)
-        };
+    fn binary(&self, function: Binary) -> Option<&'static str> {
         match function {
-            Binary::Sum => infix("+", Binding::Sum, Binding::Product),
-            Binary::Difference => infix("-", Binding::Sum, Binding::Product),
-            Binary::Product => infix("*", Binding::Product, Binding::Sign),
-            Binary::Quotient => infix("/", Binding::Product, Binding::Sign),
-            Binary::Power | Binary::CopySign | Binary::Hypotenuse => {
-                let (a, b) = (self.real(program, a, Binding::Choice), self.real(program, b, Binding::Choice));
-                let name = binary_name(function).unwrap_or_default();
-                (format!("{name}{}({a}, {b})", math_suffix(self.precision)), Binding::Atom)
-            }
+            Binary::Sum | Binary::Difference | Binary::Product | Binary::Quotient => None,
+            Binary::Power => Some(self.of_precision("pow", "powf")),
+            Binary::CopySign => Some(self.of_precision("copysign", "copysignf")),
+            Binary::Hypotenuse => Some(self.of_precision("hypot", "hypotf")),
         }
     }
 
-    fn whole(&self, program: &Program, value: &Whole, around: Binding) -> String {
-        let infix = |sign: &str, a: &Whole, b: &Whole, binding: Binding, above: Binding| {
-            let (a, b) = (self.whole(program, a, binding), self.whole(program, b, above));
-            (format!("{a} {sign} {b}"), binding)
-        };
-        let (text, binding) = match value {
-            Whole::Constant(value) => {
-                (value.to_string(), if *value < 0 { Binding::Sign } else { Binding::Atom })
-            }
-            Whole::Variable(variable) => (format!("k{}", variable.0), Binding::Atom),
-            Whole::Sum(a, b) => infix("+", a, b, Binding::Sum, Binding::Product),
-            Whole::Difference(a, b) => infix("-", a, b, Binding::Sum, Binding::Product),
-            Whole::Product(a, b) => infix("*", a, b, Binding::Product, Binding::Sign),
-            Whole::OfReal(value) => {
-                (format!("(int){}", self.real(program, value, Binding::Atom)), Binding::Sign)
-            }
-        };
-        bracketed(text, binding, around)
+    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding) {
+        (format!("{condition} ? {yes} : {no}"), Binding::Choice)
     }
 
-    fn truth(&self, program: &Program, condition: &Truth, around: Binding) -> String {
-        let (text, binding) = match condition {
-            Truth::Real(comparison, a, b) => {
-                let (a, b) = (self.real(program, a, Binding::Sum), self.real(program, b, Binding::Sum));
-                (format!("{a} {} {b}", sign(*comparison)), Binding::Comparison)
-            }
-            Truth::Whole(comparison, a, b) => {
-                let (a, b) = (self.whole(program, a, Binding::Sum), self.whole(program, b, Binding::Sum));
-                (format!("{a} {} {b}", sign(*comparison)), Binding::Comparison)
-            }
-            Truth::And(a, b) => {
-                let (a, b) = (self.truth(program, a, Binding::And), self.truth(program, b, Binding::And));
-                (format!("{a} && {b}"), Binding::And)
-            }
-            Truth::Or(a, b) => {
-                // In parentheses, because compilers warn of `a && b || c`.
-                let (a, b) = (
-                    self.truth(program, a, Binding::Comparison),
-                    self.truth(program, b, Binding::Comparison),
-                );
-                (format!("{a} || {b}"), Binding::Or)
-            }
-            Truth::Not(a) => (format!("!({})", self.truth(program, a, Binding::Choice)), Binding::Sign),
-        };
-        bracketed(text, binding, around)
+    fn logic(&self) -> [&'static str; 3] {
+        ["&&", "||", "!"]
     }
-}
 
-fn sign(comparison: Comparison) -> &'static str {
-    match comparison {
-        Comparison::Below => "<",
-        Comparison::AtMost => "<=",
-        Comparison::Equal => "==",
+    fn to_whole(&self, real: &str) -> String {
+        format!("((int){real})")
     }
-}
 
-fn bracketed(text: String, binding: Binding, around: Binding) -> String {
-    if binding < around { format!("({text})") } else { text }
+    fn to_real(&self, whole: &str) -> String {
+        format!("((real){whole})")
+    }
+
+    fn declare(&self, variable: &str, value: &str, is_constant: bool) -> String {
+        format!("{}real {variable} = {value};", if is_constant { "const " } else { "" })
+    }
+
+    fn declare_whole(&self, variable: &str, value: &str) -> String {
+        format!("int {variable} = {value};")
+    }
+
+    fn assign(&self, to: &str, value: &str) -> String {
+        format!("{to} = {value};")
+    }
+
+    fn remark(&self, text: &str) -> String {
+        format!("/* {} */", text.replace("*/", "* /"))
+    }
+
+    fn each(&self, variable: &str, first: &str, last: &str) -> String {
+        format!("for (int {variable} = {first}; {variable} < {last}; {variable}++) {{")
+    }
+
+    fn while_true(&self, condition: &str) -> String {
+        format!("while ({condition}) {{")
+    }
+
+    fn when(&self, condition: &str) -> String {
+        format!("if ({condition}) {{")
+    }
+
+    fn otherwise(&self) -> &'static str {
+        "} else {"
+    }
+
+    fn end(&self) -> Option<&'static str> {
+        Some("}")
+    }
 }
