@@ -12,4 +12,7 @@ pub enum Error {
     /// A name that is no identifier of the target's language.
     #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
     Name(String),
+    /// Single precision for a target that computes in double precision.
+    #[error("{0} computes in double precision: leave the precision at f64")]
+    Precision(&'static str),
 }

@@ -8,32 +8,8 @@ use crate::program::interpreter::Machine;
 use crate::program::tangent::with_tangent;
 use crate::program::unused::without_unused;
 use crate::program::{Precision, Program};
-use crate::target;
+use crate::target::{self, Target};
 use crate::vectors::{Action, Vector, vectors};
-
-/// Where the exported model is to run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// C99.
-    C,
-}
-
-impl Target {
-    /// All targets.
-    pub const ALL: [Self; 1] = [Self::C];
-
-    /// The target of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|target| target.name() == name)
-    }
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::C => "c",
-        }
-    }
-}
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,25 +41,27 @@ impl Options {
 pub struct File {
     /// Its path in the folder of the export.
     pub path: String,
-    /// Its text.
-    pub text: String,
+    /// Its content.
+    pub content: Vec<u8>,
 }
 
 impl File {
-    pub(crate) fn new(path: impl Into<String>, text: String) -> Self {
-        Self { path: path.into(), text }
+    pub(crate) fn new(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
+        Self { path: path.into(), content: content.into() }
     }
 }
 
 /// Exports a model: the files that belong in one folder.
 ///
 /// # Errors
-/// A name that is no identifier; a model that has a part that cannot be exported.
+/// A name that is no identifier; a precision that the target does not have; a model that cannot be exported there.
 pub fn export(model: &Model, to: Target, options: &Options) -> Result<Vec<File>, Error> {
+    let back_end = to.back_end();
+    if options.precision == Precision::Single && !back_end.has_single_precision {
+        return Err(Error::Precision(back_end.name));
+    }
     let subject = Subject::of(model, options)?;
-    let mut files = match to {
-        Target::C => target::c::files(&subject),
-    };
+    let mut files = (back_end.files)(&subject)?;
     files.push(File::new("test_vectors.csv", subject.vectors_csv()));
     files.push(File::new("README.md", crate::readme::readme(&subject, to, &files)));
     files.push(File::new(crate::manifest::MANIFEST, crate::manifest::manifest(&subject, to, &files)));

@@ -5,7 +5,8 @@
 //!                            └─► tangent
 //! ```
 //!
-//! [`export`] gives the files of an export. A [`description::Description`] is one step of a model as a [`program::Program`]; a target writes it in its language.
+//! [`export`] gives the files of an export. A [`description::Description`] is one step of a model as a
+//! [`program::Program`]; a target writes it in its language.
 
 pub mod description;
 pub mod error;
@@ -17,6 +18,7 @@ mod target;
 pub mod vectors;
 
 pub use error::Error;
-pub use export::{File, Options, Target, export};
+pub use export::{File, Options, export};
 pub use manifest::{MANIFEST, files_of};
 pub use program::Precision;
+pub use target::Target;

@@ -3,7 +3,8 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::export::{File, Subject, Target};
+use crate::export::{File, Subject};
+use crate::target::Target;
 
 /// Name of the file.
 pub const MANIFEST: &str = "manifest.json";
@@ -63,8 +64,8 @@ pub(crate) fn manifest(subject: &Subject<'_>, to: Target, files: &[File]) -> Str
 
 impl<'a> Entry<'a> {
     fn of(file: &'a File) -> Self {
-        let digest = Sha256::digest(file.text.as_bytes());
+        let digest = Sha256::digest(&file.content);
         let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-        Self { path: &file.path, bytes: file.text.len(), sha256 }
+        Self { path: &file.path, bytes: file.content.len(), sha256 }
     }
 }

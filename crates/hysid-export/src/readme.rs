@@ -1,7 +1,8 @@
 //! The page that goes with an export.
 
-use crate::export::{File, Subject, Target};
+use crate::export::{File, Subject};
 use crate::program::interpreter::Machine;
+use crate::target::Target;
 use crate::vectors::Action;
 
 /// The text of `README.md`.
@@ -14,9 +15,7 @@ pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> Strin
     let list: String = files.iter().map(|file| format!("- `{}`\n", file.path)).collect();
     let (states, constants) = (subject.program().state_len(), subject.program().constants_len());
     let bytes = subject.bytes();
-    let use_it = match to {
-        Target::C => c(subject.name()),
-    };
+    let usage = (to.back_end().usage)(subject);
     format!(
         "# {name}
 
@@ -28,7 +27,9 @@ A model of hysteresis, written by Hysid from a model file.
 | constants | {constants} numbers, {} bytes |
 | operations | {} with real numbers in a step, on average over the test vectors |
 
-{use_it}
+## Use
+
+{usage}
 ## Files
 
 {list}- `manifest.json`: every file with its SHA-256 checksum
@@ -52,30 +53,4 @@ fn operations(subject: &Subject<'_>) -> u64 {
         count += 1;
     }
     machine.operations() / count.max(1)
-}
-
-fn c(name: &str) -> String {
-    format!(
-        "## Use
-
-```c
-#include \"{name}.h\"
-
-{name}_model model;
-{name}_reset(&model);
-y = {name}_step(&model, x);      /* further arguments: see {name}.h */
-```
-
-A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
-state, and `{name}_commit` once it accepts.
-
-Compile with `-ffp-contract=off` where the machine fuses products and sums: the outputs then equal those of Hysid to
-the last bit, if the C library computes `exp` and its like as that of Hysid does. `-ffast-math` is refused.
-
-```
-cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
-```
-
-"
-    )
 }

@@ -1,10 +1,53 @@
 //! The targets, one a file: each writes programs in its language.
 
-pub mod c;
+mod c;
 mod printer;
+mod python;
 
 use crate::description::Argument;
-use crate::export::Subject;
+use crate::error::Error;
+use crate::export::{File, Subject};
+
+/// Where an exported model is to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// C99.
+    C,
+    /// Python with NumPy.
+    Python,
+}
+
+impl Target {
+    /// All targets.
+    pub const ALL: [Self; 2] = [Self::C, Self::Python];
+
+    /// The target of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|target| target.name() == name)
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        self.back_end().name
+    }
+
+    pub(crate) fn back_end(self) -> &'static BackEnd {
+        match self {
+            Self::C => &c::BACK_END,
+            Self::Python => &python::BACK_END,
+        }
+    }
+}
+
+/// How models are written for a target.
+pub(crate) struct BackEnd {
+    pub name: &'static str,
+    pub has_single_precision: bool,
+    /// The files, without those that every export has.
+    pub files: fn(&Subject<'_>) -> Result<Vec<File>, Error>,
+    /// The section of the export's page that says how to use them.
+    pub usage: fn(&Subject<'_>) -> String,
+}
 
 /// Names of the arguments of a step.
 pub(crate) fn argument_names(subject: &Subject<'_>) -> Vec<String> {

@@ -73,7 +73,7 @@ impl Model {
         };
         let files = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
         let contents: Vec<(&str, &[u8])> =
-            files.iter().map(|file| (file.path.as_str(), file.text.as_bytes())).collect();
+            files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
         let destination =
             Folder { path: &folder, what: "export of Hysid", manifest: MANIFEST, listed: files_of, force };
         destination.write(&contents).map_err(not_written)?;

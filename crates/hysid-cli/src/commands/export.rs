@@ -35,7 +35,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;
     let contents: Vec<(&str, &[u8])> =
-        exported.iter().map(|file| (file.path.as_str(), file.text.as_bytes())).collect();
+        exported.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
     let destination = Folder {
         path: &folder,
         what: "export of Hysid",

@@ -4,14 +4,41 @@ mod header;
 mod self_test;
 mod source;
 
+use crate::error::Error;
 use crate::export::{File, Subject};
+use crate::target::BackEnd;
 
-/// The files of an export to C.
-pub(crate) fn files(subject: &Subject<'_>) -> Vec<File> {
+pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: true, files, usage };
+
+fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
     let name = subject.name();
-    vec![
+    Ok(vec![
         File::new(format!("{name}.h"), header::header(subject)),
         File::new(format!("{name}.c"), source::source(subject)),
         File::new(format!("{name}_test.c"), self_test::self_test(subject)),
-    ]
+    ])
+}
+
+fn usage(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    format!(
+        "```c
+#include \"{name}.h\"
+
+{name}_model model;
+{name}_reset(&model);
+y = {name}_step(&model, x);      /* further arguments: see {name}.h */
+```
+
+A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
+state, and `{name}_commit` once it accepts.
+
+Compile with `-ffp-contract=off` where the machine fuses products and sums: the outputs then equal those of Hysid to
+the last bit, if the C library computes `exp` and its like as that of Hysid does. `-ffast-math` is refused.
+
+```
+cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
+```
+"
+    )
 }

@@ -26,7 +26,7 @@ pub(crate) trait Language {
     fn element(&self, declaration: &Declaration, index: &str) -> String;
     /// A function of one number, by its name; `None` for the sign.
     fn unary(&self, function: Unary) -> Option<&'static str>;
-    /// A function of two numbers; `None` for an infix operator.
+    /// A function of two numbers; `None` for an infix operator. A quotient by a constant has its operator in any case.
     fn binary(&self, function: Binary) -> Option<&'static str>;
     /// A choice between two numbers.
     fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding);
@@ -153,6 +153,9 @@ impl<'a, L: Language> Printer<'a, L> {
                 None => (format!("-{}", self.real(a, Binding::Atom)), Binding::Sign),
                 Some(name) => (format!("{name}({})", self.real(a, Binding::Choice)), Binding::Atom),
             },
+            Real::Binary(Binary::Quotient, a, b) if matches!(**b, Real::Constant(b) if b != 0.0) => {
+                self.infix(Binary::Quotient, a, b)
+            }
             Real::Binary(function, a, b) => match language.binary(*function) {
                 None => self.infix(*function, a, b),
                 Some(name) => {

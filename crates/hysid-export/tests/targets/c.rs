@@ -1,0 +1,113 @@
+//! Exports to C: compiled without a warning, and equal to the library to the last bit.
+
+use std::fs;
+use std::process::Command;
+
+use hysid_export::{Options, Precision, Target};
+
+use crate::case::{Case, MODELS, NAME, written};
+use crate::tools::{succeeds, tool};
+
+/// Warnings are errors.
+const STRICT: [&str; 8] =
+    ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-ffp-contract=off"];
+
+/// The compilers that this machine has, of gcc and clang.
+fn compilers() -> Vec<String> {
+    ["gcc", "clang"]
+        .into_iter()
+        .filter_map(|compiler| {
+            let install = format!("run: sudo apt-get install {compiler}");
+            tool("exports to C", compiler, &["--version"], &install)
+        })
+        .collect()
+}
+
+#[test]
+fn test_vectors_agree_in_both_precisions() {
+    for compiler in compilers() {
+        for (name, model) in MODELS.iter() {
+            for precision in [Precision::Double, Precision::Single] {
+                let folder = tempfile::tempdir().unwrap();
+                let options = Options { precision, ..Options::named(NAME) };
+                written(model, Target::C, &options, folder.path());
+                succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args([
+                    "actuator.c",
+                    "actuator_test.c",
+                    "-lm",
+                    "-o",
+                    "test",
+                ]));
+                let output = succeeds(&mut Command::new(folder.path().join("test")));
+                let text = String::from_utf8_lossy(&output.stdout).into_owned();
+                assert!(text.starts_with("0 of "), "{name}, {precision:?}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_header_is_good_for_cpp() {
+    let Some(compiler) = tool("headers in C++", "g++", &["--version"], "run: sudo apt-get install g++")
+    else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let (_, model) = &MODELS[0];
+    written(model, Target::C, &Options::named(NAME), folder.path());
+    let program = "#include \"actuator.h\"\nint main() { actuator_model m; actuator_reset(&m); return actuator_step(&m, 1.0) > 1e9; }\n";
+    fs::write(folder.path().join("main.cpp"), program).unwrap();
+    succeeds(Command::new("gcc").current_dir(folder.path()).args(STRICT).args(["-c", "actuator.c"]));
+    succeeds(Command::new(compiler).current_dir(folder.path()).args([
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Werror",
+        "main.cpp",
+        "actuator.o",
+        "-lm",
+        "-o",
+        "main",
+    ]));
+    succeeds(&mut Command::new(folder.path().join("main")));
+}
+
+/// Reads rows of arguments in binary, writes outputs in binary.
+fn driver(arguments: usize) -> String {
+    let given: String = (0..arguments).map(|index| format!(", row[{index}]")).collect();
+    format!(
+        "#include <stdio.h>
+#include \"actuator.h\"
+int main(void)
+{{
+    static actuator_model model;
+    double row[{arguments}];
+    actuator_reset(&model);
+    while (fread(row, sizeof(double), {arguments}, stdin) == {arguments}) {{
+        double y = actuator_step(&model{given});
+        fwrite(&y, sizeof y, 1, stdout);
+    }}
+    return 0;
+}}
+"
+    )
+}
+
+#[test]
+fn outputs_equal_those_of_the_library_to_the_last_bit() {
+    const ROWS: usize = 20_000;
+    let Some(compiler) = compilers().into_iter().next() else { return };
+    for (name, model) in MODELS.iter() {
+        let case = Case::of(model, ROWS);
+        let folder = tempfile::tempdir().unwrap();
+        written(model, Target::C, &Options::named(NAME), folder.path());
+        fs::write(folder.path().join("driver.c"), driver(case.arguments.len())).unwrap();
+        let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
+        succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args(files));
+        let input = folder.path().join("rows");
+        fs::write(&input, case.bytes()).unwrap();
+        let output =
+            succeeds(Command::new(folder.path().join("driver")).stdin(fs::File::open(&input).unwrap()));
+        case.must_equal(name, &output.stdout);
+    }
+}

@@ -1,0 +1,85 @@
+//! Models with paths, and the outputs that the library gives.
+
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use hysid::Model;
+use hysid_export::description::{Argument, Description, RateSource};
+use hysid_export::program::Precision;
+use hysid_export::{Options, Target, export};
+
+use crate::models::{networks, path, time_step};
+
+/// A model of every kind.
+pub static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(networks);
+
+/// Name of the exported models.
+pub const NAME: &str = "actuator";
+
+/// The arguments of steps, and the outputs of the library.
+pub struct Case {
+    pub arguments: Vec<Argument>,
+    pub rows: Vec<Vec<f64>>,
+    pub expected: Vec<f64>,
+}
+
+impl Case {
+    /// A path of so many rows, with rates by backward differences.
+    pub fn of(model: &Model, rows: usize) -> Self {
+        let arguments = Description::of(model, RateSource::Backward, Precision::Double).unwrap().arguments;
+        let mut stepper = model.stepper().portable();
+        let mut time = 0.0;
+        let mut case = Self { arguments, rows: Vec::new(), expected: Vec::new() };
+        for (row, inputs) in path(rows, model.names().inputs.len()).iter().enumerate() {
+            let before = time;
+            time += time_step(row);
+            case.expected.push(stepper.step(inputs, time, None).unwrap());
+            let value = |argument: &Argument| match argument {
+                Argument::Input(input) => inputs[*input],
+                // The stepper takes time stamps, whose difference is rounded.
+                Argument::TimeStep => time - before,
+                Argument::Rate => unreachable!("rates are differences here"),
+            };
+            case.rows.push(case.arguments.iter().map(value).collect());
+        }
+        case
+    }
+
+    /// The arguments, row by row, as bytes.
+    pub fn bytes(&self) -> Vec<u8> {
+        self.rows.iter().flatten().flat_map(|value| value.to_le_bytes()).collect()
+    }
+
+    /// Compares outputs in bytes with the library's, to the last bit.
+    pub fn must_equal(&self, name: &str, bytes: &[u8]) {
+        let found = numbers(bytes);
+        assert_eq!(found.len(), self.expected.len(), "{name}");
+        for (row, (found, expected)) in found.iter().zip(&self.expected).enumerate() {
+            assert!(found.to_bits() == expected.to_bits(), "{name}, row {row}: {found:e}, not {expected:e}");
+        }
+    }
+
+    /// The largest difference of outputs in bytes from the library's, as a share of their largest magnitude.
+    pub fn difference(&self, name: &str, bytes: &[u8]) -> f64 {
+        let found = numbers(bytes);
+        assert_eq!(found.len(), self.expected.len(), "{name}");
+        let largest = self.expected.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let differences = found.iter().zip(&self.expected).map(|(found, expected)| (found - expected).abs());
+        assert!(found.iter().all(|value| value.is_finite()), "{name}");
+        differences.fold(0.0, f64::max) / largest
+    }
+}
+
+fn numbers(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()
+}
+
+/// Writes an export into a folder.
+pub fn written(model: &Model, to: Target, options: &Options, folder: &Path) {
+    for file in export(model, to, options).unwrap() {
+        let path = folder.join(file.path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, file.content).unwrap();
+    }
+}

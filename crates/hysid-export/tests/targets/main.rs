@@ -1,0 +1,9 @@
+//! Every target: its files are translated and run by the tools of the target, and give the outputs of the library.
+
+#[path = "../models/mod.rs"]
+mod models;
+
+mod c;
+mod case;
+mod python;
+mod tools;
