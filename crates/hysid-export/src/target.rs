@@ -3,6 +3,7 @@
 mod c;
 mod printer;
 mod python;
+mod rust;
 
 use crate::description::Argument;
 use crate::error::Error;
@@ -15,11 +16,13 @@ pub enum Target {
     C,
     /// Python with NumPy.
     Python,
+    /// Rust without the standard library.
+    Rust,
 }
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 2] = [Self::C, Self::Python];
+    pub const ALL: [Self; 3] = [Self::C, Self::Python, Self::Rust];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -35,6 +38,7 @@ impl Target {
         match self {
             Self::C => &c::BACK_END,
             Self::Python => &python::BACK_END,
+            Self::Rust => &rust::BACK_END,
         }
     }
 }

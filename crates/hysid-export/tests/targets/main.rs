@@ -6,4 +6,5 @@ mod models;
 mod c;
 mod case;
 mod python;
+mod rust;
 mod tools;
