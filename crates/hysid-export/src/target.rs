@@ -1,6 +1,7 @@
 //! The targets, one a file: each writes programs in its language.
 
 mod c;
+mod matlab;
 mod printer;
 mod python;
 mod rust;
@@ -14,6 +15,8 @@ use crate::export::{File, Subject};
 pub enum Target {
     /// C99.
     C,
+    /// MATLAB without toolboxes, and GNU Octave.
+    Matlab,
     /// Python with NumPy.
     Python,
     /// Rust without the standard library.
@@ -22,7 +25,7 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 3] = [Self::C, Self::Python, Self::Rust];
+    pub const ALL: [Self; 4] = [Self::C, Self::Matlab, Self::Rust, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -37,6 +40,7 @@ impl Target {
     pub(crate) fn back_end(self) -> &'static BackEnd {
         match self {
             Self::C => &c::BACK_END,
+            Self::Matlab => &matlab::BACK_END,
             Self::Python => &python::BACK_END,
             Self::Rust => &rust::BACK_END,
         }

@@ -3,7 +3,7 @@
 use crate::program::expression::{Real, RealVariable, Truth, Whole};
 use crate::program::{Program, Statement};
 
-/// The program without [`Real::Choice`]. Conditions of loops must have none.
+/// The program without [`Real::Choice`].
 pub fn without_choices(program: &Program) -> Program {
     let mut lowered = program.clone();
     let mut next = Next { reals: program.reals };
@@ -40,7 +40,7 @@ impl Next {
                     let (first, last) = (self.whole(first, &mut block), self.whole(last, &mut block));
                     Statement::Each(*variable, first, last, self.block(body))
                 }
-                Statement::While(condition, body) => Statement::While(condition.clone(), self.block(body)),
+                Statement::While(condition, body) => self.repeated(condition, body, &mut block),
                 Statement::If(condition, yes, no) => {
                     let condition = self.truth(condition, &mut block);
                     Statement::If(condition, self.block(yes), self.block(no))
@@ -50,6 +50,21 @@ impl Next {
             block.push(lowered);
         }
         block
+    }
+
+    /// A loop; its condition is computed in the body if it has choices.
+    fn repeated(&mut self, condition: &Truth, body: &[Statement], before: &mut Vec<Statement>) -> Statement {
+        let mut first = Vec::new();
+        let lowered = self.truth(condition, &mut first);
+        if first.is_empty() {
+            return Statement::While(lowered, self.block(body));
+        }
+        let goes_on = RealVariable(self.reals);
+        self.reals += 1;
+        before.push(Statement::Let(goes_on, Real::Constant(1.0)));
+        let stop = vec![Statement::Assign(goes_on, Real::Constant(0.0))];
+        first.push(Statement::If(lowered, self.block(body), stop));
+        Statement::While(Real::from(goes_on).above(0.0), first)
     }
 
     fn real(&mut self, value: &Real, before: &mut Vec<Statement>) -> Real {

@@ -5,6 +5,7 @@ mod models;
 
 mod c;
 mod case;
+mod matlab;
 mod python;
 mod rust;
 mod tools;

@@ -1,0 +1,426 @@
+//! MATLAB: one function file, a System object, and a function that tests the first.
+
+use std::fmt::Write as _;
+
+use crate::error::Error;
+use crate::export::{File, Subject};
+use crate::program::choices::without_choices;
+use crate::program::expression::{Binary, Unary};
+use crate::program::unused::used_arrays;
+use crate::program::{Declaration, Program, Storage};
+use crate::target::printer::{Binding, Language, Printer};
+use crate::target::{BackEnd, argument_names};
+use crate::vectors::Action;
+
+pub(super) const BACK_END: BackEnd = BackEnd { name: "matlab", has_single_precision: false, files, usage };
+
+fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+    let name = subject.name();
+    Ok(vec![
+        File::new(format!("{name}.m"), function_file(subject)),
+        File::new(format!("{name}_system.m"), system_object(subject)),
+        File::new(format!("{name}_test.m"), self_test(subject)),
+    ])
+}
+
+fn usage(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let arguments = argument_names(subject).join(", ");
+    format!(
+        "Put `{name}.m` where MATLAB or GNU Octave finds it. No toolbox is needed.
+
+```matlab
+state = {name}();                               % the initial state, a column of numbers
+[y, state] = {name}(state, {arguments});        % a step
+[y, next, slope] = {name}(state, {arguments});  % a trial: state stays as it is
+state = next;                                   % commit
+```
+
+A state is a value: keeping it saves it, and using it again restores it. `{name}_test` runs the test vectors.
+
+In Simulink, a MATLAB Function block with a persistent variable simulates the model:
+
+```matlab
+function y = hysteresis({arguments})
+persistent state
+if isempty(state)
+    state = {name}();
+end
+[y, state] = {name}(state, {arguments});
+end
+```
+
+`{name}_system.m` is the same as a System object, for `step` in a loop and for the MATLAB System block. Hysid's tests
+run the function with GNU Octave, which has no System objects: **the class has not been run.**
+"
+    )
+}
+
+fn function_file(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let matlab = Matlab { arguments: argument_names(subject) };
+    let arguments = matlab.arguments.join(", ");
+    let facts: String = subject.facts().iter().map(|(fact, text)| format!("%   {fact}: {text}\n")).collect();
+    let (step, tangent) = (without_choices(subject.program()), without_choices(subject.tangent()));
+    let initial: Vec<f64> = step.states().flat_map(|(_, _, values)| values.iter().copied()).collect();
+    let mut text = format!(
+        "function [y, state, slope] = {name}(state, {arguments})
+%{upper}  A model of hysteresis, written by Hysid.
+%   STATE = {upper}() gives the initial state, a column of numbers.
+%   [Y, NEXT] = {upper}(STATE, {upper_arguments}) gives the output of a step from
+%   STATE, and the state after it.
+%   [Y, NEXT, SLOPE] = {upper}(STATE, {upper_arguments}) gives also the slope of Y
+%   by X; at a kink that of the branch taken.
+%
+{facts}%
+%   Values are in the units of the columns above. Inputs must be finite.
+
+if nargin == 0
+    y = {initial};
+elseif nargout < 3
+    [y, state] = advance(state, {arguments});
+else
+    [y, state, slope] = advance_with_tangent(state, {arguments});
+end
+end
+
+",
+        upper = name.to_uppercase(),
+        upper_arguments = arguments.to_uppercase(),
+        initial = matlab.column(&initial, "        "),
+    );
+    text += &function(&matlab, &step, "advance", false);
+    text += &function(&matlab, &tangent, "advance_with_tangent", true);
+    text += OWN_FUNCTIONS;
+    text
+}
+
+const OWN_FUNCTIONS: &str = "function a = rounded(a)
+% The next whole number: the sum has no digits behind the point.
+a = (a + 6755399441056767.0) - 6755399441056767.0;
+end
+
+function a = with_sign(a, b)
+% The magnitude of a with the sign of b.
+a = abs(a);
+if b < 0 || (b == 0 && 1 / b < 0)
+    a = -a;
+end
+end
+";
+
+fn function(matlab: &Matlab, program: &Program, name: &str, with_tangent: bool) -> String {
+    let slope = if with_tangent { ", slope" } else { "" };
+    let mut text = format!("function [y, state{slope}] = {name}(state, {})\n", matlab.arguments.join(", "));
+    let used = used_arrays(program);
+    for array in &used {
+        let declaration = program.declaration(*array);
+        let array = matlab.array(declaration);
+        let _ = match &declaration.storage {
+            Storage::Constant(values) => writeln!(
+                text,
+                "persistent {array}\nif isempty({array})\n    {array} = {};\nend",
+                matlab.column(values, "        ")
+            ),
+            Storage::Scratch(length) | Storage::Output(length) => {
+                writeln!(text, "{array} = zeros({length}, 1);")
+            }
+            Storage::State(_) | Storage::Argument(_) => Ok(()),
+        };
+    }
+    let mut position = 0;
+    let mut states = Vec::new();
+    for (array, _, values) in program.states() {
+        let array = matlab.array(program.declaration(array));
+        let _ = writeln!(text, "{array} = state({}:{});", position + 1, position + values.len());
+        position += values.len();
+        states.push(array);
+    }
+    text += &Printer::new(matlab, program).body(0);
+    let _ = writeln!(text, "state = [{}];", states.join("; "));
+    let output = matlab.array(program.declaration(program.outputs));
+    if with_tangent {
+        let _ = writeln!(text, "slope = {output}({});", program.declaration(program.outputs).storage.len());
+    }
+    let _ = writeln!(text, "y = {output}(1);\nend\n");
+    text
+}
+
+fn system_object(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let arguments = argument_names(subject).join(", ");
+    let count = argument_names(subject).len();
+    let names = argument_names(subject).iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+    let outputs = (1..=count).map(|index| format!("name{index}")).collect::<Vec<_>>().join(", ");
+    format!(
+        "classdef {name}_system < matlab.System
+%{upper}_SYSTEM  The model of hysteresis of {name}.m as a System object.
+%   MODEL = {name}_system() is in the initial state. Y = MODEL({arguments}) is a
+%   step. [Y, SLOPE] = TRIAL(MODEL, {arguments}) is a trial from the committed
+%   state, COMMIT(MODEL) accepts the last one, REVERT(MODEL) forgets it.
+
+    properties (DiscreteState)
+        State
+    end
+
+    properties (Access = private)
+        Trial = []
+    end
+
+    methods
+        function [y, slope] = trial(obj, {arguments})
+            state = obj.State;
+            if isempty(state)
+                state = {name}();
+            end
+            [y, obj.Trial, slope] = {name}(state, {arguments});
+        end
+
+        function commit(obj)
+            if ~isempty(obj.Trial)
+                obj.State = obj.Trial;
+                obj.Trial = [];
+            end
+        end
+
+        function revert(obj)
+            obj.Trial = [];
+        end
+    end
+
+    methods (Access = protected)
+        function setupImpl(obj, varargin)
+            obj.State = {name}();
+        end
+
+        function y = stepImpl(obj, {arguments})
+            obj.Trial = [];
+            [y, obj.State] = {name}(obj.State, {arguments});
+        end
+
+        function resetImpl(obj)
+            obj.State = {name}();
+            obj.Trial = [];
+        end
+
+        function count = getNumInputsImpl(~)
+            count = {count};
+        end
+
+        function [{outputs}] = getInputNamesImpl(~)
+            names = {{{names}}};
+            [{outputs}] = names{{:}};
+        end
+
+        function [size, type, is_complex] = getDiscreteStateSpecificationImpl(~, ~)
+            size = [numel({name}()), 1];
+            type = 'double';
+            is_complex = false;
+        end
+    end
+end
+",
+        upper = name.to_uppercase(),
+    )
+}
+
+fn self_test(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let count = argument_names(subject).len();
+    let number = |value: f64| format!("{value:?}");
+    let rows: String = subject
+        .vectors()
+        .iter()
+        .map(|vector| {
+            let mut numbers: Vec<String> = vector.arguments.iter().copied().map(number).collect();
+            numbers.resize(count, "0".into());
+            numbers.extend([number(vector.output), number(vector.tangent)]);
+            format!("    {}, {}\n", code(vector.action), numbers.join(", "))
+        })
+        .collect();
+    let (low, high) = subject.model().trained_ranges().output;
+    let scale = 0.5 * (high - low);
+    let given: String = (0..count).map(|index| format!(", v({})", index + 2)).collect();
+    format!(
+        "function {name}_test()
+%{upper}_TEST  Compares {name}.m with the test vectors; an error if they differ.
+
+% Action, arguments, output, slope. Actions: 1 reset, 2 trial, 3 commit, 4 revert, 5 step, 6 save, 7 restore.
+vectors = [
+{rows}];
+
+scale = {scale:?};
+state = {name}();
+saved = state;
+next = state;
+largest = 0;
+for row = 1:size(vectors, 1)
+    v = vectors(row, :);
+    switch v(1)
+        case 1
+            state = {name}();
+        case 2
+            [y, next, slope] = {name}(state{given});
+            largest = max([largest, abs(y - v({output})) / scale]);
+            largest = max([largest, abs(slope - v({tangent})) / (scale + abs(v({tangent})))]);
+            [y, next] = {name}(state{given});
+            largest = max([largest, abs(y - v({output})) / scale]);
+        case 3
+            state = next;
+        case 4
+            next = state;
+        case 5
+            [y, state] = {name}(state{given});
+            largest = max([largest, abs(y - v({output})) / scale]);
+        case 6
+            saved = state;
+        case 7
+            state = saved;
+    end
+end
+fprintf('%d test vectors, largest difference %.1e of half the trained range\\n', size(vectors, 1), largest);
+if ~(largest <= 1e-9)
+    error('{name} differs from its test vectors');
+end
+end
+",
+        upper = name.to_uppercase(),
+        output = count + 2,
+        tangent = count + 3,
+    )
+}
+
+fn code(action: Action) -> usize {
+    match action {
+        Action::Reset => 1,
+        Action::Trial => 2,
+        Action::Commit => 3,
+        Action::Revert => 4,
+        Action::Step => 5,
+        Action::Save => 6,
+        Action::Restore => 7,
+    }
+}
+
+/// The language.
+struct Matlab {
+    arguments: Vec<String>,
+}
+
+impl Matlab {
+    /// The name of an array, apart from keywords and functions.
+    fn array(&self, declaration: &Declaration) -> String {
+        let kind = match declaration.storage {
+            Storage::Constant(_) => "c",
+            Storage::State(_) => "s",
+            _ => "w",
+        };
+        format!("{kind}_{}", declaration.name)
+    }
+
+    /// A column of numbers.
+    fn column(&self, values: &[f64], indent: &str) -> String {
+        const IN_A_LINE: usize = 4;
+        let numbers: Vec<String> = values.iter().map(|value| self.number(*value)).collect();
+        let lines: Vec<String> =
+            numbers.chunks(IN_A_LINE).map(|line| format!("{indent}{}", line.join("; "))).collect();
+        format!("[\n{}]", lines.join(";\n"))
+    }
+}
+
+impl Language for Matlab {
+    fn number(&self, value: f64) -> String {
+        match value.is_infinite() {
+            true => if value < 0.0 { "-Inf" } else { "Inf" }.to_string(),
+            false => format!("{value:?}"),
+        }
+    }
+
+    fn element(&self, declaration: &Declaration, index: &str) -> String {
+        let constant = index.parse::<usize>();
+        match (&declaration.storage, constant) {
+            (Storage::Argument(_), Ok(index)) => self.arguments[index].clone(),
+            (_, Ok(index)) => format!("{}({})", self.array(declaration), index + 1),
+            (_, Err(_)) => format!("{}({index} + 1)", self.array(declaration)),
+        }
+    }
+
+    fn unary(&self, function: Unary) -> Option<&'static str> {
+        Some(match function {
+            Unary::Negative => return None,
+            Unary::Magnitude => "abs",
+            Unary::SquareRoot => "sqrt",
+            Unary::Exp => "exp",
+            Unary::ExpMinusOne => "expm1",
+            Unary::Ln => "log",
+            Unary::LnOnePlus => "log1p",
+            Unary::Tanh => "tanh",
+            Unary::InverseSinh => "asinh",
+            Unary::Ceiling => "ceil",
+            Unary::Rounded => "rounded",
+            Unary::PowerOfTwo => "pow2",
+        })
+    }
+
+    fn binary(&self, function: Binary) -> Option<&'static str> {
+        match function {
+            Binary::Sum | Binary::Difference | Binary::Product | Binary::Quotient => None,
+            Binary::Power => Some("power"),
+            Binary::CopySign => Some("with_sign"),
+            Binary::Hypotenuse => Some("hypot"),
+        }
+    }
+
+    /// Not written: programs for MATLAB have no choices in expressions.
+    fn choice(&self, condition: &str, yes: &str, no: &str) -> (String, Binding) {
+        (format!("choose({condition}, {yes}, {no})"), Binding::Atom)
+    }
+
+    fn logic(&self) -> [&'static str; 3] {
+        ["&&", "||", "~"]
+    }
+
+    fn to_whole(&self, real: &str) -> String {
+        format!("fix({real})")
+    }
+
+    fn to_real(&self, whole: &str) -> String {
+        whole.to_string()
+    }
+
+    fn declare(&self, variable: &str, value: &str, _: bool) -> String {
+        self.assign(variable, value)
+    }
+
+    fn declare_whole(&self, variable: &str, value: &str) -> String {
+        self.assign(variable, value)
+    }
+
+    fn assign(&self, to: &str, value: &str) -> String {
+        format!("{to} = {value};")
+    }
+
+    fn remark(&self, text: &str) -> String {
+        format!("% {text}")
+    }
+
+    fn each(&self, variable: &str, first: &str, last: &str) -> String {
+        format!("for {variable} = {first}:{last} - 1")
+    }
+
+    fn while_true(&self, condition: &str) -> String {
+        format!("while {condition}")
+    }
+
+    fn when(&self, condition: &str) -> String {
+        format!("if {condition}")
+    }
+
+    fn otherwise(&self) -> &'static str {
+        "else"
+    }
+
+    fn end(&self) -> Option<&'static str> {
+        Some("end")
+    }
+}
