@@ -12,6 +12,12 @@ pub enum Error {
     /// A name that is no identifier of the target's language.
     #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
     Name(String),
+    /// The C compiler failed.
+    #[error("the C compiler failed: {0}")]
+    Compiler(String),
+    /// An archive was not written.
+    #[error("the archive cannot be written: {0}")]
+    Archive(String),
     /// Single precision for a target that computes in double precision.
     #[error("{0} computes in double precision: leave the precision at f64")]
     Precision(&'static str),

@@ -8,7 +8,7 @@ use crate::program::interpreter::Machine;
 use crate::program::tangent::with_tangent;
 use crate::program::unused::without_unused;
 use crate::program::{Precision, Program};
-use crate::target::{self, Target};
+use crate::target::{self, FmiVersion, Target, Written};
 use crate::vectors::{Action, Vector, vectors};
 
 /// What is asked for.
@@ -20,6 +20,8 @@ pub struct Options {
     pub precision: Precision,
     /// How a model that needs the rate gets it.
     pub rate: RateSource,
+    /// Version of a Functional Mock-up Unit.
+    pub fmi: FmiVersion,
     /// Facts about the source that the model itself does not have, as they are to be shown: its file, the date.
     pub source: Vec<(String, String)>,
 }
@@ -31,6 +33,7 @@ impl Options {
             name: name.into(),
             precision: Precision::default(),
             rate: RateSource::default(),
+            fmi: FmiVersion::default(),
             source: Vec::new(),
         }
     }
@@ -51,21 +54,30 @@ impl File {
     }
 }
 
-/// Exports a model: the files that belong in one folder.
+/// An export.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Export {
+    /// The files that belong in one folder.
+    pub files: Vec<File>,
+    /// What the user must know.
+    pub note: Option<String>,
+}
+
+/// Exports a model.
 ///
 /// # Errors
 /// A name that is no identifier; a precision that the target does not have; a model that cannot be exported there.
-pub fn export(model: &Model, to: Target, options: &Options) -> Result<Vec<File>, Error> {
+pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Error> {
     let back_end = to.back_end();
     if options.precision == Precision::Single && !back_end.has_single_precision {
         return Err(Error::Precision(back_end.name));
     }
     let subject = Subject::of(model, options)?;
-    let mut files = (back_end.files)(&subject)?;
+    let Written { mut files, note } = (back_end.write)(&subject)?;
     files.push(File::new("test_vectors.csv", subject.vectors_csv()));
     files.push(File::new("README.md", crate::readme::readme(&subject, to, &files)));
     files.push(File::new(crate::manifest::MANIFEST, crate::manifest::manifest(&subject, to, &files)));
-    Ok(files)
+    Ok(Export { files, note })
 }
 
 /// A model with all that targets write of it.
@@ -103,6 +115,10 @@ impl<'m> Subject<'m> {
 
     pub fn precision(&self) -> Precision {
         self.options.precision
+    }
+
+    pub fn fmi(&self) -> FmiVersion {
+        self.options.fmi
     }
 
     pub fn description(&self) -> &Description {

@@ -18,7 +18,7 @@ mod target;
 pub mod vectors;
 
 pub use error::Error;
-pub use export::{File, Options, export};
+pub use export::{Export, File, Options, export};
 pub use manifest::{MANIFEST, files_of};
 pub use program::Precision;
-pub use target::Target;
+pub use target::{FmiVersion, Target};

@@ -64,8 +64,11 @@ pub(crate) fn manifest(subject: &Subject<'_>, to: Target, files: &[File]) -> Str
 
 impl<'a> Entry<'a> {
     fn of(file: &'a File) -> Self {
-        let digest = Sha256::digest(&file.content);
-        let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-        Self { path: &file.path, bytes: file.content.len(), sha256 }
+        Self { path: &file.path, bytes: file.content.len(), sha256: checksum(&file.content) }
     }
+}
+
+/// The SHA-256 checksum in hexadecimal digits.
+pub(crate) fn checksum(content: &[u8]) -> String {
+    Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect()
 }

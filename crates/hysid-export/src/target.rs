@@ -1,10 +1,13 @@
 //! The targets, one a file: each writes programs in its language.
 
 mod c;
+mod fmu;
 mod matlab;
 mod printer;
 mod python;
 mod rust;
+
+pub use fmu::Version as FmiVersion;
 
 use crate::description::Argument;
 use crate::error::Error;
@@ -15,6 +18,8 @@ use crate::export::{File, Subject};
 pub enum Target {
     /// C99.
     C,
+    /// A Functional Mock-up Unit.
+    Fmu,
     /// MATLAB without toolboxes, and GNU Octave.
     Matlab,
     /// Python with NumPy.
@@ -25,7 +30,7 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 4] = [Self::C, Self::Matlab, Self::Rust, Self::Python];
+    pub const ALL: [Self; 5] = [Self::C, Self::Fmu, Self::Matlab, Self::Rust, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -40,6 +45,7 @@ impl Target {
     pub(crate) fn back_end(self) -> &'static BackEnd {
         match self {
             Self::C => &c::BACK_END,
+            Self::Fmu => &fmu::BACK_END,
             Self::Matlab => &matlab::BACK_END,
             Self::Python => &python::BACK_END,
             Self::Rust => &rust::BACK_END,
@@ -51,10 +57,23 @@ impl Target {
 pub(crate) struct BackEnd {
     pub name: &'static str,
     pub has_single_precision: bool,
-    /// The files, without those that every export has.
-    pub files: fn(&Subject<'_>) -> Result<Vec<File>, Error>,
+    /// Writes the files, without those that every export has.
+    pub write: fn(&Subject<'_>) -> Result<Written, Error>,
     /// The section of the export's page that says how to use them.
     pub usage: fn(&Subject<'_>) -> String,
+}
+
+/// What a back end wrote.
+pub(crate) struct Written {
+    pub files: Vec<File>,
+    /// What the user must know.
+    pub note: Option<String>,
+}
+
+impl From<Vec<File>> for Written {
+    fn from(files: Vec<File>) -> Self {
+        Self { files, note: None }
+    }
 }
 
 /// Names of the arguments of a step.

@@ -71,7 +71,8 @@ impl Model {
             rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
             ..Options::named(name)
         };
-        let files = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
+        let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
+        let files = exported.files;
         let contents: Vec<(&str, &[u8])> =
             files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
         let destination =

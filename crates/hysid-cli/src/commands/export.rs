@@ -35,7 +35,7 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;
     let contents: Vec<(&str, &[u8])> =
-        exported.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
+        exported.files.iter().map(|file| (file.path.as_str(), file.content.as_slice())).collect();
     let destination = Folder {
         path: &folder,
         what: "export of Hysid",
@@ -45,9 +45,9 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     };
     destination.write(&contents).map_err(files::explained)?;
     match arguments.json {
-        true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
+        true => json_results(&Printed::of(&folder, arguments, &options, &exported.files))?,
         false => {
-            let (shown, files) = (files::shown(&folder), count(exported.len(), "file"));
+            let (shown, files) = (files::shown(&folder), count(exported.files.len(), "file"));
             note(format_args!("wrote {shown}: {files}; {shown}/README.md says how to use them"));
         }
     }

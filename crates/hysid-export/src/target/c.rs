@@ -6,17 +6,23 @@ mod source;
 
 use crate::error::Error;
 use crate::export::{File, Subject};
-use crate::target::BackEnd;
+use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: true, files, usage };
+pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: true, write, usage };
 
-fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+    let mut files = sources(subject);
+    files.push(File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject)));
+    Ok(files.into())
+}
+
+/// The header and the source file.
+pub(super) fn sources(subject: &Subject<'_>) -> Vec<File> {
     let name = subject.name();
-    Ok(vec![
+    vec![
         File::new(format!("{name}.h"), header::header(subject)),
         File::new(format!("{name}.c"), source::source(subject)),
-        File::new(format!("{name}_test.c"), self_test::self_test(subject)),
-    ])
+    ]
 }
 
 fn usage(subject: &Subject<'_>) -> String {

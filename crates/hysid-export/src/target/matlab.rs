@@ -9,18 +9,19 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Declaration, Program, Storage};
 use crate::target::printer::{Binding, Language, Printer};
-use crate::target::{BackEnd, argument_names};
+use crate::target::{BackEnd, Written, argument_names};
 use crate::vectors::Action;
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "matlab", has_single_precision: false, files, usage };
+pub(super) const BACK_END: BackEnd = BackEnd { name: "matlab", has_single_precision: false, write, usage };
 
-fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();
     Ok(vec![
         File::new(format!("{name}.m"), function_file(subject)),
         File::new(format!("{name}_system.m"), system_object(subject)),
         File::new(format!("{name}_test.m"), self_test(subject)),
-    ])
+    ]
+    .into())
 }
 
 fn usage(subject: &Subject<'_>) -> String {

@@ -10,16 +10,17 @@ use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Program, Storage};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
-use crate::target::{BackEnd, argument_names};
+use crate::target::{BackEnd, Written, argument_names};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "python", has_single_precision: false, files, usage };
+pub(super) const BACK_END: BackEnd = BackEnd { name: "python", has_single_precision: false, write, usage };
 
-fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();
     Ok(vec![
         File::new(format!("{name}.py"), module(subject)),
         File::new(format!("{name}_test.py"), self_test(subject)),
-    ])
+    ]
+    .into())
 }
 
 fn usage(subject: &Subject<'_>) -> String {

@@ -10,16 +10,17 @@ use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
-use crate::target::{BackEnd, argument_names};
+use crate::target::{BackEnd, Written, argument_names};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "rust", has_single_precision: true, files, usage };
+pub(super) const BACK_END: BackEnd = BackEnd { name: "rust", has_single_precision: true, write, usage };
 
-fn files(subject: &Subject<'_>) -> Result<Vec<File>, Error> {
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();
     Ok(vec![
         File::new(format!("{name}.rs"), module(subject)),
         File::new(format!("{name}_test.rs"), self_test(subject)),
-    ])
+    ]
+    .into())
 }
 
 fn usage(subject: &Subject<'_>) -> String {

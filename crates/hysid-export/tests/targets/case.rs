@@ -46,6 +46,11 @@ impl Case {
         case
     }
 
+    /// True if the last argument is the time step.
+    pub fn has_time(&self) -> bool {
+        self.arguments.last() == Some(&Argument::TimeStep)
+    }
+
     /// The arguments, row by row, as bytes.
     pub fn bytes(&self) -> Vec<u8> {
         self.rows.iter().flatten().flat_map(|value| value.to_le_bytes()).collect()
@@ -77,7 +82,7 @@ fn numbers(bytes: &[u8]) -> Vec<f64> {
 
 /// Writes an export into a folder.
 pub fn written(model: &Model, to: Target, options: &Options, folder: &Path) {
-    for file in export(model, to, options).unwrap() {
+    for file in export(model, to, options).unwrap().files {
         let path = folder.join(file.path);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, file.content).unwrap();

@@ -5,6 +5,7 @@ mod models;
 
 mod c;
 mod case;
+mod fmu;
 mod matlab;
 mod python;
 mod rust;

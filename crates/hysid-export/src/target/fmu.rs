@@ -1,0 +1,117 @@
+//! A Functional Mock-up Unit for co-simulation: the C code with the functions of the standard around it.
+
+mod binary;
+mod description;
+mod self_test;
+mod wrapper;
+
+use std::io::{Cursor, Write as _};
+
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use crate::error::Error;
+use crate::export::{File, Subject};
+use crate::target::{BackEnd, Written, c};
+
+pub(super) const BACK_END: BackEnd = BackEnd { name: "fmu", has_single_precision: false, write, usage };
+
+/// Version of the Functional Mock-up Interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Version {
+    /// FMI 3.0
+    #[default]
+    Three,
+    /// FMI 2.0
+    Two,
+}
+
+impl Version {
+    /// `3.0` or `2.0`.
+    pub fn number(self) -> &'static str {
+        match self {
+            Self::Three => "3.0",
+            Self::Two => "2.0",
+        }
+    }
+
+    /// Name of the source file with its functions.
+    fn source(self) -> &'static str {
+        match self {
+            Self::Three => "fmi3.c",
+            Self::Two => "fmi2.c",
+        }
+    }
+}
+
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+    let (name, version) = (subject.name(), subject.fmi());
+    let mut sources = c::sources(subject);
+    // Files that differ have tokens that differ.
+    let token =
+        crate::manifest::checksum(&sources.iter().flat_map(|file| file.content.clone()).collect::<Vec<_>>());
+    sources.push(File::new(version.source(), wrapper::wrapper(subject, version, &token)));
+    let binary = binary::binary(name, version, &sources)?;
+    let note = match binary {
+        Some(_) => None,
+        None => Some(format!(
+            "{name}.fmu has source code only, because there is no C compiler here (cc, gcc or clang; the environment \
+             variable CC names another)"
+        )),
+    };
+    let mut content =
+        vec![File::new("modelDescription.xml", description::model_description(subject, version, &token))];
+    content.extend(binary);
+    if version == Version::Three {
+        content.push(File::new("sources/buildDescription.xml", description::build_description(name)));
+    }
+    content.extend(sources.into_iter().map(|file| File::new(format!("sources/{}", file.path), file.content)));
+    let archive = zipped(&content).map_err(|error| Error::Archive(error.to_string()))?;
+    let files = vec![
+        File::new(format!("{name}.fmu"), archive),
+        File::new(format!("{name}_test.py"), self_test::self_test(subject)),
+    ];
+    Ok(Written { files, note })
+}
+
+/// An archive of files. It has no dates, so that the same model gives the same archive.
+fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default()
+        .compression_method(zip::CompressionMethod::Stored)
+        .last_modified_time(zip::DateTime::default());
+    for file in files {
+        archive.start_file(file.path.as_str(), options)?;
+        archive.write_all(&file.content)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+fn usage(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let names = description::variable_names(subject);
+    let (output, inputs) = names.split_last().map_or((String::new(), Vec::new()), |(last, rest)| {
+        (format!("`{last}`"), rest.iter().map(|name| format!("`{name}`")).collect())
+    });
+    format!(
+        "`{name}.fmu` is a unit for co-simulation with FMI {version}: inputs {inputs}, output {output}. It has its source
+code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
+
+A row of the model is the inputs at a communication point. A step from there commits them. The output after inputs were
+set is that of these inputs; an importer that reads it before it sets new ones, at the end of a step, reads the output
+of the inputs at the step's beginning. The communication step may vary. A model that depends on the rate forms it from
+the inputs of two communication points: choose steps like those of the training data.
+
+The state can be saved, restored and serialised. The directional derivative is that of the output by the first input.
+
+```
+python -m pip install fmpy
+python {name}_test.py
+```
+
+runs the test vectors.
+",
+        version = subject.fmi().number(),
+        inputs = inputs.join(", "),
+    )
+}

@@ -1,0 +1,254 @@
+//! `modelDescription.xml`: variables with units, and what the FMU can do.
+
+use std::collections::BTreeSet;
+
+use hysid_core::data::unit;
+
+use crate::description::Argument;
+use crate::export::Subject;
+use crate::target::fmu::Version;
+
+/// Value references: the time has 0, then come the inputs, in the order of the step's arguments without the time step.
+pub(super) const FIRST_INPUT: usize = 1;
+
+/// Value reference of the output.
+pub(super) const OUTPUT: usize = 1000;
+
+/// A variable of the FMU.
+struct Variable {
+    name: String,
+    unit: Option<String>,
+    description: String,
+}
+
+/// Values of the inputs before they are set: within the trained ranges, next to 0.
+pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
+    let ranges = subject.model().trained_ranges();
+    let of = |argument: &Argument| match *argument {
+        Argument::Input(input) => {
+            let (low, high) = ranges.inputs[input];
+            Some(0f64.clamp(low, high))
+        }
+        Argument::TimeStep => None,
+        Argument::Rate => Some(0.0),
+    };
+    subject.description().arguments.iter().filter_map(of).collect()
+}
+
+/// The inputs and, last, the output.
+fn variables(subject: &Subject<'_>) -> Vec<Variable> {
+    let names = subject.model().names();
+    let time = names.time.as_deref().and_then(unit::of_column);
+    let of = |argument: &Argument| match *argument {
+        Argument::Input(input) => Some(Variable {
+            name: names.inputs[input].clone(),
+            unit: unit::of_column(&names.inputs[input]),
+            description: format!("input {}", input + 1),
+        }),
+        Argument::TimeStep => None,
+        Argument::Rate => Some(Variable {
+            name: format!("rate of {}", names.inputs[0]),
+            unit: match (unit::of_column(&names.inputs[0]), &time) {
+                (Some(of), Some(time)) => Some(format!("{of}/{time}")),
+                _ => None,
+            },
+            description: "rate of the first input per unit of time".into(),
+        }),
+    };
+    let mut all: Vec<Variable> = subject.description().arguments.iter().filter_map(of).collect();
+    all.push(Variable {
+        name: names.output.clone(),
+        unit: unit::of_column(&names.output),
+        description: "output".into(),
+    });
+    let mut taken = BTreeSet::from(["time".to_string()]);
+    for variable in &mut all {
+        while !taken.insert(variable.name.clone()) {
+            variable.name.push('_');
+        }
+    }
+    all
+}
+
+/// Names of the inputs and, last, of the output.
+pub(super) fn variable_names(subject: &Subject<'_>) -> Vec<String> {
+    variables(subject).into_iter().map(|variable| variable.name).collect()
+}
+
+/// The text of the file.
+pub(super) fn model_description(subject: &Subject<'_>, version: Version, token: &str) -> String {
+    match version {
+        Version::Three => version_three(subject, token),
+        Version::Two => version_two(subject, token),
+    }
+}
+
+fn version_three(subject: &Subject<'_>, token: &str) -> String {
+    let variables = variables(subject);
+    let mut lines = vec![
+        "    <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"/>"
+            .to_string(),
+    ];
+    for (index, (variable, kind)) in variables.iter().zip(kinds(subject)).enumerate() {
+        let reference = reference(index, &variables);
+        lines.push(format!(
+            "    <Float64 name=\"{}\" valueReference=\"{reference}\" {}{} description=\"{}\"/>",
+            escaped(&variable.name),
+            kind,
+            unit_of(variable),
+            variable.description
+        ));
+    }
+    let inputs: Vec<String> =
+        (0..variables.len() - 1).map(|index| (FIRST_INPUT + index).to_string()).collect();
+    let inputs = inputs.join(" ");
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"
+  description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\">
+  <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
+    canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" providesDirectionalDerivatives=\"true\"
+    providesAdjointDerivatives=\"true\" providesPerElementDependencies=\"true\"/>
+{units}  <LogCategories>
+    <Category name=\"logStatusError\" description=\"errors\"/>
+  </LogCategories>
+  <DefaultExperiment startTime=\"0\"/>
+  <ModelVariables>
+{lines}
+  </ModelVariables>
+  <ModelStructure>
+    <Output valueReference=\"{OUTPUT}\" dependencies=\"{inputs}\"/>
+    <InitialUnknown valueReference=\"{OUTPUT}\" dependencies=\"{inputs}\"/>
+  </ModelStructure>
+</fmiModelDescription>
+",
+        name = subject.name(),
+        description = summary(subject),
+        tool = env!("CARGO_PKG_VERSION"),
+        units = units(&variables),
+        lines = lines.join("\n"),
+    )
+}
+
+fn version_two(subject: &Subject<'_>, token: &str) -> String {
+    let variables = variables(subject);
+    let name = subject.name();
+    let lines: Vec<String> = variables
+        .iter()
+        .zip(kinds(subject))
+        .enumerate()
+        .map(|(index, (variable, kind))| {
+            let (kind, start) =
+                kind.split_once(" start=").map_or((kind.as_str(), None), |(a, b)| (a, Some(b)));
+            let start = start.map_or(String::new(), |start| format!(" start={start}"));
+            format!(
+                "    <ScalarVariable name=\"{}\" valueReference=\"{}\" {kind} description=\"{}\">\n      \
+                 <Real{}{start}/>\n    </ScalarVariable>",
+                escaped(&variable.name),
+                reference(index, &variables),
+                variable.description,
+                unit_of(variable),
+            )
+        })
+        .collect();
+    // In version 2, dependencies are places in the list of variables, from 1 on.
+    let inputs: Vec<String> = (1..variables.len()).map(|place| place.to_string()).collect();
+    let (inputs, output) = (inputs.join(" "), variables.len());
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\"
+  description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\"
+  numberOfEventIndicators=\"0\">
+  <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
+    canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"true\"
+    canNotUseMemoryManagementFunctions=\"true\">
+    <SourceFiles>
+      <File name=\"fmi2.c\"/>
+      <File name=\"{name}.c\"/>
+    </SourceFiles>
+  </CoSimulation>
+{units}  <LogCategories>
+    <Category name=\"logStatusError\" description=\"errors\"/>
+  </LogCategories>
+  <DefaultExperiment startTime=\"0\"/>
+  <ModelVariables>
+{lines}
+  </ModelVariables>
+  <ModelStructure>
+    <Outputs>
+      <Unknown index=\"{output}\" dependencies=\"{inputs}\"/>
+    </Outputs>
+    <InitialUnknowns>
+      <Unknown index=\"{output}\" dependencies=\"{inputs}\"/>
+    </InitialUnknowns>
+  </ModelStructure>
+</fmiModelDescription>
+",
+        description = summary(subject),
+        tool = env!("CARGO_PKG_VERSION"),
+        units = units(&variables),
+        lines = lines.join("\n"),
+    )
+}
+
+/// `sources/buildDescription.xml` of version 3.
+pub(super) fn build_description(name: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<fmiBuildDescription fmiVersion=\"3.0\">
+  <BuildConfiguration modelIdentifier=\"{name}\">
+    <SourceFileSet language=\"C99\" compilerOptions=\"-ffp-contract=off\">
+      <SourceFile name=\"fmi3.c\"/>
+      <SourceFile name=\"{name}.c\"/>
+    </SourceFileSet>
+  </BuildConfiguration>
+</fmiBuildDescription>
+"
+    )
+}
+
+/// Causality, variability and start value of each variable.
+fn kinds(subject: &Subject<'_>) -> Vec<String> {
+    let input = |start: &f64| format!("causality=\"input\" variability=\"continuous\" start=\"{start:?}\"");
+    let mut kinds: Vec<String> = start_values(subject).iter().map(input).collect();
+    kinds.push("causality=\"output\" variability=\"continuous\" initial=\"calculated\"".into());
+    kinds
+}
+
+fn reference(index: usize, variables: &[Variable]) -> usize {
+    if index + 1 == variables.len() { OUTPUT } else { FIRST_INPUT + index }
+}
+
+fn unit_of(variable: &Variable) -> String {
+    variable.unit.as_ref().map_or(String::new(), |unit| format!(" unit=\"{}\"", escaped(unit)))
+}
+
+fn units(variables: &[Variable]) -> String {
+    let units: BTreeSet<&String> = variables.iter().filter_map(|variable| variable.unit.as_ref()).collect();
+    if units.is_empty() {
+        return String::new();
+    }
+    let lines: String =
+        units.iter().map(|unit| format!("    <Unit name=\"{}\"/>\n", escaped(unit))).collect();
+    format!("  <UnitDefinitions>\n{lines}  </UnitDefinitions>\n")
+}
+
+/// The facts about the model, in a line.
+fn summary(subject: &Subject<'_>) -> String {
+    let facts: Vec<String> = subject.facts().iter().map(|(fact, text)| format!("{fact}: {text}")).collect();
+    escaped(&format!("A model of hysteresis, written by Hysid. {}", facts.join("; ")))
+}
+
+/// Text inside an attribute of XML.
+fn escaped(text: &str) -> String {
+    text.chars()
+        .filter(|letter| !letter.is_control())
+        .map(|letter| match letter {
+            '&' => "&amp;".to_string(),
+            '<' => "&lt;".into(),
+            '>' => "&gt;".into(),
+            '"' => "&quot;".into(),
+            letter => letter.into(),
+        })
+        .collect()
+}
