@@ -382,3 +382,12 @@ macro_rules! for_each_law {
 }
 
 for_each_law!(any_of);
+
+impl ClassicalState {
+    /// From now on the arithmetic is that which every machine has: only one law uses another.
+    pub(crate) fn become_portable(&mut self) {
+        if let Self::DuhemNn(memory) = self {
+            memory.become_portable();
+        }
+    }
+}

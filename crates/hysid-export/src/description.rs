@@ -11,7 +11,6 @@ use hysid_core::error::LARGEST_VALUE;
 use hysid_core::model::input_transform::InputTransform;
 use hysid_core::model::{Model, Predictor};
 
-use crate::error::Error;
 use crate::program::expression::{Real, Truth};
 use crate::program::{Array, Builder, Precision, Program};
 
@@ -57,10 +56,7 @@ struct Sample {
 
 impl Description {
     /// Describes a model.
-    ///
-    /// # Errors
-    /// A model that has a part without a description.
-    pub fn of(model: &Model, rate: RateSource, precision: Precision) -> Result<Self, Error> {
+    pub fn of(model: &Model, rate: RateSource, precision: Precision) -> Self {
         let parts = Parts::of(model);
         let inputs = model.names().inputs.len();
         let mut arguments: Vec<Argument> = (0..inputs).map(Argument::Input).collect();
@@ -94,9 +90,9 @@ impl Description {
             None => Real::Constant(0.0),
         };
         let row = Row { inputs: &inputs, rate, step, is_first };
-        let output = parts.step(&mut builder, model, &row, started)?;
+        let output = parts.step(&mut builder, model, &row, started);
         builder.output(0, output);
-        Ok(Self { program: builder.finish(), arguments })
+        Self { program: builder.finish(), arguments }
     }
 }
 
@@ -132,13 +128,7 @@ impl<'m> Parts<'m> {
     }
 
     /// Writes a step of the whole, with the lead-in before the first.
-    fn step(
-        &self,
-        builder: &mut Builder,
-        model: &Model,
-        row: &Row<'_>,
-        started: Array,
-    ) -> Result<Real, Error> {
+    fn step(&self, builder: &mut Builder, model: &Model, row: &Row<'_>, started: Array) -> Real {
         let lead_in = model.lead_in();
         let histories: Vec<Vec<Real>> =
             self.0.iter().map(|part| history(builder, part.input_transform(), row, lead_in)).collect();
@@ -147,8 +137,7 @@ impl<'m> Parts<'m> {
             Predictor::Ensemble(ensemble) => Some(ensemble::excursion(builder, ensemble, row)),
             Predictor::Network { .. } | Predictor::Law(_) => None,
         };
-        let mut problem = None;
-        let mut members = |builder: &mut Builder, x: &Real, rate: &Real, step: &Real, is_first: &Truth| {
+        let members = |builder: &mut Builder, x: &Real, rate: &Real, step: &Real, is_first: &Truth| {
             for (index, (part, history)) in self.0.iter().zip(&histories).enumerate() {
                 let transform = part.input_transform();
                 let mut inputs = vec![transformed(builder, transform, 0, x)];
@@ -163,15 +152,12 @@ impl<'m> Parts<'m> {
                 builder.remark(format!("{}: {}", name.replace('_', " "), part.name().name()));
                 let output = match part.predictor() {
                     Predictor::Network { network, scaling } => {
-                        Ok(network::step(builder, &name, network, scaling, &sample))
+                        network::step(builder, &name, network, scaling, &sample)
                     }
                     Predictor::Law(law) => law::step(builder, &name, law, &sample),
                     Predictor::Ensemble(_) => unreachable!("members are networks or laws"),
                 };
-                match output {
-                    Ok(output) => builder.set(outputs, index, output),
-                    Err(error) => problem = Some(error),
-                }
+                builder.set(outputs, index, output);
             }
             builder.set(started, 0_usize, 1.0);
         };
@@ -196,15 +182,12 @@ impl<'m> Parts<'m> {
                 members(builder, &x.into(), &rate.into(), &step.into(), &is_first);
             });
         }
-        if let Some(problem) = problem {
-            return Err(problem);
-        }
-        Ok(match (model.predictor(), outside) {
+        match (model.predictor(), outside) {
             (Predictor::Ensemble(ensemble), Some(outside)) => {
                 ensemble::output(builder, ensemble.group(), &outside, outputs)
             }
             _ => outputs.at(0_usize),
-        })
+        }
     }
 }
 

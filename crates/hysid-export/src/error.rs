@@ -6,9 +6,6 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A classical model that has no description yet.
-    #[error("models of {0} cannot be exported yet")]
-    NoDescription(&'static str),
     /// A name that is no identifier of the target's language.
     #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
     Name(String),

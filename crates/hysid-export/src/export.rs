@@ -96,7 +96,7 @@ impl<'m> Subject<'m> {
         if !is_identifier {
             return Err(Error::Name(options.name.clone()));
         }
-        let described = Description::of(model, options.rate, options.precision)?;
+        let described = Description::of(model, options.rate, options.precision);
         let tangent = without_unused(&with_tangent(&described.program));
         let description = Description { program: without_unused(&described.program), ..described };
         let ranges = model.trained_ranges();
@@ -151,7 +151,7 @@ impl<'m> Subject<'m> {
         if self.precision() == Precision::Double {
             return None;
         }
-        let double = Description::of(self.model, self.options.rate, Precision::Double).ok()?;
+        let double = Description::of(self.model, self.options.rate, Precision::Double);
         let mut machine = Machine::new(&double.program);
         let mut single = Machine::new(self.program());
         let (low, high) = self.model.trained_ranges().output;

@@ -8,7 +8,7 @@ use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
 use hysid_export::program::interpreter::Machine;
 use hysid_export::program::tangent::with_tangent;
-use models::{networks, path, time_step};
+use models::{laws, networks, path, time_step};
 
 /// Arguments of a row.
 fn arguments(description: &Description, inputs: &[f64], step: f64, rate: f64) -> Vec<f64> {
@@ -22,7 +22,7 @@ fn arguments(description: &Description, inputs: &[f64], step: f64, rate: f64) ->
 
 fn agrees(name: &str, model: &Model) {
     for source in [RateSource::Backward, RateSource::Argument] {
-        let description = Description::of(model, source, Precision::Double).unwrap();
+        let description = Description::of(model, source, Precision::Double);
         let mut machine = Machine::new(&description.program);
         let mut stepper = model.stepper().portable();
         let mut time = 0.0;
@@ -40,6 +40,13 @@ fn agrees(name: &str, model: &Model) {
 }
 
 #[test]
+fn laws_give_the_outputs_of_the_stepper() {
+    for (name, model) in laws() {
+        agrees(&name, &model);
+    }
+}
+
+#[test]
 fn networks_give_the_outputs_of_the_stepper() {
     for (name, model) in networks() {
         agrees(&name, &model);
@@ -49,7 +56,7 @@ fn networks_give_the_outputs_of_the_stepper() {
 #[test]
 fn the_tangent_is_the_slope_of_trial_steps() {
     for (name, model) in networks() {
-        let description = Description::of(&model, RateSource::Backward, Precision::Double).unwrap();
+        let description = Description::of(&model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
         let mut machine = Machine::new(&tangent);
         let mut good = 0;

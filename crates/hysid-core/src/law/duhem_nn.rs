@@ -129,7 +129,10 @@ impl Law for DuhemNn {
 
     fn step(&self, memory: &mut Memory, sample: Sample) -> f64 {
         let input = self.scaled(sample);
-        self.output_mean + self.output_scale * simd::run(Step { cell: &self.cell, memory, input })
+        let is_portable = memory.is_portable;
+        let step = Step { cell: &self.cell, memory, input };
+        let y = if is_portable { step.with_simd(pulp::Scalar::new()) } else { simd::run(step) };
+        self.output_mean + self.output_scale * y
     }
 
     fn parameters(&self) -> Vec<Parameter> {

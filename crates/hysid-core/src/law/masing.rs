@@ -95,13 +95,19 @@ impl Masing {
         &self.parts
     }
 
+    /// `g` at each threshold, in the unit of the output.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
     /// The virgin curve `g` at the input `x`, in the unit of the output.
     pub fn virgin_curve(&self, x: f64) -> f64 {
         let (size, thresholds) = (x.abs(), &self.parts.thresholds);
         let piece = thresholds.partition_point(|&r| r <= size);
         let (from, height) =
             if piece == 0 { (0.0, 0.0) } else { (thresholds[piece - 1], self.heights[piece - 1]) };
-        (height + self.parts.slopes[piece] * (size - from)).copysign(x) * if x == 0.0 { 0.0 } else { 1.0 }
+        let height = height + self.parts.slopes[piece] * (size - from);
+        if x < 0.0 { -height } else { height }
     }
 }
 

@@ -96,10 +96,21 @@ impl Branch<'_> {
         [unit(inputs[0]), unit(inputs[1]), inputs[2].clamp(self.low, self.high), unit(rate)]
     }
 
+    /// Range of the output in training.
+    pub fn range(&self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
+    /// The range that the law allows.
+    pub fn limits(&self) -> (f64, f64) {
+        let beyond = BEYOND * (self.high - self.low);
+        (self.low - beyond, self.high + beyond)
+    }
+
     /// The output, limited to the range that the law allows.
     pub fn limited(&self, y: f64) -> f64 {
-        let beyond = BEYOND * (self.high - self.low);
-        y.clamp(self.low - beyond, self.high + beyond)
+        let (low, high) = self.limits();
+        y.clamp(low, high)
     }
 }
 

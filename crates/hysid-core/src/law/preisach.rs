@@ -64,6 +64,20 @@ pub struct PreisachWeights {
     pub cells: Vec<f64>,
 }
 
+/// Tables of a Preisach model for a plane of `N` intervals, in the unit of the output.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tables {
+    /// Of each cell, row by row, with `N` cells a row: its weight `w_ij`, `E` of the triangle between lines `j + 1` and
+    /// `i`, the sum of the weights of row `i` between columns `j` and `i`, and that of column `j` between rows `j` and
+    /// `i`. All are 0 above the diagonal.
+    pub cells: Vec<[f64; 4]>,
+    /// What the virgin curve switches upwards and downwards: magnitudes of the input, rising from 0, and for each the
+    /// coefficients of a parabola in the distance from there; the last is constant.
+    pub virgin: [(Vec<f64>, Vec<[f64; 3]>); 2],
+    /// Reversible output at each line, without `k x`.
+    pub reversible: Vec<f64>,
+}
+
 impl TryFrom<PreisachWeights> for Preisach {
     type Error = Error;
 
@@ -123,6 +137,17 @@ impl Preisach {
     /// The parameters.
     pub fn weights(&self) -> &PreisachWeights {
         &self.weights
+    }
+
+    /// Output in the virgin state, without its reversible part, in the unit of the output.
+    pub fn virgin_output(&self) -> f64 {
+        self.virgin
+    }
+
+    /// The tables by which the output is computed, for programs that do the same.
+    pub fn tables(&self) -> Tables {
+        let [up, down] = self.everett.virgin_curves();
+        Tables { cells: self.everett.cells(), virgin: [up, down], reversible: self.reversible.clone() }
     }
 
     /// The Everett function `E(a, b) = Σ_ij w_ij (share of cell ij within b <= β <= α <= a)`: half of the

@@ -126,7 +126,7 @@ impl State {
     fn become_portable(&mut self) {
         match &mut self.memory {
             Memory::Network(simulator, _) => **simulator = simulator.as_ref().clone().portable(),
-            Memory::Law(_) => {}
+            Memory::Law(state) => state.become_portable(),
             Memory::Ensemble(ensemble) => ensemble.members.iter_mut().for_each(Self::become_portable),
         }
     }

@@ -13,21 +13,17 @@ mod peak_oriented;
 mod prandtl_ishlinskii;
 mod preisach;
 mod rate_dependent_prandtl_ishlinskii;
+mod turning_points;
+mod yield_curve;
 
 use hysid_core::law::Classical;
 
 use crate::description::Sample;
-use crate::error::Error;
 use crate::program::Builder;
 use crate::program::expression::Real;
 
 /// Writes a step of a law. The sample is in the user's units; the result is the output in its unit.
-pub(super) fn step(
-    builder: &mut Builder,
-    name: &str,
-    law: &Classical,
-    sample: &Sample,
-) -> Result<Real, Error> {
+pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &Sample) -> Real {
     match law {
         Classical::BoucWen(law) => bouc_wen::step(builder, name, law, sample),
         Classical::DuhemNn(law) => duhem_nn::step(builder, name, law, sample),
@@ -43,7 +39,7 @@ pub(super) fn step(
         }
         Classical::NeuroMadelung(law) => neuro_madelung::step(builder, name, law, sample),
         Classical::PeakOriented(law) => peak_oriented::step(builder, name, law, sample),
-        Classical::PrandtlIshlinskii(law) => Ok(prandtl_ishlinskii::step(builder, name, law, sample)),
+        Classical::PrandtlIshlinskii(law) => prandtl_ishlinskii::step(builder, name, law, sample),
         Classical::Preisach(law) => preisach::step(builder, name, law, sample),
         Classical::RateDependentPrandtlIshlinskii(law) => {
             rate_dependent_prandtl_ishlinskii::step(builder, name, law, sample)

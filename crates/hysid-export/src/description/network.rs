@@ -206,7 +206,7 @@ fn polynomial(builder: &mut Builder, coefficients: &[f64], x: &Real) -> Real {
 }
 
 /// tanh, as `hysid_core::network::tanh`.
-fn tanh(builder: &mut Builder, x: &Real) -> Real {
+pub(super) fn tanh(builder: &mut Builder, x: &Real) -> Real {
     const CUBIC_AND_UP: [f64; 6] = [
         0.0034639177836130425,
         -0.008858936176728246,

@@ -140,9 +140,9 @@ impl From<&Real> for Real {
     }
 }
 
-impl From<i64> for Whole {
-    fn from(value: i64) -> Self {
-        Self::Constant(value)
+impl From<i32> for Whole {
+    fn from(value: i32) -> Self {
+        Self::Constant(value.into())
     }
 }
 

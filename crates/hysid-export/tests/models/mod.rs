@@ -74,6 +74,36 @@ pub fn networks() -> Vec<(String, Model)> {
     ]
 }
 
+/// Classical laws, with all variants that differ in code.
+pub fn laws() -> Vec<(String, Model)> {
+    let starts = || vec![("starts", json!(1)), ("epochs", json!(3))];
+    let with = |more: &[(&'static str, Value)]| [starts(), more.to_vec()].concat();
+    vec![
+        fitted("prandtl-ishlinskii", 1, &[("operators", json!(13))]),
+        fitted("modified-prandtl-ishlinskii", 1, &[("operators", json!(6))]),
+        fitted("generalized-prandtl-ishlinskii", 1, &with(&[("operators", json!(5))])),
+        fitted("rate-dependent-prandtl-ishlinskii", 1, &with(&[("operators", json!(5))])),
+        fitted(
+            "rate-dependent-prandtl-ishlinskii",
+            1,
+            &with(&[("logarithmic_thresholds", json!(true)), ("free_weights", json!(false))]),
+        ),
+        fitted("masing", 1, &[("sign", json!("any"))]),
+        fitted("preisach", 1, &[("operators", json!(7))]),
+        fitted("neuro-madelung", 1, &with(&[("hidden", json!(4))])),
+        fitted("bouc-wen", 1, &starts()),
+        fitted("bouc-wen", 1, &with(&[("degradation", json!(true))])),
+        fitted("lugre", 1, &starts()),
+        fitted("jiles-atherton", 1, &starts()),
+        fitted("jiles-atherton", 1, &with(&[("differential_form", json!(true))])),
+        fitted("duhem-nn", 1, &with(&[("operators", json!(3)), ("hidden", json!(10))])),
+        fitted("menegotto-pinto", 1, &starts()),
+        fitted("menegotto-pinto", 1, &with(&[("asymmetric", json!(true))])),
+        fitted("peak-oriented", 1, &starts()),
+        fitted("peak-oriented", 1, &with(&[("degradation", json!(true)), ("asymmetric", json!(true))])),
+    ]
+}
+
 /// Rows that no model has seen: reversals inside and outside the trained range, rest, large values.
 pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
     (0..rows)

@@ -94,6 +94,16 @@ impl Everett {
         Self { lines: plane.lines().to_vec(), cells, virgin }
     }
 
+    /// Weight, `E_{i,j+1}`, `C_ij` and `R_ij` of each cell.
+    pub fn cells(&self) -> Vec<[f64; 4]> {
+        self.cells.iter().map(|cell| [cell.weight, cell.inner, cell.along_row, cell.along_column]).collect()
+    }
+
+    /// Knots and pieces of the virgin curve up and down.
+    pub fn virgin_curves(&self) -> [(Vec<f64>, Vec<[f64; 3]>); 2] {
+        self.virgin.each_ref().map(|curve| (curve.knots.clone(), curve.pieces.clone()))
+    }
+
     /// Place of an input; one beyond the plane is at its edge.
     #[inline]
     pub fn place(&self, x: f64) -> Place {
