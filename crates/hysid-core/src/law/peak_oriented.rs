@@ -59,6 +59,9 @@ pub const WEIGHT_BOUNDS: (f64, f64) = (0.1, 30.0);
 /// Largest displacement, in yield displacements; its powers are finite.
 const LARGEST_DISPLACEMENT: f64 = 1e100;
 
+/// Least slope of a secant, so that a member that has lost all strength still divides by a number.
+const LEAST_SECANT: f64 = 1e-30;
+
 /// Nodes and weights of Gauss and Legendre's rule on 0 to 1.
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
@@ -213,7 +216,8 @@ impl PeakOriented {
 
     /// `σ E(d_m)/d_m`: slope of the line from the origin to the envelope at the largest displacement.
     fn secant(&self, peak: f64, strength: f64) -> f64 {
-        if peak > 0.0 { strength * self.envelope(peak) / peak } else { strength }
+        let secant = if peak > 0.0 { strength * self.envelope(peak) / peak } else { strength };
+        secant.max(LEAST_SECANT)
     }
 
     /// The branch of a side that begins without force at `from`.
@@ -452,6 +456,23 @@ mod tests {
     /// Numbers between -1 and 1, the same every time.
     fn numbers(count: usize) -> Vec<f64> {
         test_paths::numbers(12_345, count)
+    }
+
+    #[test]
+    fn a_member_without_strength_has_a_finite_force() {
+        let degradation = Degradation::from_values([2.0, 0.5, 0.0, 0.01, 1.0, 1.0, 1.0, 1.0]);
+        let law = PeakOriented {
+            unloading: 0.5,
+            curvature: 1.0,
+            degradation: Some(degradation),
+            ..PeakOriented::new(1.0, 1.0).unwrap()
+        };
+        let mut state = law.virgin();
+        for x in [5.0, -5.0, 5.0, 1e90, -1e100, 3.0, 4.0, -3.0, 0.0, 1.0] {
+            let y = law.step(&mut state, Sample { x, rate: 0.0, step: 0.0 });
+            assert!(y.is_finite(), "{y} at {x:e}");
+        }
+        assert_eq!(law.strength(state.deterioration), 0.0);
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::program::{Array, Builder};
 
 // Numbers of the library.
 const LARGEST_DISPLACEMENT: f64 = 1e100;
+const LEAST_SECANT: f64 = 1e-30;
 const GAUSS_NODES: [f64; 5] =
     [0.046_910_077_030_668, 0.230_765_344_947_158_45, 0.5, 0.769_234_655_052_841_6, 0.953_089_922_969_332];
 const GAUSS_WEIGHTS: [f64; 5] = [
@@ -169,7 +170,8 @@ impl<'a> Member<'a> {
             let envelope = self.envelope(builder, peak);
             builder.assign(secant, strength * envelope / peak);
         });
-        secant.into()
+        let secant = Real::from(secant);
+        builder.value(secant.max(LEAST_SECANT))
     }
 
     /// Begins the branch of a side that is without force at `from` (theory.md (8.40) to (8.42)).
