@@ -107,6 +107,12 @@ impl Precision {
             Self::Single => "f32",
         }
     }
+
+    /// A constant in single precision. A finite one that is too large becomes the largest.
+    pub(crate) fn single(value: f64) -> f32 {
+        let rounded = value as f32;
+        if value.is_finite() { rounded.clamp(f32::MIN, f32::MAX) } else { rounded }
+    }
 }
 
 /// One step of a model.

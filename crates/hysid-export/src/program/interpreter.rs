@@ -183,7 +183,7 @@ impl<'p> Machine<'p> {
 fn rounded(precision: Precision, value: f64) -> f64 {
     match precision {
         Precision::Double => value,
-        Precision::Single => f64::from(value as f32),
+        Precision::Single => f64::from(Precision::single(value)),
     }
 }
 

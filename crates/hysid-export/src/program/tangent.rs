@@ -217,7 +217,8 @@ fn of_binary(
         Binary::Product => sum(slope_a.map(|slope| slope * b), slope_b.map(|slope| a * slope)),
         Binary::Quotient => sum(slope_a.map(|slope| slope / b), slope_b.map(|slope| -(a / b * slope / b))),
         Binary::Power => {
-            let of_base = slope_a.map(|slope| b * a.powf(b - 1.0) * slope);
+            // At 0 an infinite slope counts as 0.
+            let of_base = slope_a.map(|slope| a.above(0.0).choose(b * a.powf(b - 1.0) * slope, 0.0));
             let of_exponent = slope_b.map(|slope| a.above(0.0).choose(a.ln() * a.powf(b) * slope, 0.0));
             sum(of_base, of_exponent)
         }

@@ -427,7 +427,7 @@ impl Language for Rust {
         match (value.is_infinite(), self.precision) {
             (true, _) => if value < 0.0 { "-Real::INFINITY" } else { "Real::INFINITY" }.to_string(),
             (false, Precision::Double) => format!("{value:?}"),
-            (false, Precision::Single) => format!("{:?}", value as f32),
+            (false, Precision::Single) => format!("{:?}", Precision::single(value)),
         }
     }
 

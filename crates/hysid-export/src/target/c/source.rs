@@ -226,7 +226,7 @@ impl Language for C {
                 format!("{sign}{}", self.of_precision("HUGE_VAL", "HUGE_VALF"))
             }
             Precision::Double => format!("{value:?}"),
-            Precision::Single => format!("{:?}f", value as f32),
+            Precision::Single => format!("{:?}f", Precision::single(value)),
         }
     }
 
