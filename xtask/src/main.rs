@@ -10,6 +10,7 @@ mod files;
 mod fuzz;
 mod generate_cases;
 mod program;
+mod proofs;
 mod python;
 mod same_models;
 mod soak;

@@ -31,7 +31,7 @@ fn package() -> PathBuf {
 }
 
 /// The Python of the virtual environment, with all that is pinned; made and filled if need be.
-fn environment() -> Result<PathBuf> {
+pub fn environment() -> Result<PathBuf> {
     let folder = program::target()?.join("python");
     let python = match cfg!(windows) {
         true => folder.join("Scripts").join("python.exe"),

@@ -3,12 +3,16 @@
 
 use anyhow::Result;
 
+use crate::proofs::Proofs;
 use crate::{cargo, fuzz, python};
 
 pub fn run() -> Result<()> {
-    rust()?;
+    let proofs = Proofs::begin()?;
+    rust(&proofs)?;
     fuzz::in_tests()?;
-    python::test()
+    python::test()?;
+    proofs.show();
+    Ok(())
 }
 
 /// The tests inside the library's crates, and whether the rest still compiles: for after a small change.
@@ -20,7 +24,11 @@ pub fn quick() -> Result<()> {
     cargo(&["check", "--workspace", "--locked"], &[])
 }
 
-/// Unit, integration and documentation tests. They need nothing beyond cargo. The Python package has its own.
-fn rust() -> Result<()> {
-    cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &[])
+/// Unit, integration and documentation tests. Those of exported models run the tools of each target. The Python package
+/// has its own.
+fn rust(proofs: &Proofs) -> Result<()> {
+    let python = python::environment()?;
+    let environment =
+        [("HYSID_PYTHON", &*python.to_string_lossy()), ("HYSID_UNPROVED", &*proofs.path().to_string_lossy())];
+    cargo(&["test", "--workspace", "--exclude", "hysid-python", "--locked"], &environment)
 }

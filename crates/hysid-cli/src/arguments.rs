@@ -277,7 +277,8 @@ Examples:
 const EXPORT_EXAMPLES: &str = "\
 Examples:
   hysid export model.json --to c                      the folder model_c
-  hysid export model.json --to c --name piezo -o src/piezo --precision f32";
+  hysid export model.json --to c --name piezo -o src/piezo --precision f32
+  hysid export model.json --to fmu --fmi 2            for tools that read FMI 2.0";
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
@@ -637,6 +638,9 @@ pub struct Export {
     /// ignores it.
     #[arg(long, value_name = "SOURCE", default_value = "backward", value_parser = ["backward", "argument"], hide_possible_values = true)]
     pub rate: String,
+    /// Version of the Functional Mock-up Interface of `--to fmu`: 3 or 2 [default: 3]
+    #[arg(long, value_name = "3|2", value_parser = ["3", "2"], hide_possible_values = true)]
+    pub fmi: Option<String>,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,

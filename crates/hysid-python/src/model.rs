@@ -9,7 +9,7 @@ use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, Prediction};
 use hysid_export::description::RateSource;
-use hysid_export::{MANIFEST, Options, Precision, Target, files_of};
+use hysid_export::{FmiVersion, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::{Destination, Folder, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -53,7 +53,7 @@ impl Model {
         written.map(drop).map_err(not_written)
     }
 
-    /// Writes an export of the model into a folder; gives the names of its files.
+    /// Writes an export of the model into a folder; gives the names of its files, and what the user must know.
     #[allow(clippy::too_many_arguments)]
     fn export(
         &self,
@@ -63,12 +63,14 @@ impl Model {
         name: String,
         precision: &str,
         rate: &str,
+        fmi: u32,
         force: bool,
-    ) -> PyResult<Vec<String>> {
+    ) -> PyResult<(Vec<String>, Option<String>)> {
         let target = Target::named(to).ok_or_else(|| refused(format!("there is no target {to:?}")))?;
         let options = Options {
             precision: if precision == "f32" { Precision::Single } else { Precision::Double },
             rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+            fmi: if fmi == 2 { FmiVersion::Two } else { FmiVersion::Three },
             ..Options::named(name)
         };
         let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;
@@ -78,7 +80,7 @@ impl Model {
         let destination =
             Folder { path: &folder, what: "export of Hysid", manifest: MANIFEST, listed: files_of, force };
         destination.write(&contents).map_err(not_written)?;
-        Ok(files.into_iter().map(|file| file.path).collect())
+        Ok((files.into_iter().map(|file| file.path).collect(), exported.note))
     }
 
     /// Number of fitted parameters.

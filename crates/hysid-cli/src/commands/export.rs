@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 use hysid_document::count;
 use hysid_export::description::RateSource;
-use hysid_export::{File, MANIFEST, Options, Precision, files_of};
+use hysid_export::{Error, Export as Exported, FmiVersion, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::Folder;
 use serde::Serialize;
 
@@ -24,14 +24,19 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         None => identifier(&arguments.model)?,
     };
     let folder = arguments.out.clone().unwrap_or_else(|| format!("{name}_{}", arguments.to.name()).into());
+    if arguments.fmi.is_some() && arguments.to != Target::Fmu {
+        return Err(Usage("--fmi is a version of --to fmu".into()).into());
+    }
     let options = Options {
         name,
         precision: if arguments.precision == "f32" { Precision::Single } else { Precision::Double },
         rate: if arguments.rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+        fmi: if arguments.fmi.as_deref() == Some("2") { FmiVersion::Two } else { FmiVersion::Three },
         source: source(&arguments.model),
     };
     let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
-        hysid_export::Error::Name(_) if arguments.name.is_some() => Usage(format!("--name: {error}")).into(),
+        Error::Name(_) if arguments.name.is_some() => Usage(format!("--name: {error}")).into(),
+        Error::Precision(_) => Usage(format!("--precision: {error}")).into(),
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;
     let contents: Vec<(&str, &[u8])> =
@@ -45,10 +50,13 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     };
     destination.write(&contents).map_err(files::explained)?;
     match arguments.json {
-        true => json_results(&Printed::of(&folder, arguments, &options, &exported.files))?,
+        true => json_results(&Printed::of(&folder, arguments, &options, &exported))?,
         false => {
             let (shown, files) = (files::shown(&folder), count(exported.files.len(), "file"));
             note(format_args!("wrote {shown}: {files}; {shown}/README.md says how to use them"));
+            if let Some(more) = &exported.note {
+                note(format_args!("{more}"));
+            }
         }
     }
     Ok(Outcome::Done)
@@ -82,16 +90,18 @@ struct Printed<'a> {
     name: &'a str,
     precision: &'static str,
     files: Vec<&'a str>,
+    note: Option<&'a str>,
 }
 
 impl<'a> Printed<'a> {
-    fn of(folder: &Path, arguments: &Export, options: &'a Options, files: &'a [File]) -> Self {
+    fn of(folder: &Path, arguments: &Export, options: &'a Options, exported: &'a Exported) -> Self {
         Self {
             folder: folder.to_path_buf(),
             target: arguments.to.name(),
             name: &options.name,
             precision: options.precision.name(),
-            files: files.iter().map(|file| file.path.as_str()).collect(),
+            files: exported.files.iter().map(|file| file.path.as_str()).collect(),
+            note: exported.note.as_deref(),
         }
     }
 }

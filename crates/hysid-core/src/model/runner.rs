@@ -63,7 +63,7 @@ struct Single<'m> {
 #[derive(Debug, Clone)]
 enum Mechanism<'m> {
     Network(Box<FreeRun<'m>>),
-    Law(&'m Classical, ClassicalState, Vec<Sample>),
+    Law(&'m Classical, Box<ClassicalState>, Vec<Sample>),
 }
 
 /// The members of an ensemble, and room for their outputs.
@@ -282,7 +282,7 @@ impl<'m> Single<'m> {
                 let rate = rate.map(|_| RateMethod::Given);
                 Mechanism::Network(Box::new(FreeRun::new(network, scaling, rate)))
             }
-            Predictor::Law(law) => Mechanism::Law(law, law.virgin(), Vec::new()),
+            Predictor::Law(law) => Mechanism::Law(law, Box::new(law.virgin()), Vec::new()),
             Predictor::Ensemble(_) => unreachable!("members are networks or laws"),
         };
         let preprocessing = preprocessing.filter(|preprocessing| !preprocessing.is_none());
@@ -302,7 +302,7 @@ impl<'m> Single<'m> {
         self.past = Past::default();
         match &mut self.mechanism {
             Mechanism::Network(network) => network.reset(),
-            Mechanism::Law(law, state, _) => *state = law.virgin(),
+            Mechanism::Law(law, state, _) => **state = law.virgin(),
         }
     }
 

@@ -220,6 +220,7 @@ class Model:
         name: str | None = None,
         precision: str = "f64",
         rate: str = "backward",
+        fmi: int = 3,
         force: bool = False,
     ) -> list[str]:
         """Write the model as source code for other programs, with tests and test vectors.
@@ -228,7 +229,7 @@ class Model:
 
         Parameters
         ----------
-        to : {"c"}
+        to : {"c", "fmu", "matlab", "python", "rust"}
             Where the model is to run.
         folder : path
             The folder of the export. One that is there already is replaced only if Hysid wrote all that is in it.
@@ -239,6 +240,8 @@ class Model:
         rate : {"backward", "argument"}
             How the model gets the rate of its first input: by backward differences, from the time step, or as an
             argument of each step. A model without rate ignores it.
+        fmi : {3, 2}
+            Version of the Functional Mock-up Interface of `to="fmu"`.
         force : bool
             Replace a folder even if Hysid did not write it, with all that is in it.
 
@@ -259,12 +262,15 @@ class Model:
         for what, given, known in (
             ("precision", precision, ("f64", "f32")),
             ("rate", rate, ("backward", "argument")),
+            ("fmi", fmi, (3, 2)),
         ):
             if given not in known:
                 raise ValueError(f"{what} {given!r}: it is {' or '.join(map(repr, known))}")
         if name is None:
             name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
-        return self._native.export(to, folder, name, precision, rate, truth("force", force))
+        files, note = self._native.export(to, folder, name, precision, rate, fmi, truth("force", force))
+        warn([] if note is None else [note])
+        return files
 
     def to_json(self) -> str:
         """Give the text of the model file.
