@@ -3,8 +3,7 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::export::{File, Subject};
-use crate::target::Target;
+use crate::subject::{File, Subject};
 
 /// Name of the file.
 pub const MANIFEST: &str = "manifest.json";
@@ -47,13 +46,13 @@ struct Entry<'a> {
 }
 
 /// The text of `manifest.json`.
-pub(crate) fn manifest(subject: &Subject<'_>, to: Target, files: &[File]) -> String {
+pub(crate) fn manifest(subject: &Subject<'_>, to: &'static str, files: &[File]) -> String {
     let facts = subject.facts();
     let manifest = Manifest {
         format: FORMAT,
         version: 1,
         name: subject.name(),
-        target: to.name(),
+        target: to,
         precision: subject.precision().name(),
         model: facts.iter().map(|(fact, value)| Fact { fact, value }).collect(),
         files: files.iter().map(Entry::of).collect(),

@@ -1,7 +1,7 @@
 //! The page that goes with an export.
 
-use crate::export::{File, Subject};
 use crate::program::interpreter::Machine;
+use crate::subject::{File, Subject};
 use crate::target::Target;
 use crate::vectors::Action;
 

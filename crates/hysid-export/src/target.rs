@@ -7,11 +7,8 @@ mod printer;
 mod python;
 mod rust;
 
-pub use fmu::Version as FmiVersion;
-
-use crate::description::Argument;
 use crate::error::Error;
-use crate::export::{File, Subject};
+use crate::subject::{File, Subject};
 
 /// Where an exported model is to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,15 +71,4 @@ impl From<Vec<File>> for Written {
     fn from(files: Vec<File>) -> Self {
         Self { files, note: None }
     }
-}
-
-/// Names of the arguments of a step.
-pub(crate) fn argument_names(subject: &Subject<'_>) -> Vec<String> {
-    let name = |argument: &Argument| match argument {
-        Argument::Input(0) => "x".to_string(),
-        Argument::Input(input) => format!("x{}", input + 1),
-        Argument::TimeStep => "time_step".to_string(),
-        Argument::Rate => "rate".to_string(),
-    };
-    subject.description().arguments.iter().map(name).collect()
 }

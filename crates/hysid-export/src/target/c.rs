@@ -5,7 +5,7 @@ mod self_test;
 mod source;
 
 use crate::error::Error;
-use crate::export::{File, Subject};
+use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: true, write, usage };

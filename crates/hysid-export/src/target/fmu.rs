@@ -11,45 +11,18 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use crate::error::Error;
-use crate::export::{File, Subject};
+use crate::manifest::checksum;
+use crate::options::FmiVersion;
+use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
 
 pub(super) const BACK_END: BackEnd = BackEnd { name: "fmu", has_single_precision: false, write, usage };
-
-/// Version of the Functional Mock-up Interface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Version {
-    /// FMI 3.0
-    #[default]
-    Three,
-    /// FMI 2.0
-    Two,
-}
-
-impl Version {
-    /// `3.0` or `2.0`.
-    pub fn number(self) -> &'static str {
-        match self {
-            Self::Three => "3.0",
-            Self::Two => "2.0",
-        }
-    }
-
-    /// Name of the source file with its functions.
-    fn source(self) -> &'static str {
-        match self {
-            Self::Three => "fmi3.c",
-            Self::Two => "fmi2.c",
-        }
-    }
-}
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let (name, version) = (subject.name(), subject.fmi());
     let mut sources = c::sources(subject);
     // Files that differ have tokens that differ.
-    let token =
-        crate::manifest::checksum(&sources.iter().flat_map(|file| file.content.clone()).collect::<Vec<_>>());
+    let token = checksum(&sources.iter().flat_map(|file| file.content.clone()).collect::<Vec<_>>());
     sources.push(File::new(version.source(), wrapper::wrapper(subject, version, &token)));
     let binary = binary::binary(name, version, &sources)?;
     let note = match binary {
@@ -62,7 +35,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let mut content =
         vec![File::new("modelDescription.xml", description::model_description(subject, version, &token))];
     content.extend(binary);
-    if version == Version::Three {
+    if version == FmiVersion::Three {
         content.push(File::new("sources/buildDescription.xml", description::build_description(name)));
     }
     content.extend(sources.into_iter().map(|file| File::new(format!("sources/{}", file.path), file.content)));

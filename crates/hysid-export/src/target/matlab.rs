@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 
 use crate::error::Error;
-use crate::export::{File, Subject};
 use crate::program::choices::without_choices;
 use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Declaration, Program, Storage};
+use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer};
-use crate::target::{BackEnd, Written, argument_names};
+use crate::target::{BackEnd, Written};
 use crate::vectors::Action;
 
 pub(super) const BACK_END: BackEnd = BackEnd { name: "matlab", has_single_precision: false, write, usage };
@@ -26,7 +26,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
 
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let arguments = argument_names(subject).join(", ");
+    let arguments = subject.argument_names().join(", ");
     format!(
         "Put `{name}.m` where MATLAB or GNU Octave finds it. No toolbox is needed.
 
@@ -59,7 +59,7 @@ run the function with GNU Octave, which has no System objects: **the class has n
 
 fn function_file(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let matlab = Matlab { arguments: argument_names(subject) };
+    let matlab = Matlab { arguments: subject.argument_names() };
     let arguments = matlab.arguments.join(", ");
     let facts: String = subject.facts().iter().map(|(fact, text)| format!("%   {fact}: {text}\n")).collect();
     let (step, tangent) = (without_choices(subject.program()), without_choices(subject.tangent()));
@@ -149,9 +149,10 @@ fn function(matlab: &Matlab, program: &Program, name: &str, with_tangent: bool) 
 
 fn system_object(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let arguments = argument_names(subject).join(", ");
-    let count = argument_names(subject).len();
-    let names = argument_names(subject).iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+    let arguments = subject.argument_names().join(", ");
+    let count = subject.argument_names().len();
+    let names =
+        subject.argument_names().iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
     let outputs = (1..=count).map(|index| format!("name{index}")).collect::<Vec<_>>().join(", ");
     format!(
         "classdef {name}_system < matlab.System
@@ -227,7 +228,7 @@ end
 
 fn self_test(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let count = argument_names(subject).len();
+    let count = subject.argument_names().len();
     let number = |value: f64| format!("{value:?}");
     let rows: String = subject
         .vectors()

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 
 use crate::description::Argument;
 use crate::error::Error;
-use crate::export::{File, Subject};
 use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Program, Storage};
+use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
-use crate::target::{BackEnd, Written, argument_names};
+use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd { name: "python", has_single_precision: false, write, usage };
 
@@ -26,7 +26,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let columns = whole_record(subject).join(", ");
-    let arguments = argument_names(subject).join(", ");
+    let arguments = subject.argument_names().join(", ");
     format!(
         "```python
 import {name}
@@ -57,7 +57,7 @@ fn whole_record(subject: &Subject<'_>) -> Vec<&'static str> {
 }
 
 fn module(subject: &Subject<'_>) -> String {
-    let python = Python { arguments: argument_names(subject) };
+    let python = Python { arguments: subject.argument_names() };
     let (step, tangent) = (subject.program(), subject.tangent());
     let facts: String = subject
         .facts()
@@ -189,8 +189,9 @@ fn function(python: &Python, program: &Program, name: &str, with_tangent: bool) 
 }
 
 fn class(subject: &Subject<'_>) -> String {
-    let parameters: String = argument_names(subject).iter().map(|name| format!(", {name}")).collect();
-    let arguments = argument_names(subject)
+    let parameters: String = subject.argument_names().iter().map(|name| format!(", {name}")).collect();
+    let arguments = subject
+        .argument_names()
         .iter()
         .map(|name| format!("float({name})"))
         .map(|text| format!(", {text}"))
@@ -274,7 +275,7 @@ fn class(subject: &Subject<'_>) -> String {
 
 fn self_test(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let count = argument_names(subject).len();
+    let count = subject.argument_names().len();
     let (low, high) = subject.model().trained_ranges().output;
     let scale = 0.5 * (high - low);
     format!(

@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::error::Error;
-use crate::export::{File, Subject};
 use crate::program::expression::{Binary, Unary};
 use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
+use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
-use crate::target::{BackEnd, Written, argument_names};
+use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd = BackEnd { name: "rust", has_single_precision: true, write, usage };
 
@@ -25,7 +25,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
 
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let arguments = argument_names(subject).join(", ");
+    let arguments = subject.argument_names().join(", ");
     let library = match math_functions(subject).is_empty() {
         true => "It needs `core` and nothing else.".to_string(),
         false => format!(
@@ -82,7 +82,7 @@ fn math_functions(subject: &Subject<'_>) -> Vec<&'static str> {
 }
 
 fn module(subject: &Subject<'_>) -> String {
-    let rust = Rust { arguments: argument_names(subject), precision: subject.precision() };
+    let rust = Rust { arguments: subject.argument_names(), precision: subject.precision() };
     let (step, tangent) = (subject.program(), subject.tangent());
     let real = subject.precision().name();
     let facts: String =
@@ -343,7 +343,7 @@ impl Model {{
 
 fn self_test(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let count = argument_names(subject).len();
+    let count = subject.argument_names().len();
     let (low, high) = subject.model().trained_ranges().output;
     let scale = 0.5 * (high - low);
     let tolerance = if subject.precision() == Precision::Double { 1e-9 } else { 1e-4 };

@@ -1,8 +1,7 @@
 //! The header file: types, functions, and what the model is.
 
-use crate::export::Subject;
 use crate::program::Precision;
-use crate::target::argument_names;
+use crate::subject::Subject;
 
 /// The text of the header file.
 pub(super) fn header(subject: &Subject<'_>) -> String {
@@ -23,7 +22,7 @@ pub(super) fn header(subject: &Subject<'_>) -> String {
         .map(|(_, array, values)| format!("    {name}_real {array}[{}];\n", values.len()))
         .collect();
     let parameters: String =
-        argument_names(subject).iter().map(|argument| format!(", {name}_real {argument}")).collect();
+        subject.argument_names().iter().map(|argument| format!(", {name}_real {argument}")).collect();
     format!(
         "/* {name}.h: a model of hysteresis, written by Hysid.
  *

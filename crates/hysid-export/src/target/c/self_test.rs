@@ -1,15 +1,14 @@
 //! A program that runs the test vectors.
 
-use crate::export::Subject;
 use crate::program::Precision;
-use crate::target::argument_names;
+use crate::subject::Subject;
 use crate::vectors::Action;
 
 /// The text of the program.
 pub(super) fn self_test(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let upper = name.to_uppercase();
-    let count = argument_names(subject).len();
+    let count = subject.argument_names().len();
     let (suffix, tolerance) = match subject.precision() {
         Precision::Double => ("", "1e-9"),
         Precision::Single => ("f", "1e-4"),

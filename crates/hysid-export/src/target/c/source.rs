@@ -3,19 +3,18 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::export::Subject;
 use crate::program::expression::{Binary, Unary};
 use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
 use crate::program::{Array, Declaration, Precision, Program, Storage};
-use crate::target::argument_names;
+use crate::subject::Subject;
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 
 /// The text of the source file.
 pub(super) fn source(subject: &Subject<'_>) -> String {
     let name = subject.name();
     let (step, tangent) = (subject.program(), subject.tangent());
-    let c = C { precision: subject.precision(), arguments: argument_names(subject) };
+    let c = C { precision: subject.precision(), arguments: subject.argument_names() };
     let functions = Functions::of(&[step, tangent]);
 
     let mut text = format!("/* {name}.c: see {name}.h. */\n\n");

@@ -6,11 +6,11 @@ use std::fs;
 use std::process::{Command, Stdio};
 
 use crate::error::Error;
-use crate::export::File;
-use crate::target::fmu::Version;
+use crate::options::FmiVersion;
+use crate::subject::File;
 
 /// The library with its path in the FMU; `None` without a C compiler. `sources` are the C files.
-pub(super) fn binary(name: &str, version: Version, sources: &[File]) -> Result<Option<File>, Error> {
+pub(super) fn binary(name: &str, version: FmiVersion, sources: &[File]) -> Result<Option<File>, Error> {
     let Some(compiler) = compiler() else { return Ok(None) };
     let folder = tempfile::tempdir().map_err(|error| Error::Compiler(error.to_string()))?;
     for source in sources {
@@ -51,10 +51,10 @@ fn compiler() -> Option<OsString> {
 }
 
 /// The name of this platform in FMUs.
-pub(super) fn platform(version: Version) -> String {
+pub(super) fn platform(version: FmiVersion) -> String {
     let system = if OS == "macos" { "darwin" } else { OS };
     match (version, ARCH) {
-        (Version::Two, "x86_64") => format!("{}64", if system == "windows" { "win" } else { system }),
+        (FmiVersion::Two, "x86_64") => format!("{}64", if system == "windows" { "win" } else { system }),
         _ => format!("{ARCH}-{system}"),
     }
 }

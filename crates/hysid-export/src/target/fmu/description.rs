@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use hysid_core::data::unit;
 
 use crate::description::Argument;
-use crate::export::Subject;
-use crate::target::fmu::Version;
+use crate::options::FmiVersion;
+use crate::subject::Subject;
 
 /// Value references: the time has 0, then come the inputs, in the order of the step's arguments without the time step.
 pub(super) const FIRST_INPUT: usize = 1;
@@ -76,10 +76,10 @@ pub(super) fn variable_names(subject: &Subject<'_>) -> Vec<String> {
 }
 
 /// The text of the file.
-pub(super) fn model_description(subject: &Subject<'_>, version: Version, token: &str) -> String {
+pub(super) fn model_description(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
     match version {
-        Version::Three => version_three(subject, token),
-        Version::Two => version_two(subject, token),
+        FmiVersion::Three => version_three(subject, token),
+        FmiVersion::Two => version_two(subject, token),
     }
 }
 

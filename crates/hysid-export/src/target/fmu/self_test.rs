@@ -1,8 +1,7 @@
 //! A program that runs the test vectors with FMPy.
 
 use crate::description::Argument;
-use crate::export::Subject;
-use crate::target::argument_names;
+use crate::subject::Subject;
 
 /// The text of the program.
 pub(super) fn self_test(subject: &Subject<'_>) -> String {
@@ -107,7 +106,7 @@ sys.exit(0 if max(differences) <= 1e-9 else 1)
         name = subject.name(),
         scale = 0.5 * (high - low),
         inputs = inputs.join(", "),
-        count = argument_names(subject).len(),
+        count = subject.argument_names().len(),
         time_step = time_step.map_or("None".into(), |index| index.to_string()),
     )
 }

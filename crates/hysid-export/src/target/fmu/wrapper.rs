@@ -5,15 +5,15 @@
 //! before.
 
 use crate::description::Argument;
-use crate::export::Subject;
-use crate::target::fmu::Version;
+use crate::options::FmiVersion;
+use crate::subject::Subject;
 use crate::target::fmu::description::{FIRST_INPUT, OUTPUT, start_values};
 
 /// The text of `fmi3.c` or `fmi2.c`.
-pub(super) fn wrapper(subject: &Subject<'_>, version: Version, token: &str) -> String {
+pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
     let functions = match version {
-        Version::Three => include_str!("fmi3.c.txt"),
-        Version::Two => include_str!("fmi2.c.txt"),
+        FmiVersion::Three => include_str!("fmi3.c.txt"),
+        FmiVersion::Two => include_str!("fmi2.c.txt"),
     };
     let head = format!(
         "/* {file}: the Functional Mock-up Interface {number} around {name}.c. */

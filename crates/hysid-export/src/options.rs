@@ -1,0 +1,60 @@
+//! What is asked for.
+
+use crate::description::RateSource;
+use crate::program::Precision;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// An identifier, with which all names of the export begin.
+    pub name: String,
+    /// Precision of the arithmetic.
+    pub precision: Precision,
+    /// How a model that needs the rate gets it.
+    pub rate: RateSource,
+    /// Version of a Functional Mock-up Unit.
+    pub fmi: FmiVersion,
+    /// Facts about the source that the model itself does not have, as they are to be shown: its file, the date.
+    pub source: Vec<(String, String)>,
+}
+
+impl Options {
+    /// Double precision and backward differences.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            precision: Precision::default(),
+            rate: RateSource::default(),
+            fmi: FmiVersion::default(),
+            source: Vec::new(),
+        }
+    }
+}
+
+/// Version of the Functional Mock-up Interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FmiVersion {
+    /// FMI 3.0
+    #[default]
+    Three,
+    /// FMI 2.0
+    Two,
+}
+
+impl FmiVersion {
+    /// `3.0` or `2.0`.
+    pub fn number(self) -> &'static str {
+        match self {
+            Self::Three => "3.0",
+            Self::Two => "2.0",
+        }
+    }
+
+    /// Name of the source file with its functions.
+    pub(crate) fn source(self) -> &'static str {
+        match self {
+            Self::Three => "fmi3.c",
+            Self::Two => "fmi2.c",
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! A model with all that targets write of it.
+
+use hysid_core::model::Model;
+
+use crate::description::{Argument, Description};
+use crate::error::Error;
+use crate::options::{FmiVersion, Options};
+use crate::program::interpreter::Machine;
+use crate::program::tangent::with_tangent;
+use crate::program::unused::without_unused;
+use crate::program::{Precision, Program};
+use crate::vectors::{Action, Vector, vectors};
+
+/// A file of an export.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Its path in the folder of the export.
+    pub path: String,
+    /// Its content.
+    pub content: Vec<u8>,
+}
+
+impl File {
+    pub(crate) fn new(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
+        Self { path: path.into(), content: content.into() }
+    }
+}
+
+/// A model with all that targets write of it.
+pub(crate) struct Subject<'m> {
+    model: &'m Model,
+    options: &'m Options,
+    description: Description,
+    tangent: Program,
+    vectors: Vec<Vector>,
+}
+
+impl<'m> Subject<'m> {
+    pub fn of(model: &'m Model, options: &'m Options) -> Result<Self, Error> {
+        let is_identifier = options.name.starts_with(|first: char| first.is_ascii_alphabetic())
+            && options.name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !is_identifier {
+            return Err(Error::Name(options.name.clone()));
+        }
+        let described = Description::of(model, options.rate, options.precision);
+        let tangent = without_unused(&with_tangent(&described.program));
+        let description = Description { program: without_unused(&described.program), ..described };
+        let ranges = model.trained_ranges();
+        let rate = ranges.rate.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
+        let vectors = vectors(&description, &tangent, &ranges.inputs, rate);
+        Ok(Self { model, options, description, tangent, vectors })
+    }
+
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
+    pub fn name(&self) -> &str {
+        &self.options.name
+    }
+
+    pub fn precision(&self) -> Precision {
+        self.options.precision
+    }
+
+    pub fn fmi(&self) -> FmiVersion {
+        self.options.fmi
+    }
+
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    pub fn program(&self) -> &Program {
+        &self.description.program
+    }
+
+    pub fn tangent(&self) -> &Program {
+        &self.tangent
+    }
+
+    pub fn vectors(&self) -> &[Vector] {
+        &self.vectors
+    }
+
+    /// Names of the arguments of a step.
+    pub fn argument_names(&self) -> Vec<String> {
+        let name = |argument: &Argument| match argument {
+            Argument::Input(0) => "x".to_string(),
+            Argument::Input(input) => format!("x{}", input + 1),
+            Argument::TimeStep => "time_step".to_string(),
+            Argument::Rate => "rate".to_string(),
+        };
+        self.description.arguments.iter().map(name).collect()
+    }
+
+    /// Bytes of a number.
+    pub fn bytes(&self) -> usize {
+        match self.precision() {
+            Precision::Double => 8,
+            Precision::Single => 4,
+        }
+    }
+
+    /// Largest difference of the outputs in single precision from those in double precision over the test vectors, as a
+    /// share of the range of the trained output; `None` in double precision.
+    pub fn rounding(&self) -> Option<f64> {
+        if self.precision() == Precision::Double {
+            return None;
+        }
+        let double = Description::of(self.model, self.options.rate, Precision::Double);
+        let mut machine = Machine::new(&double.program);
+        let mut single = Machine::new(self.program());
+        let (low, high) = self.model.trained_ranges().output;
+        let steps = self.vectors.iter().filter(|vector| vector.action == Action::Step);
+        let difference = |vector: &Vector| {
+            (single.step(&vector.arguments)[0] - machine.step(&vector.arguments)[0]).abs() / (high - low)
+        };
+        Some(steps.map(difference).fold(0.0, f64::max))
+    }
+
+    /// Facts about the model, for the head of a file: each a name and a text.
+    pub fn facts(&self) -> Vec<(String, String)> {
+        let mut facts = vec![("model".to_string(), self.model.name().name().to_string())];
+        facts.extend(self.options.source.iter().cloned());
+        facts.push(("model's checksum".into(), checksum_of(self.model)));
+        let names = self.model.names();
+        let ranges = self.model.trained_ranges();
+        for (index, argument) in self.description.arguments.iter().enumerate() {
+            let text = match *argument {
+                Argument::Input(input) => {
+                    let (low, high) = ranges.inputs[input];
+                    format!("{}, trained from {low} to {high}", names.inputs[input])
+                }
+                Argument::TimeStep => {
+                    let time = names.time.as_deref().unwrap_or("time");
+                    format!("time since the step before, in the unit of {time}; ignored in the first step")
+                }
+                Argument::Rate => {
+                    let of = &names.inputs[0];
+                    let range = ranges
+                        .rate
+                        .map_or(String::new(), |(low, high)| format!(", trained from {low} to {high}"));
+                    format!("rate of {of} per unit of time{range}")
+                }
+            };
+            facts.push((format!("argument {}", index + 1), text));
+        }
+        let (low, high) = ranges.output;
+        facts.push(("output".into(), format!("{}, {low} to {high} in training", names.output)));
+        let provenance = self.model.provenance();
+        let percent = |errors: &hysid_core::data::metrics::Errors| {
+            let relative = errors.nrmse_std_percent.map_or(String::new(), |percent| {
+                format!(", {percent:.3} % of the output's standard deviation")
+            });
+            format!("RMSE {:.4e}{relative}", errors.rmse)
+        };
+        facts.push(("error in training".into(), percent(provenance.trained_error())));
+        facts.push((
+            "error on held-out data".into(),
+            provenance.validation.as_ref().map_or("not measured".into(), percent),
+        ));
+        facts.push(("precision".into(), self.precision().name().into()));
+        if let Some(rounding) = self.rounding() {
+            let text = format!(
+                "at most {rounding:.1e} of the range of the output, over the steps of the test vectors"
+            );
+            facts.push(("difference from f64".into(), text));
+        }
+        facts
+    }
+
+    /// The test vectors as a table.
+    pub fn vectors_csv(&self) -> String {
+        let names = self.argument_names();
+        let mut text = format!("action,{},output,tangent\n", names.join(","));
+        for vector in &self.vectors {
+            let arguments: Vec<String> = match vector.arguments.is_empty() {
+                true => vec![String::new(); names.len()],
+                false => vector.arguments.iter().map(|value| format!("{value:?}")).collect(),
+            };
+            let (output, tangent) = match vector.action {
+                Action::Trial => (format!("{:?}", vector.output), format!("{:?}", vector.tangent)),
+                Action::Step => (format!("{:?}", vector.output), String::new()),
+                _ => (String::new(), String::new()),
+            };
+            text += &format!("{},{},{output},{tangent}\n", vector.action.name(), arguments.join(","));
+        }
+        text
+    }
+}
+
+/// The checksum that stands in the model's file.
+fn checksum_of(model: &Model) -> String {
+    let text = model.to_json();
+    let behind = text.rsplit("\"checksum\"").next().unwrap_or_default();
+    behind.chars().filter(char::is_ascii_hexdigit).collect()
+}
