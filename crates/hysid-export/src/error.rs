@@ -9,6 +9,14 @@ pub enum Error {
     /// A name that is no identifier of the target's language.
     #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
     Name(String),
+    /// More inputs than the target takes.
+    #[error("{target} has one input, and the model has {inputs}")]
+    Inputs {
+        /// What has one input.
+        target: &'static str,
+        /// Inputs of the model.
+        inputs: usize,
+    },
     /// The C compiler failed.
     #[error("the C compiler failed: {0}")]
     Compiler(String),

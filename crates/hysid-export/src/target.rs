@@ -3,6 +3,7 @@
 mod c;
 mod fmu;
 mod matlab;
+mod opensees;
 mod printer;
 mod python;
 mod rust;
@@ -19,6 +20,8 @@ pub enum Target {
     Fmu,
     /// MATLAB without toolboxes, and GNU Octave.
     Matlab,
+    /// A material of OpenSees.
+    OpenSees,
     /// Python with NumPy.
     Python,
     /// Rust without the standard library.
@@ -27,7 +30,7 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 5] = [Self::C, Self::Fmu, Self::Matlab, Self::Rust, Self::Python];
+    pub const ALL: [Self; 6] = [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Rust, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -44,6 +47,7 @@ impl Target {
             Self::C => &c::BACK_END,
             Self::Fmu => &fmu::BACK_END,
             Self::Matlab => &matlab::BACK_END,
+            Self::OpenSees => &opensees::BACK_END,
             Self::Python => &python::BACK_END,
             Self::Rust => &rust::BACK_END,
         }

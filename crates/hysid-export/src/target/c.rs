@@ -12,8 +12,13 @@ pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: 
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let mut files = sources(subject);
-    files.push(File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject)));
+    files.push(test(subject));
     Ok(files.into())
+}
+
+/// The program that runs the test vectors.
+pub(super) fn test(subject: &Subject<'_>) -> File {
+    File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
 }
 
 /// The header and the source file.

@@ -6,7 +6,7 @@ use hysid::{ColumnNames, Dataset, Fit, Model, Record};
 use serde_json::{Value, json};
 
 /// A spring, two plays and a term of the rate, with time stamps and a further input.
-fn data(inputs: usize) -> Dataset {
+pub fn data(inputs: usize) -> Dataset {
     let records = (0..2).map(|number| {
         let rows = 240;
         let time: Vec<f64> = (0..rows).map(|k| 0.02 * f64::from(k)).collect();

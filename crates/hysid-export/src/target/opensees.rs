@@ -1,0 +1,78 @@
+//! OpenSees: a C++ material around the C code, and the native command where the native law is the same law.
+
+mod material;
+mod native;
+
+use crate::error::Error;
+use crate::subject::{File, Subject};
+use crate::target::{BackEnd, Written, c};
+
+pub(super) const BACK_END: BackEnd = BackEnd { name: "opensees", has_single_precision: false, write, usage };
+
+fn write(subject: &Subject<'_>) -> Result<Written, Error> {
+    let inputs = subject.model().names().inputs.len();
+    if inputs > 1 {
+        return Err(Error::Inputs { target: "a uniaxialMaterial of OpenSees", inputs });
+    }
+    let name = subject.name();
+    let mut files = c::sources(subject);
+    files.push(c::test(subject));
+    files.push(File::new(format!("{name}Material.h"), material::header(subject)));
+    files.push(File::new(format!("{name}Material.cpp"), material::source(subject)));
+    if let Ok(native) = native::Native::of(subject.model()) {
+        files.push(File::new(format!("{name}.tcl"), native.tcl()));
+        files.push(File::new(format!("{name}.py"), native.python()));
+    }
+    Ok(files.into())
+}
+
+fn usage(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let model = subject.model();
+    let (x, y) = (&model.names().inputs[0], &model.names().output);
+    let native = match native::Native::of(model) {
+        Ok(native) => format!(
+            "`{name}.tcl` and `{name}.py` define the material with OpenSees' own `{}`, for any OpenSees. Its law is the \
+             same; it {}.\n\n{}",
+            native.command(),
+            "advances it by one implicit step for each change of strain, so its stress approaches that of this model as \
+             the steps become small",
+            native.constants()
+        ),
+        Err(reason) => format!("There is no native command for this model: {reason}."),
+    };
+    format!(
+        "Strain is {x}, stress is {y}, in their units; OpenSees asks for consistent ones.
+
+## The native material
+
+{native}
+
+## The C++ material
+
+It computes exactly what Hysid computes. Build it as a library that OpenSees loads, with the headers of the OpenSees that
+loads it (`OPENSEES` is its source folder):
+
+```
+INCLUDES=$(find $OPENSEES/SRC -name '*.h' -exec dirname {{}} \\; | sort -u | sed 's/^/-I/')
+cc  -std=c99 -O2 -fPIC -ffp-contract=off -c {name}.c
+c++ -O2 -fPIC -shared $INCLUDES {name}Material.cpp {name}.o -o {name}.so
+```
+
+In Tcl, with `{name}.so` in the working folder: `uniaxialMaterial {name} $tag`. To compile it into OpenSees instead, add
+`OPS_{name}` to the table of materials.
+
+The tangent is exact; at a kink it is that of the branch taken. Before the first trial, stress and tangent are those at
+strain 0. A model that needs the time step takes it from `ops_Dt`.
+
+The class is compiled against the interface and run through the test vectors in Hysid's tests, with headers that
+declare that interface; **it was not loaded into an OpenSees program there.**
+
+```
+cc -std=c99 -O2 -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
+```
+
+runs the test vectors on the C code.
+"
+    )
+}

@@ -1,0 +1,3 @@
+#pragma once
+#define OPS_Export extern "C"
+extern "C" int OPS_GetIntInput(int *count, int *values);
