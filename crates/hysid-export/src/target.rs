@@ -3,6 +3,7 @@
 mod c;
 mod fmu;
 mod matlab;
+mod onnx;
 mod opensees;
 mod printer;
 mod python;
@@ -20,6 +21,8 @@ pub enum Target {
     Fmu,
     /// MATLAB without toolboxes, and GNU Octave.
     Matlab,
+    /// Graphs of ONNX.
+    Onnx,
     /// A material of OpenSees.
     OpenSees,
     /// Python with NumPy.
@@ -30,7 +33,8 @@ pub enum Target {
 
 impl Target {
     /// All targets.
-    pub const ALL: [Self; 6] = [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Rust, Self::Python];
+    pub const ALL: [Self; 7] =
+        [Self::C, Self::Fmu, Self::Matlab, Self::OpenSees, Self::Rust, Self::Onnx, Self::Python];
 
     /// The target of a name.
     pub fn named(name: &str) -> Option<Self> {
@@ -47,6 +51,7 @@ impl Target {
             Self::C => &c::BACK_END,
             Self::Fmu => &fmu::BACK_END,
             Self::Matlab => &matlab::BACK_END,
+            Self::Onnx => &onnx::BACK_END,
             Self::OpenSees => &opensees::BACK_END,
             Self::Python => &python::BACK_END,
             Self::Rust => &rust::BACK_END,
