@@ -51,7 +51,7 @@ pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
 use ranges::Ranges;
 use runner::{Runner, Spread};
 pub use simulation::Simulation;
-pub use stepper::Stepper;
+pub use stepper::{Snapshot, Stepper};
 
 /// A fitted model, which simulates in the user's units.
 #[derive(Debug, Clone, PartialEq)]

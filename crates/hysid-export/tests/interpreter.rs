@@ -3,12 +3,16 @@
 
 mod models;
 
+use std::sync::LazyLock;
+
 use hysid::Model;
 use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
 use hysid_export::program::interpreter::Machine;
 use hysid_export::program::tangent::with_tangent;
-use models::{laws, networks, path, time_step};
+use models::{all, path, time_step};
+
+static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
 
 /// Arguments of a row.
 fn arguments(description: &Description, inputs: &[f64], step: f64, rate: f64) -> Vec<f64> {
@@ -40,16 +44,9 @@ fn agrees(name: &str, model: &Model) {
 }
 
 #[test]
-fn laws_give_the_outputs_of_the_stepper() {
-    for (name, model) in laws() {
-        agrees(&name, &model);
-    }
-}
-
-#[test]
-fn networks_give_the_outputs_of_the_stepper() {
-    for (name, model) in networks() {
-        agrees(&name, &model);
+fn programs_give_the_outputs_of_the_stepper() {
+    for (name, model) in MODELS.iter() {
+        agrees(name, model);
     }
 }
 
@@ -62,8 +59,8 @@ fn random(bits: &mut u64) -> f64 {
 #[test]
 fn outputs_are_equal_and_finite_on_wild_paths() {
     const ROWS: usize = 4000;
-    for (name, model) in networks().into_iter().chain(laws()) {
-        let description = Description::of(&model, RateSource::Backward, Precision::Double);
+    for (name, model) in MODELS.iter() {
+        let description = Description::of(model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
         let mut machine = Machine::new(&tangent);
         let mut stepper = model.stepper().portable();
@@ -94,8 +91,8 @@ fn outputs_are_equal_and_finite_on_wild_paths() {
 
 #[test]
 fn the_tangent_is_the_slope_of_trial_steps() {
-    for (name, model) in networks().into_iter().chain(laws()) {
-        let description = Description::of(&model, RateSource::Backward, Precision::Double);
+    for (name, model) in MODELS.iter() {
+        let description = Description::of(model, RateSource::Backward, Precision::Double);
         let tangent = with_tangent(&description.program);
         let mut machine = Machine::new(&tangent);
         let mut good = 0;
@@ -121,5 +118,42 @@ fn the_tangent_is_the_slope_of_trial_steps() {
         }
         println!("{name}: {good} of {}", rows.len());
         assert!(good * 100 >= rows.len() * 98, "{name}: {good} of {}", rows.len());
+    }
+}
+
+#[test]
+fn trials_of_the_library_agree_with_the_program() {
+    for (name, model) in MODELS.iter() {
+        let description = Description::of(model, RateSource::Backward, Precision::Double);
+        let tangent = with_tangent(&description.program);
+        let mut machine = Machine::new(&tangent);
+        let (mut stepper, mut plain) = (model.stepper().portable(), model.stepper().portable());
+        let (mut time, mut near, rows) = (0.0, 0, 300);
+        for (row, inputs) in path(rows, model.names().inputs.len()).iter().enumerate() {
+            let before = time;
+            time += time_step(row);
+            let committed = stepper.snapshot();
+            // Trials elsewhere leave no trace.
+            let mut elsewhere = inputs.clone();
+            elsewhere[0] += 1.3 * (row as f64).sin();
+            stepper.trial(&elsewhere, time, None).unwrap();
+            let is_late = stepper.trial(&elsewhere, before - 1.0, None).is_err();
+            assert!(is_late || row == 0 || !model.needs_time());
+            stepper.revert();
+            let (y, slope) = stepper.trial_with_tangent(inputs, time, None).unwrap();
+            assert_eq!(y, stepper.trial(inputs, time, None).unwrap(), "{name}, row {row}");
+            match row % 3 {
+                0 => stepper.commit(),
+                1 => assert_eq!(y, stepper.step(inputs, time, None).unwrap(), "{name}, row {row}"),
+                _ => {
+                    stepper.restore(&committed);
+                    assert_eq!(y, stepper.step(inputs, time, None).unwrap(), "{name}, row {row}");
+                }
+            }
+            assert_eq!(y, plain.step(inputs, time, None).unwrap(), "{name}, row {row}");
+            let exact = machine.step(&arguments(&description, inputs, time - before, 0.0))[1];
+            near += usize::from((slope - exact).abs() <= 1e-5 * exact.abs().max(0.1));
+        }
+        assert!(near * 100 >= rows * 93, "{name}: {near} of {rows} slopes");
     }
 }

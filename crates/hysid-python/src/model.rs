@@ -235,6 +235,15 @@ fn driven<T: Send>(
     outcome.map_err(refused)
 }
 
+/// The inputs of a sample.
+fn inputs(x: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    if let Ok(x) = x.extract::<f64>() {
+        return Ok(vec![x]);
+    }
+    let words = "x: a number, or a sequence of numbers, is needed";
+    x.extract().map_err(|_| PyTypeError::new_err(words))
+}
+
 /// A model that is run sample by sample.
 #[pyclass(module = "hysid._hysid")]
 pub struct Stepper {
@@ -246,16 +255,34 @@ impl Stepper {
     /// Simulates one sample and gives the output.
     #[pyo3(signature = (x, time=None, rate=None))]
     fn step(&mut self, x: &Bound<'_, PyAny>, time: Option<f64>, rate: Option<f64>) -> PyResult<f64> {
-        let time = time.unwrap_or(f64::NAN);
-        let output = match x.extract::<f64>() {
-            Ok(x) => self.stepper.step(&[x], time, rate),
-            Err(_) => {
-                let several = x.extract::<Vec<f64>>();
-                let words = "x: a number, or a sequence of numbers, is needed";
-                self.stepper.step(&several.map_err(|_| PyTypeError::new_err(words))?, time, rate)
-            }
-        };
-        output.map_err(refused)
+        self.stepper.step(&inputs(x)?, time.unwrap_or(f64::NAN), rate).map_err(refused)
+    }
+
+    /// Gives the output at a sample from the committed state, which stays as it is.
+    #[pyo3(signature = (x, time=None, rate=None))]
+    fn trial(&mut self, x: &Bound<'_, PyAny>, time: Option<f64>, rate: Option<f64>) -> PyResult<f64> {
+        self.stepper.trial(&inputs(x)?, time.unwrap_or(f64::NAN), rate).map_err(refused)
+    }
+
+    /// Gives the same, and the slope of the output by the first input; at a kink, that of the branch which continues.
+    #[pyo3(signature = (x, time=None, rate=None))]
+    fn trial_tangent(
+        &mut self,
+        x: &Bound<'_, PyAny>,
+        time: Option<f64>,
+        rate: Option<f64>,
+    ) -> PyResult<(f64, f64)> {
+        self.stepper.trial_with_tangent(&inputs(x)?, time.unwrap_or(f64::NAN), rate).map_err(refused)
+    }
+
+    /// Makes the state of the last trial the committed one.
+    fn commit(&mut self) {
+        self.stepper.commit();
+    }
+
+    /// Forgets the last trial.
+    fn revert(&mut self) {
+        self.stepper.revert();
     }
 
     /// Goes back to the initial state of the model, or to another one.

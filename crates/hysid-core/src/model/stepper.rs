@@ -1,5 +1,8 @@
 //! Simulation of a model sample by sample.
 
+mod snapshot;
+mod trial;
+
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
@@ -11,12 +14,16 @@ use crate::model::input_transform::{Past, SeenLeadIn, limited};
 use crate::model::{Model, Predictor};
 use crate::network::Simulator;
 
+pub use snapshot::Snapshot;
+
 /// A sample-by-sample simulation. With the rates that [`Model::simulate`] uses, its outputs are the same to
 /// the last bit.
 #[derive(Debug, Clone)]
 pub struct Stepper<'m> {
     model: Cow<'m, Model>,
     state: State,
+    /// The state before the last trial, if that is not committed.
+    committed: Option<Snapshot>,
     /// Lead-in of the record.
     lead_in: Vec<f64>,
 }
@@ -68,7 +75,7 @@ impl Memory {
 
 impl<'m> Stepper<'m> {
     pub(super) fn new(model: Cow<'m, Model>) -> Self {
-        Self { state: State::virgin(&model), lead_in: model.lead_in.clone(), model }
+        Self { state: State::virgin(&model), committed: None, lead_in: model.lead_in.clone(), model }
     }
 
     /// The same with the arithmetic that every machine has: see [`Simulator::portable`].
@@ -78,7 +85,8 @@ impl<'m> Stepper<'m> {
         self
     }
 
-    /// Advances to the next sample and returns the output there, in the user's unit.
+    /// Advances to the next sample and returns the output there, in the user's unit. A trial that is not committed is
+    /// forgotten.
     ///
     /// `inputs` has one value for each input and `time` is the time of the sample, in the user's units;
     /// `time` is ignored by a model that needs none. `rate` is that of the first input, for a model with one;
@@ -88,6 +96,11 @@ impl<'m> Stepper<'m> {
     /// Another number of inputs, a value that is not finite, or time that does not increase. The memory is
     /// then unchanged.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
+        self.revert();
+        self.advance(inputs, time, rate)
+    }
+
+    fn advance(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
         if self.state.last.is_none() && !self.lead_in.is_empty() {
             let rows: Vec<f64> = self.lead_in.iter().chain(&inputs[..1]).copied().collect();
@@ -98,6 +111,7 @@ impl<'m> Stepper<'m> {
 
     /// Returns to the initial state of the model.
     pub fn reset(&mut self) {
+        self.committed = None;
         self.state.reset(&self.model);
         self.lead_in.clone_from(&self.model.lead_in);
     }
@@ -108,6 +122,7 @@ impl<'m> Stepper<'m> {
     /// An unknown state. The stepper is then unchanged.
     pub fn reset_to(&mut self, state: InitialState) -> Result<()> {
         self.lead_in = self.model.lead_in_of(state)?;
+        self.committed = None;
         self.state.reset(&self.model);
         Ok(())
     }

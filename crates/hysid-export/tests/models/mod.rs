@@ -104,6 +104,16 @@ pub fn laws() -> Vec<(String, Model)> {
     ]
 }
 
+/// The default ensemble, of hasty members.
+pub fn ensembles() -> Vec<(String, Model)> {
+    vec![fitted("auto", 1, &[("starts", json!(1)), ("epochs", json!(2))])]
+}
+
+/// Models of all kinds.
+pub fn all() -> Vec<(String, Model)> {
+    [networks(), laws(), ensembles()].concat()
+}
+
 /// Rows that no model has seen: reversals inside and outside the trained range, rest, large values.
 pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
     (0..rows)

@@ -9,11 +9,10 @@ use hysid_export::description::{Argument, Description, RateSource};
 use hysid_export::program::Precision;
 use hysid_export::{Options, Target, export};
 
-use crate::models::{laws, networks, path, time_step};
+use crate::models::{all, path, time_step};
 
 /// A model of every kind.
-pub static MODELS: LazyLock<Vec<(String, Model)>> =
-    LazyLock::new(|| networks().into_iter().chain(laws()).collect());
+pub static MODELS: LazyLock<Vec<(String, Model)>> = LazyLock::new(all);
 
 /// Name of the exported models.
 pub const NAME: &str = "actuator";

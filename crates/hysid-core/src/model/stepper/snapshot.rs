@@ -1,0 +1,59 @@
+//! What a stepper remembers at one moment, without the weights of its networks.
+
+use crate::law::ClassicalState;
+use crate::model::ensemble::Excursion;
+use crate::model::input_transform::Past;
+use crate::model::stepper::{Memory, State};
+use crate::network::MemoryState;
+
+/// The memory of a [`Stepper`](crate::model::Stepper) at one moment.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    memory: Remembered,
+    past: Past,
+    last: Option<(f64, f64)>,
+}
+
+#[derive(Debug, Clone)]
+enum Remembered {
+    Network(MemoryState),
+    Law(Box<ClassicalState>),
+    Ensemble(Vec<Snapshot>, Excursion),
+}
+
+impl Snapshot {
+    pub(super) fn of(state: &State) -> Self {
+        let memory = match &state.memory {
+            Memory::Network(simulator, _) => Remembered::Network(simulator.state().clone()),
+            Memory::Law(law) => Remembered::Law(Box::new(law.clone())),
+            Memory::Ensemble(ensemble) => {
+                Remembered::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
+            }
+        };
+        Self { memory, past: state.past, last: state.last }
+    }
+
+    /// Makes the state what it was.
+    ///
+    /// # Panics
+    /// A state of another model.
+    pub(super) fn restore(&self, state: &mut State) {
+        match (&self.memory, &mut state.memory) {
+            (Remembered::Network(kept), Memory::Network(simulator, _)) => simulator.set_state(kept.clone()),
+            (Remembered::Law(kept), Memory::Law(law)) => law.clone_from(kept),
+            (Remembered::Ensemble(members, excursion), Memory::Ensemble(ensemble)) => {
+                assert_eq!(members.len(), ensemble.members.len(), "a snapshot of this model");
+                members.iter().zip(&mut ensemble.members).for_each(|(kept, member)| kept.restore(member));
+                ensemble.excursion = *excursion;
+            }
+            _ => panic!("a snapshot of this model"),
+        }
+        state.past = self.past;
+        state.last = self.last;
+    }
+
+    /// The first input of the last sample; `None` before the first.
+    pub(super) fn last_input(&self) -> Option<f64> {
+        self.last.map(|(_, input)| input)
+    }
+}
