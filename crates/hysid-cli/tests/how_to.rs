@@ -1,5 +1,5 @@
-//! The pages of `docs/how-to` as a reader follows them: every line of a `sh` block that begins with `hysid` is run, in
-//! order, in a folder of the page's own.
+//! The pages of `docs/how-to` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a
+//! program of the folder is run, in order, in a folder of the page's own.
 #![cfg(unix)]
 
 mod workbench;
@@ -9,6 +9,9 @@ use std::path::Path;
 
 use workbench::Workbench;
 
+/// How the lines begin that are run.
+const PROGRAMS: [&str; 4] = ["hysid ", "cc ", "rustc ", "./"];
+
 /// The commands of a page.
 fn commands(page: &str) -> Vec<&str> {
     let mut inside = false;
@@ -16,7 +19,7 @@ fn commands(page: &str) -> Vec<&str> {
     for line in page.lines() {
         if line.starts_with("```") {
             inside = line == "```sh";
-        } else if inside && line.starts_with("hysid ") {
+        } else if inside && PROGRAMS.iter().any(|program| line.starts_with(program)) {
             commands.push(line);
         }
     }

@@ -39,6 +39,8 @@ pub enum Unary {
     Rounded,
     /// `2^a` for a whole number `a` whose magnitude is below 1000. Its derivative is 0.
     PowerOfTwo,
+    /// `a`, whose derivative counts as 0.
+    Detached,
 }
 
 /// A function of two real numbers.
@@ -296,6 +298,11 @@ impl Real {
     /// `2^a` for a whole number.
     pub fn power_of_two(&self) -> Self {
         self.clone().apply(Unary::PowerOfTwo)
+    }
+
+    /// The same number, whose derivative counts as 0.
+    pub fn detached(&self) -> Self {
+        self.clone().apply(Unary::Detached)
     }
 
     /// `a^b`

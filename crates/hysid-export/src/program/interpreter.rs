@@ -189,6 +189,7 @@ fn rounded(precision: Precision, value: f64) -> f64 {
 
 fn unary(function: Unary, a: f64) -> f64 {
     match function {
+        Unary::Detached => a,
         Unary::Negative => -a,
         Unary::Magnitude => a.abs(),
         Unary::SquareRoot => a.sqrt(),
@@ -218,6 +219,7 @@ fn binary(function: Binary, a: f64, b: f64) -> f64 {
 
 fn unary_single(function: Unary, a: f32) -> f32 {
     match function {
+        Unary::Detached => a,
         Unary::Negative => -a,
         Unary::Magnitude => a.abs(),
         Unary::SquareRoot => a.sqrt(),

@@ -96,7 +96,7 @@ impl Active {
     fn depends(&self, value: &Real) -> bool {
         match value {
             Real::Constant(_) | Real::OfWhole(_) => false,
-            Real::Unary(Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo, _) => false,
+            Real::Unary(Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo | Unary::Detached, _) => false,
             Real::Variable(variable) => self.variables.contains(variable),
             // Of the arguments, only the first.
             Real::Element(array @ Array(0), index) => {
@@ -173,6 +173,7 @@ impl Derivative {
                 (**index == Whole::Constant(0)).then_some(Real::Constant(1.0))
             }
             Real::Element(array, index) => self.arrays.get(array).map(|slope| slope.at((**index).clone())),
+            Real::Unary(Unary::Detached, _) => None,
             Real::Unary(function, a) => self.of(program, a).and_then(|slope| of_unary(*function, a, slope)),
             Real::Binary(function, a, b) => {
                 of_binary(*function, (a, self.of(program, a)), (b, self.of(program, b)))
@@ -198,7 +199,7 @@ fn of_unary(function: Unary, a: &Real, slope: Real) -> Option<Real> {
         Unary::LnOnePlus => Some(slope / (1.0 + a)),
         Unary::Tanh => Some((1.0 - a.tanh() * a.tanh()) * slope),
         Unary::InverseSinh => Some(slope / (1.0 + a * a).sqrt()),
-        Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo => None,
+        Unary::Ceiling | Unary::Rounded | Unary::PowerOfTwo | Unary::Detached => None,
     }
 }
 

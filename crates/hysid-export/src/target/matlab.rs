@@ -350,6 +350,7 @@ impl Language for Matlab {
     fn unary(&self, function: Unary) -> Option<&'static str> {
         Some(match function {
             Unary::Negative => return None,
+            Unary::Detached => "",
             Unary::Magnitude => "abs",
             Unary::SquareRoot => "sqrt",
             Unary::Exp => "exp",

@@ -24,7 +24,7 @@ pub(crate) trait Language {
     fn number(&self, value: f64) -> String;
     /// An element of an array with this index, which counts from 0. A constant index of an argument is its number.
     fn element(&self, declaration: &Declaration, index: &str) -> String;
-    /// A function of one number, by its name; `None` for the sign.
+    /// A function of one number, by its name, which is empty for the number itself; `None` for the sign.
     fn unary(&self, function: Unary) -> Option<&'static str>;
     /// A function of two numbers; `None` for an infix operator. A quotient by a constant has its operator in any case.
     fn binary(&self, function: Binary) -> Option<&'static str>;

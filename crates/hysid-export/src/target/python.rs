@@ -358,6 +358,7 @@ impl Language for Python {
     fn unary(&self, function: Unary) -> Option<&'static str> {
         Some(match function {
             Unary::Negative => return None,
+            Unary::Detached => "",
             Unary::Magnitude => "abs",
             Unary::SquareRoot => "_sqrt",
             Unary::Exp => "_exp",

@@ -68,7 +68,9 @@ fn math_functions(subject: &Subject<'_>) -> Vec<&'static str> {
             Unary::Tanh => names.insert(of("tanh", "tanhf")),
             Unary::Ceiling => names.insert(of("ceil", "ceilf")),
             Unary::InverseSinh => names.insert(of("log1p", "log1pf")) | names.insert(of("hypot", "hypotf")),
-            Unary::Negative | Unary::Magnitude | Unary::Rounded | Unary::PowerOfTwo => false,
+            Unary::Negative | Unary::Magnitude | Unary::Rounded | Unary::PowerOfTwo | Unary::Detached => {
+                false
+            }
         };
     }
     for function in &functions.binary {
@@ -445,6 +447,7 @@ impl Language for Rust {
     fn unary(&self, function: Unary) -> Option<&'static str> {
         Some(match function {
             Unary::Negative => return None,
+            Unary::Detached => "",
             Unary::Rounded => "rounded",
             Unary::PowerOfTwo => "power_of_two",
             Unary::InverseSinh => "inverse_sinh",

@@ -111,3 +111,80 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
         case.must_equal(name, &output.stdout);
     }
 }
+
+/// Random steps of all sizes, and with every trial and commit; a value that is not finite ends it.
+fn soak(arguments: usize) -> String {
+    let given: String = (0..arguments).map(|index| format!(", a[{index}]")).collect();
+    let time =
+        if arguments > 1 { format!("a[{}] = 0.001 + 0.01 * unit();", arguments - 1) } else { String::new() };
+    format!(
+        "#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include \"actuator.h\"
+static uint64_t bits = 7;
+static double unit(void)
+{{
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    return (double)(bits >> 11) / 9007199254740992.0;
+}}
+int main(int count, char **values)
+{{
+    static actuator_model model;
+    static unsigned char saved[ACTUATOR_STATE_BYTES];
+    const long steps = count > 1 ? atol(values[1]) : 0;
+    double a[{arguments}] = {{0}}, slope = 0;
+    long k;
+    actuator_reset(&model);
+    actuator_save(&model, saved);
+    for (k = 0; k < steps; k++) {{
+        const double kind = unit();
+        double y;
+        a[0] += pow(10.0, 4.0 * unit() - 2.0) * (unit() < 0.5 ? -1.0 : 1.0);
+        if (kind < 0.02)
+            a[0] = 40.0;
+        if (fabs(a[0] - 40.0) > 300.0)
+            a[0] = 40.0 + 10.0 * (unit() - 0.5);
+        {time}
+        if (kind > 0.999)
+            a[0] *= pow(10.0, 90.0 * unit());
+        if (kind < 0.3) {{
+            y = actuator_trial_tangent(&model{given}, &slope);
+            if (kind < 0.15)
+                actuator_commit(&model);
+        }} else
+            y = actuator_step(&model{given});
+        if (!isfinite(y) || !isfinite(slope)) {{
+            printf(\"step %ld: %g, slope %g at %g\\n\", k, y, slope, a[0]);
+            return 1;
+        }}
+        if (kind > 0.9999)
+            actuator_save(&model, saved);
+        else if (kind > 0.9998)
+            actuator_restore(&model, saved);
+    }}
+    return 0;
+}}
+"
+    )
+}
+
+/// `HYSID_SOAK_STEPS=100000000 cargo test --release -p hysid-export --test targets survive` is the long one.
+#[test]
+fn random_steps_survive_the_sanitizers() {
+    let install = "run: sudo apt-get install gcc";
+    let Some(compiler) = tool("exports to C", "gcc", &["--version"], install) else { return };
+    let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "20000".into());
+    for (name, model) in MODELS.iter().filter(|(_, model)| model.names().inputs.len() == 1) {
+        let folder = tempfile::tempdir().unwrap();
+        written(model, Target::C, &Options::named(NAME), folder.path());
+        fs::write(folder.path().join("soak.c"), soak(Case::of(model, 1).arguments.len())).unwrap();
+        let sanitizers = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
+        let files = ["actuator.c", "soak.c", "-lm", "-o", "soak"];
+        succeeds(Command::new(&compiler).current_dir(&folder).args(STRICT).args(sanitizers).args(files));
+        let output = succeeds(Command::new(folder.path().join("soak")).arg(&steps));
+        assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        println!("{name}: {steps} steps");
+    }
+}

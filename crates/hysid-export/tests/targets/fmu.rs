@@ -108,6 +108,7 @@ fn importers_find_nothing_wrong_and_outputs_equal_those_of_the_library() {
             succeeds(Command::new(&python).current_dir(&folder).args(arguments));
             // The importer adds up the time steps, whose roundings reach rates.
             let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
+            println!("{name}: {difference:.1e}");
             assert!(difference <= 1e-12, "{name}, {fmi:?}: {difference:e}");
         }
     }

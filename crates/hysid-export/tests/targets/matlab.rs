@@ -39,6 +39,7 @@ fn outputs_are_those_of_the_library() {
         let arguments = ["--no-gui", "--norc", "--quiet", "driver.m"];
         succeeds(Command::new(&octave).current_dir(&folder).args(arguments));
         let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
+        println!("{name}: {difference:.1e}");
         assert!(difference <= 1e-12, "{name}: {difference:e}");
     }
 }

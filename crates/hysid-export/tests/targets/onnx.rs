@@ -34,6 +34,7 @@ fn outputs_are_those_of_the_library() {
         let arguments = ["-c", DRIVER, &case.arguments.len().to_string()];
         succeeds(Command::new(&python).current_dir(&folder).args(arguments));
         let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());
+        println!("{name}: {difference:.1e}");
         assert!(difference <= 1e-12, "{name}: {difference:e}");
         succeeds(Command::new(&python).current_dir(&folder).arg("actuator_test.py"));
     }

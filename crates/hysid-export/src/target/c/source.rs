@@ -37,7 +37,7 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
 }
 
 fn uses_math(functions: &Functions) -> bool {
-    let own = [Unary::Negative, Unary::Rounded, Unary::PowerOfTwo];
+    let own = [Unary::Negative, Unary::Rounded, Unary::PowerOfTwo, Unary::Detached];
     let infix = [Binary::Sum, Binary::Difference, Binary::Product, Binary::Quotient];
     functions.unary.iter().any(|function| !own.contains(function))
         || functions.binary.iter().any(|function| !infix.contains(function))
@@ -243,6 +243,7 @@ impl Language for C {
     fn unary(&self, function: Unary) -> Option<&'static str> {
         Some(match function {
             Unary::Negative => return None,
+            Unary::Detached => "",
             Unary::Rounded => "rounded",
             Unary::PowerOfTwo => "power_of_two",
             Unary::InverseSinh => "inverse_sinh",

@@ -554,6 +554,7 @@ impl<'a> Compiler<'a> {
 
     fn unary(&mut self, function: Unary, a: &str) -> String {
         match function {
+            Unary::Detached => a.to_string(),
             Unary::Negative => self.node("Neg", &[a]),
             Unary::Magnitude => self.node("Abs", &[a]),
             Unary::SquareRoot => self.node("Sqrt", &[a]),
