@@ -638,6 +638,12 @@ pub struct Export {
     /// ignores it.
     #[arg(long, value_name = "SOURCE", default_value = "backward", value_parser = ["backward", "argument"], hide_possible_values = true)]
     pub rate: String,
+    /// Also compute half the width of the prediction band that contains this share of the rows (0.5 to 0.99)
+    #[arg(long, value_name = "SHARE")]
+    pub band: Option<f64>,
+    /// In how many data sets.
+    #[command(flatten)]
+    pub data_sets: DataSetsOptions,
     /// Version of the Functional Mock-up Interface of `--to fmu`: 3 or 2 [default: 3]
     #[arg(long, value_name = "3|2", value_parser = ["3", "2"], hide_possible_values = true)]
     pub fmi: Option<String>,

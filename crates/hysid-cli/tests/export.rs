@@ -57,12 +57,31 @@ fn a_folder_appears_with_all_that_its_manifest_lists() {
 }
 
 #[test]
+fn without_a_compiler_a_unit_has_its_sources_and_the_user_is_told() {
+    let bench = with_model();
+    let without = bench
+        .command("export stage-2.json --to fmu -o sources --json")
+        .env("CC", "no-such-cc")
+        .output()
+        .unwrap();
+    assert!(without.status.success());
+    let answer: serde_json::Value = serde_json::from_slice(&without.stdout).unwrap();
+    assert!(answer["note"].as_str().unwrap().contains("no C compiler"), "{answer}");
+    let ran = bench.command("export stage-2.json --to fmu -o told").env("CC", "no-such-cc").output().unwrap();
+    let text = String::from_utf8_lossy(&ran.stderr).into_owned();
+    assert!(text.contains("stage_2.fmu has source code only") && text.lines().count() == 2, "{text}");
+}
+
+#[test]
 fn bad_requests_are_one_line_and_leave_nothing() {
     let bench = with_model();
     bench.put("file", "mine");
     for (arguments, status, text) in [
         ("--to c --name 2nd", 2, "--name: the name \"2nd\" is no identifier"),
         ("--to c --precision f16", 2, "f16"),
+        ("--to onnx --precision f32", 2, "--precision: onnx computes in double precision"),
+        ("--to c --fmi 2", 2, "--fmi is a version of --to fmu"),
+        ("--to fmu --fmi 1", 2, "--fmi"),
         ("--to cobol", 2, "cobol"),
         ("--to c -o file", 2, "file: a file is there already"),
         ("--to c -o train.csv/new", 1, "train.csv/new: cannot be written"),

@@ -57,6 +57,17 @@ struct Sample {
 impl Description {
     /// Describes a model.
     pub fn of(model: &Model, rate: RateSource, precision: Precision) -> Self {
+        Self::with_band(model, rate, precision, None)
+    }
+
+    /// Describes a model with its prediction band: the state then has half its width at the last row, in an array
+    /// [`HALF_WIDTH`]. `band` are the terms of `Band::terms`.
+    pub(crate) fn with_band(
+        model: &Model,
+        rate: RateSource,
+        precision: Precision,
+        band: Option<(f64, f64, f64)>,
+    ) -> Self {
         let parts = Parts::of(model);
         let inputs = model.names().inputs.len();
         let mut arguments: Vec<Argument> = (0..inputs).map(Argument::Input).collect();
@@ -89,7 +100,7 @@ impl Description {
             }
             None => Real::Constant(0.0),
         };
-        let row = Row { inputs: &inputs, rate, step, is_first };
+        let row = Row { inputs: &inputs, rate, step, is_first, band };
         let output = parts.step(&mut builder, model, &row, started);
         builder.output(0, output);
         Self { program: builder.finish(), arguments }
@@ -102,7 +113,11 @@ struct Row<'a> {
     rate: Real,
     step: Real,
     is_first: Truth,
+    band: Option<(f64, f64, f64)>,
 }
+
+/// Name of the array of the state with half the width of the band.
+pub const HALF_WIDTH: &str = "half_width";
 
 /// What a model consists of: itself, or its members.
 struct Parts<'m>(Vec<&'m Model>);
@@ -134,8 +149,12 @@ impl<'m> Parts<'m> {
             self.0.iter().map(|part| history(builder, part.input_transform(), row, lead_in)).collect();
         let outputs = builder.scratch("member_output", self.0.len());
         let outside = match model.predictor() {
-            Predictor::Ensemble(ensemble) => Some(ensemble::excursion(builder, ensemble, row)),
-            Predictor::Network { .. } | Predictor::Law(_) => None,
+            Predictor::Ensemble(ensemble) => {
+                Some(ensemble::excursion(builder, ensemble.range(), &row.inputs[0]))
+            }
+            Predictor::Network { .. } | Predictor::Law(_) => row
+                .band
+                .map(|_| ensemble::excursion(builder, model.trained_ranges().inputs[0], &row.inputs[0])),
         };
         let members = |builder: &mut Builder, x: &Real, rate: &Real, step: &Real, is_first: &Truth| {
             for (index, (part, history)) in self.0.iter().zip(&histories).enumerate() {
@@ -181,6 +200,15 @@ impl<'m> Parts<'m> {
                 let is_first = builder.value(started.at(0_usize)).equals(0.0);
                 members(builder, &x.into(), &rate.into(), &step.into(), &is_first);
             });
+        }
+        if let (Some((inside, far_outside, floor)), Some(outside)) = (row.band, &outside) {
+            let disagreement = match model.predictor() {
+                Predictor::Ensemble(ensemble) => ensemble::disagreement(builder, ensemble, outside, outputs),
+                Predictor::Network { .. } | Predictor::Law(_) => Real::Constant(0.0),
+            };
+            let half_width = builder.state(HALF_WIDTH, vec![0.0]);
+            let factor = inside + outside * (far_outside - inside);
+            builder.set(half_width, 0_usize, factor * Real::Constant(floor).hypot(disagreement));
         }
         match (model.predictor(), outside) {
             (Predictor::Ensemble(ensemble), Some(outside)) => {

@@ -17,6 +17,12 @@ pub enum Error {
         /// Inputs of the model.
         inputs: usize,
     },
+    /// A band of a model that has none.
+    #[error("the model has no prediction band: only ensembles and single models that replace one have")]
+    NoBand,
+    /// A band that cannot be.
+    #[error("{0}")]
+    Band(String),
     /// The C compiler failed.
     #[error("the C compiler failed: {0}")]
     Compiler(String),

@@ -1,5 +1,7 @@
 //! What is asked for.
 
+use hysid_core::model::BandLevel;
+
 use crate::description::RateSource;
 use crate::program::Precision;
 
@@ -12,6 +14,8 @@ pub struct Options {
     pub precision: Precision,
     /// How a model that needs the rate gets it.
     pub rate: RateSource,
+    /// Also compute half the width of the prediction band with this content.
+    pub band: Option<BandLevel>,
     /// Version of a Functional Mock-up Unit.
     pub fmi: FmiVersion,
     /// Facts about the source that the model itself does not have, as they are to be shown: its file, the date.
@@ -25,6 +29,7 @@ impl Options {
             name: name.into(),
             precision: Precision::default(),
             rate: RateSource::default(),
+            band: None,
             fmi: FmiVersion::default(),
             source: Vec::new(),
         }

@@ -16,6 +16,13 @@ pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> Strin
     let (states, constants) = (subject.program().state_len(), subject.program().constants_len());
     let bytes = subject.bytes();
     let usage = (to.back_end().usage)(subject);
+    let band = subject.half_width().map_or(String::new(), |place| {
+        format!(
+            "\nHalf the width of the prediction band at the last row is number {} of the state. C, Rust and Python have \
+             a function `half_width` for it.\n",
+            place + 1
+        )
+    });
     format!(
         "# {name}
 
@@ -29,7 +36,7 @@ A model of hysteresis, written by Hysid from a model file.
 
 ## Use
 
-{usage}
+{usage}{band}
 ## Files
 
 {list}- `manifest.json`: every file with its SHA-256 checksum

@@ -1,8 +1,8 @@
 //! A model with all that targets write of it.
 
-use hysid_core::model::Model;
+use hysid_core::model::{BandLevel, Model};
 
-use crate::description::{Argument, Description};
+use crate::description::{Argument, Description, HALF_WIDTH};
 use crate::error::Error;
 use crate::options::{FmiVersion, Options};
 use crate::program::interpreter::Machine;
@@ -42,7 +42,14 @@ impl<'m> Subject<'m> {
         if !is_identifier {
             return Err(Error::Name(options.name.clone()));
         }
-        let described = Description::of(model, options.rate, options.precision);
+        let band = match options.band {
+            None => None,
+            Some(level) => {
+                let band = model.band().ok_or(Error::NoBand)?;
+                Some(band.terms(level).map_err(|error| Error::Band(error.to_string()))?)
+            }
+        };
+        let described = Description::with_band(model, options.rate, options.precision, band);
         let tangent = without_unused(&with_tangent(&described.program));
         let description = Description { program: without_unused(&described.program), ..described };
         let ranges = model.trained_ranges();
@@ -92,6 +99,18 @@ impl<'m> Subject<'m> {
             Argument::Rate => "rate".to_string(),
         };
         self.description.arguments.iter().map(name).collect()
+    }
+
+    /// The place among the numbers of the state that has half the width of the band, if the export has one.
+    pub fn half_width(&self) -> Option<usize> {
+        let mut place = 0;
+        for (_, name, values) in self.program().states() {
+            if name == HALF_WIDTH {
+                return Some(place);
+            }
+            place += values.len();
+        }
+        None
     }
 
     /// Bytes of a number.
@@ -160,6 +179,15 @@ impl<'m> Subject<'m> {
             "error on held-out data".into(),
             provenance.validation.as_ref().map_or("not measured".into(), percent),
         ));
+        if let Some(BandLevel { probability, of_ten }) = self.options.band {
+            let share = 100.0 * probability;
+            facts.push((
+                "prediction band".into(),
+                format!(
+                    "y ± half the width contains {share} % of the rows, or more, in {of_ten} of 10 data sets"
+                ),
+            ));
+        }
         facts.push(("precision".into(), self.precision().name().into()));
         if let Some(rounding) = self.rounding() {
             let text = format!(

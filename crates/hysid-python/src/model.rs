@@ -64,12 +64,14 @@ impl Model {
         precision: &str,
         rate: &str,
         fmi: u32,
+        band: Option<(f64, usize)>,
         force: bool,
     ) -> PyResult<(Vec<String>, Option<String>)> {
         let target = Target::named(to).ok_or_else(|| refused(format!("there is no target {to:?}")))?;
         let options = Options {
             precision: if precision == "f32" { Precision::Single } else { Precision::Double },
             rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+            band: band.map(|(probability, of_ten)| BandLevel { probability, of_ten }),
             fmi: if fmi == 2 { FmiVersion::Two } else { FmiVersion::Three },
             ..Options::named(name)
         };

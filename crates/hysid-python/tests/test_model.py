@@ -4,6 +4,7 @@ import os
 import pickle
 import stat
 import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -68,6 +69,35 @@ def test_an_export_is_compiled_and_passes_its_own_test(quick_model, tmp_path):
         with pytest.raises(ValueError, match=message):
             quick_model.export(**{"to": "c", "folder": tmp_path / "new", **arguments})
     assert not (tmp_path / "new").exists()
+
+
+def test_every_target_has_its_files(quick_model, tmp_path):
+    for target, file in [
+        ("fmu", "stage.fmu"),
+        ("matlab", "stage.m"),
+        ("opensees", "stageMaterial.cpp"),
+        ("rust", "stage.rs"),
+        ("onnx", "stage_step.onnx"),
+        ("python", "stage.py"),
+    ]:
+        assert file in quick_model.export(target, tmp_path / target, name="stage")
+    subprocess.run([sys.executable, "stage_test.py"], cwd=tmp_path / "python", check=True)
+    with pytest.raises(ValueError, match="fmi 1: it is 3 or 2"):
+        quick_model.export("fmu", tmp_path / "new", fmi=1)
+    with pytest.raises(ValueError, match="python computes in double precision"):
+        quick_model.export("python", tmp_path / "new", name="stage", precision="f32")
+
+
+def test_trials_leave_the_committed_state_as_it_is(quick_model):
+    stepper, other = quick_model.stepper(), quick_model.stepper()
+    for x in (0.1, 0.4, 0.2, -0.3):
+        stepper.trial(x + 1.0)
+        stepper.revert()
+        y, slope = stepper.trial_tangent(x)
+        assert (stepper.trial(x + 1e-3) - y) / 1e-3 == pytest.approx(slope, rel=0.1, abs=1e-3)
+        assert stepper.trial(x) == y
+        stepper.commit()
+        assert other.step(x) == y
 
 
 def test_links_and_pipes_stay_what_they_are(quick_model, tmp_path):

@@ -31,11 +31,13 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         name,
         precision: if arguments.precision == "f32" { Precision::Single } else { Precision::Double },
         rate: if arguments.rate == "argument" { RateSource::Argument } else { RateSource::Backward },
+        band: arguments.data_sets.level(arguments.band),
         fmi: if arguments.fmi.as_deref() == Some("2") { FmiVersion::Two } else { FmiVersion::Three },
         source: source(&arguments.model),
     };
     let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
         Error::Name(_) if arguments.name.is_some() => Usage(format!("--name: {error}")).into(),
+        Error::Band(_) | Error::NoBand => Usage(format!("--band: {error}")).into(),
         Error::Precision(_) => Usage(format!("--precision: {error}")).into(),
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;

@@ -201,9 +201,25 @@ impl Band {
 
     /// Half the width of the band at a row, in the output's unit.
     pub(crate) fn half_width(&self, level: BandLevel, disagreement: f64, outside: f64) -> f64 {
-        let inside = factor(&self.inside, level.probability);
-        let factor = inside + outside * (factor(&self.outside, level.probability) - inside);
+        let (inside, far_outside) = self.factors(level);
+        let factor = inside + outside * (far_outside - inside);
         level.widening() * factor * self.floor.hypot(disagreement)
+    }
+
+    /// `q` inside and outside the trained range, without the widening for other data sets.
+    fn factors(&self, level: BandLevel) -> (f64, f64) {
+        (factor(&self.inside, level.probability), factor(&self.outside, level.probability))
+    }
+
+    /// `g_k q` inside and outside the trained range, and `f` in the unit of the output: half the width of the band is
+    /// `g_k q √(f² + d²)` (theory.md (11.7), (11.12)).
+    ///
+    /// # Errors
+    /// A probability that is not from 0.5 to 0.99, or not 5 to 9 of ten.
+    pub fn terms(&self, level: BandLevel) -> Result<(f64, f64, f64)> {
+        level.check()?;
+        let (inside, outside) = self.factors(level);
+        Ok((level.widening() * inside, level.widening() * outside, self.floor))
     }
 
     /// Rejects invalid factors of a file.

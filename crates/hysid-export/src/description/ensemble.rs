@@ -2,18 +2,15 @@
 
 use hysid_core::model::{Ensemble, Group, NodeKind};
 
-use crate::description::Row;
 use crate::program::expression::{Real, Whole};
 use crate::program::{Array, Builder};
 
 /// Distance outside the trained range, as a share of its width, from which a record counts as fully outside.
 const WAY_OUT: f64 = 0.06;
 
-/// The degree of having been outside, 0 to 1 (theory.md (11.4)).
-pub(super) fn excursion(builder: &mut Builder, ensemble: &Ensemble, row: &Row<'_>) -> Real {
-    let (low, high) = ensemble.range();
+/// The degree of having been outside a range, 0 to 1 (theory.md (11.4)).
+pub(super) fn excursion(builder: &mut Builder, (low, high): (f64, f64), x: &Real) -> Real {
     let farthest = builder.state("farthest", vec![0.0]);
-    let x = &row.inputs[0];
     let below = builder.value(low - x);
     let above = builder.value(x - high);
     let before = builder.value(farthest.at(0_usize));
@@ -40,6 +37,62 @@ pub(super) fn output(builder: &mut Builder, group: &Group, outside: &Real, of_me
     builder.remark(format!("weighted median: {}", group.name));
     let count = nodes.len();
     let values = builder.scratch("median_value", count);
+    let weights = node_weights(builder, group, outside);
+    for (k, value) in nodes.into_iter().enumerate() {
+        insert(builder, k, value, values, weights);
+    }
+    quantile(builder, count, values, weights, 0.5)
+}
+
+/// Disagreement of the members: half the distance between the 15.9 % and 84.1 % quantiles of their outputs.
+pub(super) fn disagreement(
+    builder: &mut Builder,
+    ensemble: &Ensemble,
+    outside: &Real,
+    of_members: Array,
+) -> Real {
+    builder.remark("disagreement of the members");
+    let mut shares = Vec::new();
+    weights_in_whole(builder, ensemble.group(), outside, &Real::Constant(1.0), &mut shares);
+    let count = shares.len();
+    let values = builder.scratch("member_value", count);
+    let weights = builder.scratch("member_weight", count);
+    for (k, (_, share)) in shares.iter().enumerate() {
+        builder.set(weights, k, share);
+    }
+    for (k, (member, _)) in shares.iter().enumerate() {
+        insert(builder, k, of_members.at(*member), values, weights);
+    }
+    let low = quantile(builder, count, values, weights, 0.159);
+    let high = quantile(builder, count, values, weights, 0.841);
+    builder.value(0.5 * (high - low))
+}
+
+/// Members with their weights in the whole.
+fn weights_in_whole(
+    builder: &mut Builder,
+    group: &Group,
+    outside: &Real,
+    share: &Real,
+    all: &mut Vec<(usize, Real)>,
+) {
+    let weights = node_weights(builder, group, outside);
+    let total = builder.variable(0.0);
+    builder.each(0_usize, group.nodes.len(), |builder, k| {
+        builder.assign(total, Real::from(total) + weights.at(&k));
+    });
+    for (k, node) in group.nodes.iter().enumerate() {
+        let share = builder.value(share * weights.at(k) / Real::from(total));
+        match &node.kind {
+            NodeKind::Member(member) => all.push((*member, share)),
+            NodeKind::Group(group) => weights_in_whole(builder, group, outside, &share, all),
+        }
+    }
+}
+
+/// The weights of a group's nodes.
+fn node_weights(builder: &mut Builder, group: &Group, outside: &Real) -> Array {
+    let count = group.nodes.len();
     let weights = builder.scratch("median_weight", count);
     let of_inside = builder.constants("inside", group.nodes.iter().map(|node| node.weights.inside).collect());
     let of_outside =
@@ -54,10 +107,7 @@ pub(super) fn output(builder: &mut Builder, group: &Group, outside: &Real, of_me
     if group.nodes.iter().all(|node| node.weights.inside == 0.0 || node.weights.outside == 0.0) {
         blend_where_all_are_zero(builder, group, outside, weights);
     }
-    for (k, value) in nodes.into_iter().enumerate() {
-        insert(builder, k, value, values, weights);
-    }
-    median(builder, count, values, weights)
+    weights
 }
 
 /// The weights `(1-o) a/Σa + o b/Σb` (theory.md (11.9)).
@@ -95,11 +145,11 @@ fn insert(builder: &mut Builder, k: usize, value: Real, values: Array, weights: 
     builder.set(weights, here(), weight);
 }
 
-/// The median of sorted values, with linear interpolation between the levels of their weights (theory.md (11.3)).
-fn median(builder: &mut Builder, count: usize, values: Array, weights: Array) -> Real {
+/// A quantile of sorted values, with linear interpolation between the levels of their weights (theory.md (11.3)).
+fn quantile(builder: &mut Builder, count: usize, values: Array, weights: Array, level_wanted: f64) -> Real {
     let total = builder.variable(0.0);
     builder.each(0_usize, count, |builder, k| builder.assign(total, Real::from(total) + weights.at(&k)));
-    let wanted = builder.value(0.5 * Real::from(total));
+    let wanted = builder.value(level_wanted * Real::from(total));
     let passed = builder.variable(0.0);
     let level = builder.variable(0.0);
     let result = builder.variable(values.at(0_usize));

@@ -62,12 +62,10 @@ fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
 
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let names = description::variable_names(subject);
-    let (output, inputs) = names.split_last().map_or((String::new(), Vec::new()), |(last, rest)| {
-        (format!("`{last}`"), rest.iter().map(|name| format!("`{name}`")).collect())
-    });
+    let (inputs, output) = description::variable_names(subject);
+    let inputs: Vec<String> = inputs.iter().map(|name| format!("`{name}`")).collect();
     format!(
-        "`{name}.fmu` is a unit for co-simulation with FMI {version}: inputs {inputs}, output {output}. It has its source
+        "`{name}.fmu` is a unit for co-simulation with FMI {version}: inputs {inputs}, output `{output}`. It has its source
 code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
 
 A row of the model is the inputs at a communication point. A step from there commits them. The output after inputs were

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::description::Argument;
+use crate::description::{Argument, HALF_WIDTH};
 use crate::error::Error;
 use crate::program::expression::{Binary, Unary};
 use crate::program::unused::used_arrays;
@@ -219,6 +219,21 @@ fn class(subject: &Subject<'_>) -> String {
         prepared += "        rate = np.asarray(rate, dtype=float).tolist()\n";
         row += ", rate[row]";
     }
+    let half_width = match subject.half_width() {
+        None => String::new(),
+        Some(_) => {
+            let mut states = subject.program().states();
+            let array = states.position(|(_, name, _)| name == HALF_WIDTH).unwrap_or_default();
+            format!(
+                "    def half_width(self):
+        \"\"\"Give half the width of the prediction band at the last trial or step.\"\"\"
+        state = self._committed if self._trial is None else self._trial
+        return state[{array}][0]
+
+"
+            )
+        }
+    };
     format!(
         "class Model:
     \"\"\"One instance of the model, with a committed state and a trial state.\"\"\"
@@ -265,7 +280,7 @@ fn class(subject: &Subject<'_>) -> String {
         self._committed = [[next(numbers) for _ in values] for values in _INITIAL_STATE]
         self._trial = None
 
-    def simulate(self{names}):
+{half_width}    def simulate(self{names}):
         \"\"\"Give the outputs over a whole record, from the initial state.\"\"\"
         self.reset()
 {prepared}        return np.array([self.step({row}) for row in range(len(x))])

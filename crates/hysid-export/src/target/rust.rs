@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use crate::description::HALF_WIDTH;
 use crate::error::Error;
 use crate::program::expression::{Binary, Unary};
 use crate::program::functions::Functions;
@@ -108,7 +109,7 @@ pub type Real = {real};
     text += &state(&rust, step, subject.bytes());
     text += &function(&rust, step, "advance", false);
     text += &function(&rust, tangent, "advance_with_tangent", true);
-    text += &model(&rust);
+    text += &model(&rust, subject.half_width().is_some());
     text
 }
 
@@ -272,7 +273,19 @@ fn function(rust: &Rust, program: &Program, name: &str, with_tangent: bool) -> S
     text
 }
 
-fn model(rust: &Rust) -> String {
+fn model(rust: &Rust, has_band: bool) -> String {
+    let half_width = match has_band {
+        false => String::new(),
+        true => format!(
+            "
+    /// Half the width of the prediction band at the last trial or step, in the unit of the output.
+    pub fn half_width(&self) -> Real {{
+        let state = if self.has_trial {{ &self.trial }} else {{ &self.committed }};
+        state.{HALF_WIDTH}_[0]
+    }}
+"
+        ),
+    };
     let parameters: String = rust.arguments.iter().map(|argument| format!(", {argument}: Real")).collect();
     let arguments: String = rust.arguments.iter().map(|argument| format!(", {argument}")).collect();
     format!(
@@ -338,7 +351,7 @@ impl Model {{
         self.committed = state;
         self.has_trial = false;
     }}
-}}
+{half_width}}}
 "
     )
 }

@@ -3,9 +3,15 @@
 use std::fs;
 use std::process::Command;
 
-use hysid_export::{Options, Precision, Target};
+use hysid::Fit;
+use hysid_core::data::record::Excitation;
+use hysid_core::model::BandLevel;
+use hysid_export::description::{Argument, Description, RateSource};
+use hysid_export::{Error, Options, Precision, Target, export};
+use serde_json::json;
 
 use crate::case::{Case, MODELS, NAME, written};
+use crate::models::{data, path, time_step};
 use crate::tools::{succeeds, tool};
 
 /// Warnings are errors.
@@ -187,4 +193,89 @@ fn random_steps_survive_the_sanitizers() {
         assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
         println!("{name}: {steps} steps");
     }
+}
+
+/// Reads rows of arguments in binary, writes outputs and half widths of the band.
+fn band_driver(arguments: usize) -> String {
+    let given: String = (0..arguments).map(|index| format!(", row[{index}]")).collect();
+    format!(
+        "#include <stdio.h>
+#include \"actuator.h\"
+int main(void)
+{{
+    static actuator_model model;
+    double row[{arguments}];
+    actuator_reset(&model);
+    while (fread(row, sizeof(double), {arguments}, stdin) == {arguments}) {{
+        double pair[2];
+        pair[0] = actuator_trial(&model{given});
+        pair[1] = actuator_half_width(&model);
+        actuator_commit(&model);
+        if (pair[1] != actuator_half_width(&model))
+            return 1;
+        fwrite(pair, sizeof pair, 1, stdout);
+    }}
+    return 0;
+}}
+"
+    )
+}
+
+#[test]
+fn the_band_is_that_of_the_library() {
+    const ROWS: usize = 600;
+    let Some(compiler) = compilers().into_iter().next() else { return };
+    // Without the rate, which the library forms by another method than backward differences.
+    let fit =
+        Fit::new().model("auto").seed(3).rate(None).option("starts", json!(1)).option("epochs", json!(2));
+    let model = &fit.run(&data(1)).unwrap();
+    let level = BandLevel { probability: 0.9, of_ten: 8 };
+    let inputs: Vec<f64> = path(ROWS, 1).into_iter().map(|row| row[0]).collect();
+    let mut time = 0.0;
+    let times: Vec<f64> = (0..ROWS)
+        .map(|row| {
+            time += time_step(row);
+            time
+        })
+        .collect();
+    let excitation = Excitation::new("path", vec![&inputs]).unwrap();
+    let excitation = excitation.with_time(&times).unwrap();
+    let expected = model.predict(&excitation, level).unwrap();
+
+    let options = Options { band: Some(level), ..Options::named(NAME) };
+    let folder = tempfile::tempdir().unwrap();
+    written(model, Target::C, &options, folder.path());
+    let arguments = Description::of(model, RateSource::Backward, Precision::Double).arguments;
+    let mut rows: Vec<u8> = Vec::new();
+    for row in 0..ROWS {
+        let before = if row > 0 { times[row - 1] } else { 0.0 };
+        for argument in &arguments {
+            let value = match argument {
+                Argument::Input(_) => inputs[row],
+                Argument::TimeStep => times[row] - before,
+                Argument::Rate => unreachable!("no rate"),
+            };
+            rows.extend(value.to_le_bytes());
+        }
+    }
+    fs::write(folder.path().join("rows"), rows).unwrap();
+    fs::write(folder.path().join("driver.c"), band_driver(arguments.len())).unwrap();
+    let files = ["actuator.c", "driver.c", "-lm", "-o", "driver"];
+    succeeds(Command::new(&compiler).current_dir(folder.path()).args(STRICT).args(files));
+    let input = fs::File::open(folder.path().join("rows")).unwrap();
+    let output = succeeds(Command::new(folder.path().join("driver")).stdin(input));
+    let found: Vec<f64> =
+        output.stdout.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let pairs: Vec<&[f64]> = found.chunks(2).collect();
+    assert_eq!(pairs.len(), ROWS);
+    let scale = expected.output.iter().fold(0.0, |largest: f64, y| largest.max(y.abs()));
+    for (row, pair) in pairs.iter().enumerate() {
+        let half = 0.5 * (expected.high[row] - expected.low[row]);
+        assert!((pair[0] - expected.output[row]).abs() < 1e-9 * scale, "row {row}: {pair:?}");
+        assert!((pair[1] - half).abs() < 1e-9 * scale, "row {row}: {pair:?}, not {half}");
+    }
+    let without = MODELS.iter().find(|(_, model)| model.band().is_none()).unwrap();
+    assert_eq!(export(&without.1, Target::C, &options), Err(Error::NoBand));
+    let options = Options { band: Some(0.2.into()), ..options };
+    assert!(matches!(export(model, Target::C, &options), Err(Error::Band(_))));
 }

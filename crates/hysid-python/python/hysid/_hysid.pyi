@@ -65,6 +65,7 @@ class Model:
         precision: str,
         rate: str,
         fmi: int,
+        band: tuple[float, int] | None,
         force: bool,
     ) -> tuple[list[str], str | None]: ...
     def parameters(self) -> int: ...

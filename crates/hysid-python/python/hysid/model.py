@@ -221,6 +221,8 @@ class Model:
         precision: str = "f64",
         rate: str = "backward",
         fmi: int = 3,
+        band: float | None = None,
+        of_ten: int = 5,
         force: bool = False,
     ) -> list[str]:
         """Write the model as source code for other programs, with tests and test vectors.
@@ -242,6 +244,10 @@ class Model:
             argument of each step. A model without rate ignores it.
         fmi : {3, 2}
             Version of the Functional Mock-up Interface of `to="fmu"`.
+        band : float, optional
+            Also compute half the width of the prediction band that contains this share of the rows (0.5 to 0.99).
+        of_ten : int
+            The band contains that share, or more, in so many of ten data sets (5 to 9).
         force : bool
             Replace a folder even if Hysid did not write it, with all that is in it.
 
@@ -268,7 +274,8 @@ class Model:
                 raise ValueError(f"{what} {given!r}: it is {' or '.join(map(repr, known))}")
         if name is None:
             name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
-        files, note = self._native.export(to, folder, name, precision, rate, fmi, truth("force", force))
+        level = None if band is None else (real("band", band), whole("of_ten", of_ten))
+        files, note = self._native.export(to, folder, name, precision, rate, fmi, level, truth("force", force))
         warn([] if note is None else [note])
         return files
 

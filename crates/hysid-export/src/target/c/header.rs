@@ -23,6 +23,15 @@ pub(super) fn header(subject: &Subject<'_>) -> String {
         .collect();
     let parameters: String =
         subject.argument_names().iter().map(|argument| format!(", {name}_real {argument}")).collect();
+    let half_width = match subject.half_width() {
+        Some(_) => format!(
+            "/* Half the width of the prediction band at the last trial or step, in the unit of the output. */
+{name}_real {name}_half_width(const {name}_model *model);
+
+"
+        ),
+        None => String::new(),
+    };
     format!(
         "/* {name}.h: a model of hysteresis, written by Hysid.
  *
@@ -71,7 +80,7 @@ void {name}_revert({name}_model *model);
 /* A trial that is committed at once, without a copy of the state. */
 {name}_real {name}_step({name}_model *model{parameters});
 
-/* Saves the committed state as {upper}_STATE_BYTES bytes, for the same program on the same kind of machine. */
+{half_width}/* Saves the committed state as {upper}_STATE_BYTES bytes, for the same program on the same kind of machine. */
 void {name}_save(const {name}_model *model, unsigned char *bytes);
 
 /* Restores a saved state. */

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use crate::description::HALF_WIDTH;
 use crate::program::expression::{Binary, Unary};
 use crate::program::functions::Functions;
 use crate::program::unused::used_arrays;
@@ -33,6 +34,16 @@ pub(super) fn source(subject: &Subject<'_>) -> String {
     text += &function(&c, name, step, "advance", false);
     text += &function(&c, name, tangent, "advance_with_tangent", true);
     text += &around(&c, name);
+    if subject.half_width().is_some() {
+        text += &format!(
+            "
+real {name}_half_width(const {name}_model *model)
+{{
+    return (model->has_trial ? &model->trial : &model->committed)->{HALF_WIDTH}[0];
+}}
+"
+        );
+    }
     text
 }
 

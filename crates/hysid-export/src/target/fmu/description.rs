@@ -14,6 +14,9 @@ pub(super) const FIRST_INPUT: usize = 1;
 /// Value reference of the output.
 pub(super) const OUTPUT: usize = 1000;
 
+/// Value reference of half the width of the band.
+pub(super) const HALF_WIDTH: usize = 1001;
+
 /// A variable of the FMU.
 struct Variable {
     name: String,
@@ -35,7 +38,7 @@ pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
     subject.description().arguments.iter().filter_map(of).collect()
 }
 
-/// The inputs and, last, the output.
+/// The inputs, the output and, if there is a band, half its width.
 fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     let names = subject.model().names();
     let time = names.time.as_deref().and_then(unit::of_column);
@@ -61,6 +64,13 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
         unit: unit::of_column(&names.output),
         description: "output".into(),
     });
+    if subject.half_width().is_some() {
+        all.push(Variable {
+            name: format!("half width of {}", names.output),
+            unit: unit::of_column(&names.output),
+            description: "half the width of the prediction band".into(),
+        });
+    }
     let mut taken = BTreeSet::from(["time".to_string()]);
     for variable in &mut all {
         while !taken.insert(variable.name.clone()) {
@@ -70,9 +80,16 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     all
 }
 
-/// Names of the inputs and, last, of the output.
-pub(super) fn variable_names(subject: &Subject<'_>) -> Vec<String> {
-    variables(subject).into_iter().map(|variable| variable.name).collect()
+/// Names of the inputs, and of the output.
+pub(super) fn variable_names(subject: &Subject<'_>) -> (Vec<String>, String) {
+    let inputs = start_values(subject).len();
+    let mut names = variables(subject).into_iter().map(|variable| variable.name);
+    (names.by_ref().take(inputs).collect(), names.next().unwrap_or_default())
+}
+
+/// The value references of the outputs.
+fn outputs(subject: &Subject<'_>) -> Vec<usize> {
+    [OUTPUT].into_iter().chain(subject.half_width().map(|_| HALF_WIDTH)).collect()
 }
 
 /// The text of the file.
@@ -90,7 +107,7 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
             .to_string(),
     ];
     for (index, (variable, kind)) in variables.iter().zip(kinds(subject)).enumerate() {
-        let reference = reference(index, &variables);
+        let reference = reference(subject, index);
         lines.push(format!(
             "    <Float64 name=\"{}\" valueReference=\"{reference}\" {}{} description=\"{}\"/>",
             escaped(&variable.name),
@@ -100,8 +117,14 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
         ));
     }
     let inputs: Vec<String> =
-        (0..variables.len() - 1).map(|index| (FIRST_INPUT + index).to_string()).collect();
+        (0..start_values(subject).len()).map(|index| (FIRST_INPUT + index).to_string()).collect();
     let inputs = inputs.join(" ");
+    let unknowns = |kind: &str| -> String {
+        let line = |reference: &usize| {
+            format!("    <{kind} valueReference=\"{reference}\" dependencies=\"{inputs}\"/>\n")
+        };
+        outputs(subject).iter().map(line).collect()
+    };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
 <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"
@@ -117,9 +140,7 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
 {lines}
   </ModelVariables>
   <ModelStructure>
-    <Output valueReference=\"{OUTPUT}\" dependencies=\"{inputs}\"/>
-    <InitialUnknown valueReference=\"{OUTPUT}\" dependencies=\"{inputs}\"/>
-  </ModelStructure>
+{output_lines}{unknown_lines}  </ModelStructure>
 </fmiModelDescription>
 ",
         name = subject.name(),
@@ -127,6 +148,8 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
         tool = env!("CARGO_PKG_VERSION"),
         units = units(&variables),
         lines = lines.join("\n"),
+        output_lines = unknowns("Output"),
+        unknown_lines = unknowns("InitialUnknown"),
     )
 }
 
@@ -145,15 +168,19 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
                 "    <ScalarVariable name=\"{}\" valueReference=\"{}\" {kind} description=\"{}\">\n      \
                  <Real{}{start}/>\n    </ScalarVariable>",
                 escaped(&variable.name),
-                reference(index, &variables),
+                reference(subject, index),
                 variable.description,
                 unit_of(variable),
             )
         })
         .collect();
     // In version 2, dependencies are places in the list of variables, from 1 on.
-    let inputs: Vec<String> = (1..variables.len()).map(|place| place.to_string()).collect();
-    let (inputs, output) = (inputs.join(" "), variables.len());
+    let count = start_values(subject).len();
+    let inputs: Vec<String> = (1..=count).map(|place| place.to_string()).collect();
+    let inputs = inputs.join(" ");
+    let unknowns: String = (count + 1..=variables.len())
+        .map(|place| format!("      <Unknown index=\"{place}\" dependencies=\"{inputs}\"/>\n"))
+        .collect();
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
 <fmiModelDescription fmiVersion=\"2.0\" modelName=\"{name}\" guid=\"{token}\"
@@ -176,11 +203,9 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
   </ModelVariables>
   <ModelStructure>
     <Outputs>
-      <Unknown index=\"{output}\" dependencies=\"{inputs}\"/>
-    </Outputs>
+{unknowns}    </Outputs>
     <InitialUnknowns>
-      <Unknown index=\"{output}\" dependencies=\"{inputs}\"/>
-    </InitialUnknowns>
+{unknowns}    </InitialUnknowns>
   </ModelStructure>
 </fmiModelDescription>
 ",
@@ -211,12 +236,14 @@ pub(super) fn build_description(name: &str) -> String {
 fn kinds(subject: &Subject<'_>) -> Vec<String> {
     let input = |start: &f64| format!("causality=\"input\" variability=\"continuous\" start=\"{start:?}\"");
     let mut kinds: Vec<String> = start_values(subject).iter().map(input).collect();
-    kinds.push("causality=\"output\" variability=\"continuous\" initial=\"calculated\"".into());
+    let output = || "causality=\"output\" variability=\"continuous\" initial=\"calculated\"".to_string();
+    kinds.extend(outputs(subject).iter().map(|_| output()));
     kinds
 }
 
-fn reference(index: usize, variables: &[Variable]) -> usize {
-    if index + 1 == variables.len() { OUTPUT } else { FIRST_INPUT + index }
+fn reference(subject: &Subject<'_>, index: usize) -> usize {
+    let inputs = start_values(subject).len();
+    if index < inputs { FIRST_INPUT + index } else { outputs(subject)[index - inputs] }
 }
 
 fn unit_of(variable: &Variable) -> String {

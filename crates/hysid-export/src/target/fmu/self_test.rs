@@ -67,7 +67,7 @@ def row(arguments):
 def compare(expected, tangent=None):
     differences.append(abs(get(output)[0] - expected) / SCALE)
     if tangent is not None:
-        slope = fmu.getDirectionalDerivative(output, inputs[:1], [1.0])[0]
+        slope = fmu.getDirectionalDerivative(output[:1], inputs[:1], [1.0])[0]
         differences.append(abs(slope - tangent) / (SCALE + abs(tangent)))
 
 

@@ -7,7 +7,7 @@
 use crate::description::Argument;
 use crate::options::FmiVersion;
 use crate::subject::Subject;
-use crate::target::fmu::description::{FIRST_INPUT, OUTPUT, start_values};
+use crate::target::fmu::description::{FIRST_INPUT, HALF_WIDTH, OUTPUT, start_values};
 
 /// The text of `fmi3.c` or `fmi2.c`.
 pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
@@ -28,7 +28,7 @@ pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -
 #define FIRST_INPUT {FIRST_INPUT}
 #define INPUTS {inputs}
 #define OUTPUT {OUTPUT}
-
+{half_width}
 typedef {name}_model model_type;
 #define model_reset {name}_reset
 #define model_commit {name}_commit
@@ -46,6 +46,13 @@ static double model_trial(model_type *model, const double *inputs, double time_s
         number = version.number(),
         name = subject.name(),
         inputs = start_values(subject).len(),
+        half_width = match subject.half_width() {
+            None => String::new(),
+            Some(_) => format!(
+                "#define HALF_WIDTH {HALF_WIDTH}\n#define model_half_width {}_half_width\n",
+                subject.name()
+            ),
+        },
         start = start_values(subject).iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", "),
         unused = match subject.description().arguments.contains(&Argument::TimeStep) {
             true => "",
