@@ -99,12 +99,13 @@ int main(void)
     )
 }
 
+/// `HYSID_ROWS=1000000 cargo test --release -p hysid-export --test targets last_bit` is the long one.
 #[test]
 fn outputs_equal_those_of_the_library_to_the_last_bit() {
-    const ROWS: usize = 20_000;
+    let rows = std::env::var("HYSID_ROWS").map_or(20_000, |rows| rows.parse().unwrap());
     let Some(compiler) = compilers().into_iter().next() else { return };
     for (name, model) in MODELS.iter() {
-        let case = Case::of(model, ROWS);
+        let case = Case::of(model, rows);
         let folder = tempfile::tempdir().unwrap();
         written(model, Target::C, &Options::named(NAME), folder.path());
         fs::write(folder.path().join("driver.c"), driver(case.arguments.len())).unwrap();
@@ -115,6 +116,7 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
         let output =
             succeeds(Command::new(folder.path().join("driver")).stdin(fs::File::open(&input).unwrap()));
         case.must_equal(name, &output.stdout);
+        println!("{name}: {rows} rows are equal");
     }
 }
 
