@@ -120,11 +120,16 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
     }
 }
 
-/// Random steps of all sizes, and with every trial and commit; a value that is not finite ends it.
-fn soak(arguments: usize) -> String {
+/// A program of random steps of all sizes, trials and commits; it fails at a value that is not finite.
+fn soak(kinds: &[Argument]) -> String {
+    let arguments = kinds.len();
     let given: String = (0..arguments).map(|index| format!(", a[{index}]")).collect();
-    let time =
-        if arguments > 1 { format!("a[{}] = 0.001 + 0.01 * unit();", arguments - 1) } else { String::new() };
+    let others: String = (1..arguments)
+        .map(|index| match kinds[index] {
+            Argument::TimeStep => format!("a[{index}] = 0.001 + 0.01 * unit();"),
+            _ => format!("a[{index}] = 10.0 * unit();"),
+        })
+        .collect();
     format!(
         "#include <math.h>
 #include <stdint.h>
@@ -154,7 +159,7 @@ int main(int count, char **values)
             a[0] = 40.0;
         if (fabs(a[0] - 40.0) > 300.0)
             a[0] = 40.0 + 10.0 * (unit() - 0.5);
-        {time}
+        {others}
         if (kind > 0.999)
             a[0] *= pow(10.0, 90.0 * unit());
         if (kind < 0.3) {{
@@ -184,11 +189,11 @@ fn random_steps_survive_the_sanitizers() {
     let install = "run: sudo apt-get install gcc";
     let Some(compiler) = tool("exports to C", "gcc", &["--version"], install) else { return };
     let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "20000".into());
-    for (name, model) in MODELS.iter().filter(|(_, model)| model.names().inputs.len() == 1) {
+    for (name, model) in MODELS.iter() {
         let folder = tempfile::tempdir().unwrap();
         written(model, Target::C, &Options::named(NAME), folder.path());
-        fs::write(folder.path().join("soak.c"), soak(Case::of(model, 1).arguments.len())).unwrap();
-        let sanitizers = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
+        fs::write(folder.path().join("soak.c"), soak(&Case::of(model, 1).arguments)).unwrap();
+        let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
         let files = ["actuator.c", "soak.c", "-lm", "-o", "soak"];
         succeeds(Command::new(&compiler).current_dir(&folder).args(STRICT).args(sanitizers).args(files));
         let output = succeeds(Command::new(folder.path().join("soak")).arg(&steps));
