@@ -9,6 +9,14 @@ pub enum Error {
     /// A name that is no identifier of the target's language.
     #[error("the name {0:?} is no identifier: letters, digits and underscores, and it begins with a letter")]
     Name(String),
+    /// A name that has another meaning in the target's language.
+    #[error("{name:?} has another meaning in exports to {target}: choose another name")]
+    Reserved {
+        /// The name.
+        name: String,
+        /// The target.
+        target: &'static str,
+    },
     /// More inputs than the target takes.
     #[error("{target} has one input, and the model has {inputs}")]
     Inputs {

@@ -22,11 +22,14 @@ pub struct Export {
 /// Exports a model.
 ///
 /// # Errors
-/// A name that is no identifier; a precision that the target does not have; a model that cannot be exported there.
+/// A name that is no identifier, or that the target has already; a precision that the target does not have; a model that cannot be exported there.
 pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Error> {
     let back_end = to.back_end();
     if options.precision == Precision::Single && !back_end.has_single_precision {
         return Err(Error::Precision(back_end.name));
+    }
+    if back_end.reserved.contains(&options.name.as_str()) {
+        return Err(Error::Reserved { name: options.name.clone(), target: back_end.name });
     }
     let subject = Subject::of(model, options)?;
     let Written { mut files, note } = (back_end.write)(&subject)?;

@@ -1,6 +1,7 @@
 //! A model with all that targets write of it.
 
 use hysid_core::model::{BandLevel, Model};
+use hysid_core::significant::Significant;
 
 use crate::description::{Argument, Description, HALF_WIDTH};
 use crate::error::Error;
@@ -148,8 +149,8 @@ impl<'m> Subject<'m> {
         for (index, argument) in self.description.arguments.iter().enumerate() {
             let text = match *argument {
                 Argument::Input(input) => {
-                    let (low, high) = ranges.inputs[input];
-                    format!("{}, trained from {low} to {high}", names.inputs[input])
+                    let range = shown(ranges.inputs[input]);
+                    format!("{}, trained from {range}", names.inputs[input])
                 }
                 Argument::TimeStep => {
                     let time = names.time.as_deref().unwrap_or("time");
@@ -157,22 +158,20 @@ impl<'m> Subject<'m> {
                 }
                 Argument::Rate => {
                     let of = &names.inputs[0];
-                    let range = ranges
-                        .rate
-                        .map_or(String::new(), |(low, high)| format!(", trained from {low} to {high}"));
+                    let range =
+                        ranges.rate.map_or(String::new(), |range| format!(", trained from {}", shown(range)));
                     format!("rate of {of} per unit of time{range}")
                 }
             };
             facts.push((format!("argument {}", index + 1), text));
         }
-        let (low, high) = ranges.output;
-        facts.push(("output".into(), format!("{}, {low} to {high} in training", names.output)));
+        facts.push(("output".into(), format!("{}, {} in training", names.output, shown(ranges.output))));
         let provenance = self.model.provenance();
         let percent = |errors: &hysid_core::data::metrics::Errors| {
             let relative = errors.nrmse_std_percent.map_or(String::new(), |percent| {
-                format!(", {percent:.3} % of the output's standard deviation")
+                format!(", {:.3} % of the output's standard deviation", Significant(percent))
             });
-            format!("RMSE {:.4e}{relative}", errors.rmse)
+            format!("RMSE {:.4}{relative}", Significant(errors.rmse))
         };
         facts.push(("error in training".into(), percent(provenance.trained_error())));
         facts.push((
@@ -223,4 +222,9 @@ fn checksum_of(model: &Model) -> String {
     let text = model.to_json();
     let behind = text.rsplit("\"checksum\"").next().unwrap_or_default();
     behind.chars().filter(char::is_ascii_hexdigit).collect()
+}
+
+/// A range for people.
+fn shown((low, high): (f64, f64)) -> String {
+    format!("{:.6} to {:.6}", Significant(low), Significant(high))
 }

@@ -63,6 +63,8 @@ impl Target {
 pub(crate) struct BackEnd {
     pub name: &'static str,
     pub has_single_precision: bool,
+    /// Names that a model cannot have there.
+    pub reserved: &'static [&'static str],
     /// Writes the files, without those that every export has.
     pub write: fn(&Subject<'_>) -> Result<Written, Error>,
     /// The section of the export's page that says how to use them.

@@ -36,7 +36,10 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         source: source(&arguments.model),
     };
     let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
-        Error::Name(_) if arguments.name.is_some() => Usage(format!("--name: {error}")).into(),
+        Error::Name(_) | Error::Reserved { .. } if arguments.name.is_some() => {
+            Usage(format!("--name: {error}")).into()
+        }
+        Error::Reserved { .. } => Usage(format!("{error} with --name")).into(),
         Error::Band(_) | Error::NoBand => Usage(format!("--band: {error}")).into(),
         Error::Precision(_) => Usage(format!("--precision: {error}")).into(),
         error => anyhow!("{}: {error}", arguments.model.display()),

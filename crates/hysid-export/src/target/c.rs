@@ -8,7 +8,8 @@ use crate::error::Error;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "c", has_single_precision: true, write, usage };
+pub(super) const BACK_END: BackEnd =
+    BackEnd { name: "c", has_single_precision: true, reserved: &[], write, usage };
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let mut files = sources(subject);

@@ -13,7 +13,8 @@ use crate::target::{BackEnd, Written};
 use graph::{NEXT_STATE, OUTPUT, STATE, row};
 use messages::{Attribute, Entry, Graph, Model, Node, OperatorSet, ValueInfo};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "onnx", has_single_precision: false, write, usage };
+pub(super) const BACK_END: BackEnd =
+    BackEnd { name: "onnx", has_single_precision: false, reserved: &[], write, usage };
 
 /// Version of the format, and of its operators, as of ONNX 1.12.
 const FORMAT: i64 = 8;

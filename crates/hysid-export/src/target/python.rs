@@ -12,7 +12,16 @@ use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "python", has_single_precision: false, write, usage };
+pub(super) const BACK_END: BackEnd =
+    BackEnd { name: "python", has_single_precision: false, reserved: RESERVED, write, usage };
+
+/// Words of the language, and modules that the files import.
+const RESERVED: &[&str] = &[
+    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "csv",
+    "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is",
+    "lambda", "math", "nonlocal", "not", "numpy", "or", "pass", "pathlib", "raise", "return", "struct",
+    "sys", "try", "while", "with", "yield",
+];
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();

@@ -13,7 +13,17 @@ use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd = BackEnd { name: "rust", has_single_precision: true, write, usage };
+pub(super) const BACK_END: BackEnd =
+    BackEnd { name: "rust", has_single_precision: true, reserved: RESERVED, write, usage };
+
+/// Words of the language, and names that the test has.
+const RESERVED: &[&str] = &[
+    "Model", "Real", "Self", "State", "abstract", "alloc", "as", "async", "await", "become", "box", "break",
+    "const", "continue", "core", "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn",
+    "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override",
+    "priv", "pub", "ref", "return", "self", "static", "std", "struct", "super", "trait", "true", "try",
+    "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let name = subject.name();

@@ -7,6 +7,7 @@ mod c;
 mod case;
 mod fmu;
 mod matlab;
+mod names;
 mod onnx;
 mod opensees;
 mod python;

@@ -71,7 +71,7 @@ fn constants(c: &C, programs: &[&Program]) -> String {
 }
 
 fn initial_state(c: &C, name: &str, program: &Program) -> String {
-    let mut text = format!("static const {name}_state initial_state = {{\n");
+    let mut text = format!("static const {name}_state first_values = {{\n");
     for (_, array, values) in program.states() {
         let _ = writeln!(text, "    {{ /* {array} */\n{}\n    }},", rows_of_numbers(c, values, "        "));
     }
@@ -106,7 +106,7 @@ fn around(c: &C, name: &str) -> String {
     format!(
         "void {name}_reset({name}_model *model)
 {{
-    model->committed = initial_state;
+    model->committed = first_values;
     model->has_trial = 0;
 }}
 

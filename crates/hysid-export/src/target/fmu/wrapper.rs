@@ -30,13 +30,13 @@ pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -
 #define OUTPUT {OUTPUT}
 {half_width}
 typedef {name}_model model_type;
-#define model_reset {name}_reset
-#define model_commit {name}_commit
+#define RESET {name}_reset
+#define COMMIT {name}_commit
 
 static const double start_values[INPUTS] = {{ {start} }};
 
 /* A trial step with the inputs at a point, and its slope. */
-static double model_trial(model_type *model, const double *inputs, double time_step, double *slope)
+static double trial_of_inputs(model_type *model, const double *inputs, double time_step, double *slope)
 {{
 {unused}    return {name}_trial_tangent(model{given}, slope);
 }}
@@ -49,7 +49,7 @@ static double model_trial(model_type *model, const double *inputs, double time_s
         half_width = match subject.half_width() {
             None => String::new(),
             Some(_) => format!(
-                "#define HALF_WIDTH {HALF_WIDTH}\n#define model_half_width {}_half_width\n",
+                "#define HALF_WIDTH {HALF_WIDTH}\n#define READ_HALF_WIDTH {}_half_width\n",
                 subject.name()
             ),
         },
