@@ -61,6 +61,9 @@ pub enum Error {
     /// A sample that a model cannot take.
     #[error(transparent)]
     Sample(#[from] SampleError),
+    /// A bound of an inverse that cannot be used.
+    #[error(transparent)]
+    Inverse(#[from] InverseError),
     /// Options of `auto` that leave no model to try.
     #[error("these options leave no candidate: remove one of them")]
     NoCandidate,
@@ -269,6 +272,17 @@ pub enum SampleError {
     /// NaN or infinity.
     #[error("an input or its rate is {0}, not a finite number")]
     NotFinite(f64),
+}
+
+/// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum InverseError {
+    /// Limits of the input.
+    #[error("the limits of the input are {0} and {1}: they must be finite, and the first the lower one")]
+    Limits(f64, f64),
+    /// Largest rate of the input.
+    #[error("the largest rate of the input is {0}: it must be positive and finite")]
+    Slew(f64),
 }
 
 /// An option of a fit that cannot be used.

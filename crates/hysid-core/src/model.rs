@@ -6,6 +6,7 @@
 //! | read and write a model file | [`Model::from_json`], [`Model::to_json`] |
 //! | simulate a whole input | [`Model::run`], [`Model::simulate`] |
 //! | simulate sample by sample | [`Model::stepper`] |
+//! | find the input for a wanted output | [`Model::inverse`] |
 //! | simulate long records in blocks | [`Model::simulation`] |
 //! | compare with measurements | [`Model::evaluate`] |
 //! | get a prediction band | [`Model::predict`] |
@@ -15,6 +16,7 @@ mod ensemble;
 mod file;
 pub mod history;
 pub mod input_transform;
+mod inverse;
 mod notes;
 mod ranges;
 mod runner;
@@ -48,6 +50,7 @@ pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
+pub use inverse::{Inverse, Inverted, MOST_TRIALS, Reach};
 use ranges::Ranges;
 use runner::{Runner, Spread};
 pub use simulation::Simulation;

@@ -78,6 +78,11 @@ impl<'m> Stepper<'m> {
         Self { state: State::virgin(&model), committed: None, lead_in: model.lead_in.clone(), model }
     }
 
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
     /// The same with the arithmetic that every machine has: see [`Simulator::portable`].
     #[must_use]
     pub fn portable(mut self) -> Self {
