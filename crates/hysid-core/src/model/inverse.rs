@@ -157,7 +157,7 @@ impl<'m> Inverse<'m> {
             stepper.trial(inputs, time, None)
         };
         let searched = (|| {
-            if !(self.slope.abs() > 0.0) {
+            if self.slope.is_nan() || self.slope == 0.0 {
                 let (low, high) = window;
                 self.slope = (output(high)? - output(low)?) / (high - low);
             }
