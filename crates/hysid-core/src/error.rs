@@ -61,7 +61,7 @@ pub enum Error {
     /// A sample that a model cannot take.
     #[error(transparent)]
     Sample(#[from] SampleError),
-    /// A bound of an inverse that cannot be used.
+    /// A bound of an inverse that cannot be used, or a row that it cannot take.
     #[error(transparent)]
     Inverse(#[from] InverseError),
     /// Options of `auto` that leave no model to try.
@@ -274,8 +274,9 @@ pub enum SampleError {
     NotFinite(f64),
 }
 
-/// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used.
+/// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used, or a row that it cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum InverseError {
     /// Limits of the input.
     #[error("the limits of the input are {0} and {1}: they must be finite, and the first the lower one")]
@@ -283,6 +284,28 @@ pub enum InverseError {
     /// Largest rate of the input.
     #[error("the largest rate of the input is {0}: it must be positive and finite")]
     Slew(f64),
+    /// Time by which the wanted output is ahead.
+    #[error("the preview is {0}: it must be 0 or positive, and finite")]
+    Preview(f64),
+    /// A row that the model cannot take.
+    #[error("row {}: {problem}", .row + 1)]
+    Row {
+        /// The row, counted from 0.
+        row: usize,
+        /// What is wrong.
+        problem: SampleError,
+    },
+    /// A column of another length than the wanted outputs.
+    #[error("a column of {length} values for {rows} wanted outputs")]
+    Length {
+        /// Wanted outputs.
+        rows: usize,
+        /// Values of the column.
+        length: usize,
+    },
+    /// Time stamps are needed, and there are none.
+    #[error("there are no time stamps, and the model, its slew limit or its preview needs them")]
+    NoTime,
 }
 
 /// An option of a fit that cannot be used.

@@ -84,6 +84,13 @@ pub trait Law: Sized {
     /// Advances the state to the next sample and returns the output there, in its unit.
     fn step(&self, state: &mut Self::State, sample: Sample) -> f64;
 
+    /// The next input at which the output is `output`, from `state`, for a law with a closed inverse; `None` for
+    /// another, and where the conditions of the closed inverse do not hold.
+    fn input_for(&self, state: &Self::State, output: f64) -> Option<f64> {
+        let _ = (state, output);
+        None
+    }
+
     /// The parameters, with the field's symbols.
     fn parameters(&self) -> Vec<Parameter>;
 
@@ -265,6 +272,17 @@ macro_rules! any_of {
             pub fn step(&self, state: &mut ClassicalState, sample: Sample) -> f64 {
                 match (self, state) {
                     $((Self::$law(law), ClassicalState::$law(state)) => law.step(state, sample),)*
+                    (law, state) => panic!("{state:?} is no state of {law:?}"),
+                }
+            }
+
+            /// As [`Law::input_for`].
+            ///
+            /// # Panics
+            /// A state of another law.
+            pub fn input_for(&self, state: &ClassicalState, output: f64) -> Option<f64> {
+                match (self, state) {
+                    $((Self::$law(law), ClassicalState::$law(state)) => law.input_for(state, output),)*
                     (law, state) => panic!("{state:?} is no state of {law:?}"),
                 }
             }

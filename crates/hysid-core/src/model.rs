@@ -50,7 +50,7 @@ pub use band::{HeldOutRow, disagreement};
 pub use ensemble::{Ensemble, Group, Node, NodeKind, Weights};
 pub use ensemble::{Excursion, MedianBuffers, Predictions};
 pub use file::{FORMAT_VERSION, VIRGIN_FORMAT_VERSION};
-pub use inverse::{Inverse, Inverted, MOST_TRIALS, Reach};
+pub use inverse::{Inverse, Inversion, Inverted, MOST_TRIALS, Reach, Reference};
 use ranges::Ranges;
 use runner::{Runner, Spread};
 pub use simulation::Simulation;

@@ -5,6 +5,7 @@ mod data;
 mod elements;
 mod failure;
 mod identification;
+mod inverse;
 mod minimiser;
 mod model;
 mod specimens;
@@ -20,6 +21,8 @@ mod _hysid {
     use crate::elements::{deteriorating_stop, law, play, relaxation, relay, stop};
     #[pymodule_export]
     use crate::identification::{FitSpec, identify, model_names, option_names, option_table, validate};
+    #[pymodule_export]
+    use crate::inverse::Inverse;
     #[pymodule_export]
     use crate::minimiser::minimise;
     #[pymodule_export]

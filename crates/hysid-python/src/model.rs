@@ -17,6 +17,7 @@ use pyo3::prelude::*;
 
 use crate::data::{Column, Dataset, NewColumn};
 use crate::failure::{not_written, refused};
+use crate::inverse::Inverse;
 
 /// A fitted model.
 #[pyclass(frozen, module = "hysid._hysid")]
@@ -193,6 +194,11 @@ impl Model {
     /// Runs it sample by sample, from its initial state.
     fn stepper(&self) -> Stepper {
         Stepper { stepper: model::Model::clone(&self.model).into_stepper() }
+    }
+
+    /// Its inverse, from its initial state.
+    fn inverse(&self, limits: Option<(f64, f64)>, slew: Option<f64>) -> PyResult<Inverse> {
+        Inverse::of(model::Model::clone(&self.model), limits, slew).map_err(refused)
     }
 }
 

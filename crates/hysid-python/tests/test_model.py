@@ -380,3 +380,36 @@ def test_a_band_for_nine_of_ten_data_sets_is_wider_by_one_factor(quick_ensemble,
     assert 1.5 < factors[0] < 3 and factors == pytest.approx(factors[0])
     with pytest.raises(ValueError, match="of_ten 10: choose 5 to 9"):
         quick_ensemble.predict(x, of_ten=10)
+
+
+def test_a_model_driven_by_its_inverse_has_the_wanted_outputs(quick_model):
+    low, high = 0.8, 4.0
+    wanted_of = quick_model.stepper()
+    drive = low + (high - low) * (0.5 + 0.4 * np.sin(0.07 * np.arange(300)) * np.cos(0.011 * np.arange(300)))
+    wanted = np.array([wanted_of.step(x) for x in drive])
+    inverse = quick_model.inverse(limits=(low, high))
+    found = inverse.run(wanted)
+    assert found.input.shape == found.output.shape == found.reach.shape == (300,)
+    assert found.reached.mean() > 0.99
+    driven = quick_model.stepper()
+    outputs = np.array([driven.step(x) for x in found.input])
+    assert np.array_equal(outputs, found.output)
+    assert np.abs(outputs - wanted)[found.reached].max() <= 1e-9 * np.ptp(wanted)
+    inverse.reset()
+    one = inverse.step(wanted[0])
+    assert (one.input, one.output, one.reach) == (found.input[0], found.output[0], found.reach[0])
+
+
+def test_an_inverse_names_what_it_cannot_reach_and_refuses_what_is_invalid(quick_model):
+    inverse = quick_model.inverse()
+    assert {inverse.step(1e9).reach, inverse.step(-1e9).reach} == {"high-limit", "low-limit"}
+    with pytest.raises(ValueError, match="NaN|finite"):
+        inverse.step(float("nan"))
+    with pytest.raises(ValueError, match="limits"):
+        quick_model.inverse(limits=(1.0, 1.0))
+    with pytest.raises(ValueError, match="positive"):
+        quick_model.inverse(slew=0.0)
+    with pytest.raises(ValueError, match="time"):
+        inverse.run(np.zeros(3), time=np.zeros(2))
+    with pytest.raises(ValueError, match="row 1"):
+        inverse.run(np.array([0.0, np.inf]))

@@ -46,7 +46,7 @@ pub use fit::network::Progress;
 pub use hysid_core::data::metrics::Errors;
 pub use hysid_core::data::record::{ColumnNames, Dataset, Record};
 pub(crate) use hysid_core::linear_algebra;
-pub use hysid_core::model::{Inverse, Inverted, Model, Reach, Stepper};
+pub use hysid_core::model::{Inverse, Inversion, Inverted, Model, Reach, Reference, Stepper};
 pub use hysid_core::options::ModelName;
 pub use hysid_core::{Error, Result};
 pub use hysid_core::{

@@ -6,8 +6,9 @@ mod models;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use hysid::model::MOST_TRIALS;
-use hysid::{Model, Reach};
+use hysid::model::{BandLevel, MOST_TRIALS};
+use hysid::specimens::Specimen;
+use hysid::{Fit, Model, Reach, Reference};
 
 use crate::models::time_step;
 
@@ -168,4 +169,151 @@ fn invalid_samples_leave_the_inverse_as_it_was() {
     for slew in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         model.inverse().slew(slew).unwrap_err();
     }
+}
+
+/// Where the closed inverse is exact, one trial confirms it.
+#[test]
+fn laws_with_a_closed_inverse_need_one_trial() {
+    for name in ["prandtl-ishlinskii", "modified-prandtl-ishlinskii"] {
+        let model = model(name);
+        let (mut stepper, mut inverse) = (model.stepper(), model.inverse());
+        let mut trials = 0;
+        for (x, others, time) in drive(model, 2000) {
+            let wanted = stepper.step(&[x], time, None).unwrap();
+            let found = inverse.step(wanted, &others, time).unwrap();
+            assert_eq!(found.reach, Reach::Reached);
+            trials += found.trials;
+        }
+        // Two more find the first slope.
+        assert_eq!(trials, 2000 + 2, "{name}");
+    }
+}
+
+/// A law that wears needs another input for the same output later.
+#[test]
+fn the_inverse_follows_the_wear_of_the_model() {
+    let model = model("bouc-wen starts=1 epochs=3 degradation=true");
+    let (low, high) = model.trained_ranges().output;
+    let range = model.trained_ranges().inputs[0];
+    let rows = 4000;
+    let mut inverse = model.inverse().limits(range.0 - 10.0, range.1 + 10.0).unwrap();
+    let mut peaks = Vec::new();
+    let mut driven = model.stepper();
+    for row in 0..rows {
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.0314 * f64::from(row)).sin();
+        let found = inverse.step(wanted, &[], 0.01 * f64::from(row)).unwrap();
+        assert_eq!(found.reach, Reach::Reached);
+        let output = driven.step(&[found.input], 0.01 * f64::from(row), None).unwrap();
+        assert!((output - wanted).abs() <= 1e-9 * (high - low));
+        if row % 200 == 50 {
+            peaks.push(found.input);
+        }
+    }
+    // Another amplitude of the input with each cycle, always to the same side.
+    let change = (peaks[peaks.len() - 1] - peaks[0]) / (range.1 - range.0);
+    assert!(change.abs() > 1e-3, "{change}: {peaks:?}");
+    let steps = peaks.windows(2).filter(|pair| (pair[1] - pair[0]) * change > 0.0).count();
+    assert!(steps + 1 >= peaks.len() - 1, "{peaks:?}");
+}
+
+/// An actuator that lags: the model of its training data, and a wanted output at `rows` rows.
+fn lagging() -> Model {
+    let data = Specimen::named("piezo-actuator").unwrap().train();
+    Fit::new().model("rate-dependent-prandtl-ishlinskii").run(&data).unwrap()
+}
+
+fn tones(rows: usize) -> (Vec<f64>, Vec<f64>) {
+    let time: Vec<f64> = (0..rows).map(|row| 0.1 * row as f64 / rows as f64).collect();
+    let tone = |t: &f64| 6.0 + 3.0 * (125.7 * t).sin() + 1.5 * (377.0 * t + 1.0).sin();
+    (time.iter().map(tone).collect(), time)
+}
+
+#[test]
+fn a_preview_follows_where_the_output_lags_behind_the_input() {
+    let model = lagging();
+    let (wanted, time) = tones(4000);
+    let reference = Reference { wanted: &wanted, others: &[], time: Some(&time) };
+    let preview = model.inverse().best_preview(&reference).unwrap();
+    assert!(preview > 0.0);
+    let run = |preview: f64| {
+        let found = model.inverse().preview(preview).unwrap().run(&reference).unwrap();
+        let way: f64 = found.input.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
+        (100.0 * found.rms_deviation(&wanted) / 9.0, way)
+    };
+    // Without a preview every output is reached, by an input that runs to and fro from sample to sample.
+    let ((without, to_and_fro), (with, way)) = (run(0.0), run(preview));
+    assert!(without < 1e-9 && to_and_fro > 10.0 * way, "{without} %, {to_and_fro} V against {way} V");
+    assert!(with < 0.1, "{with} %");
+}
+
+/// Four times as many samples of the same wanted output, and the same input.
+#[test]
+fn the_time_step_does_not_change_the_input() {
+    let model = lagging();
+    let drive = |rows: usize| {
+        let (wanted, time) = tones(rows);
+        let reference = Reference { wanted: &wanted, others: &[], time: Some(&time) };
+        let preview = model.inverse().best_preview(&reference).unwrap();
+        (preview, model.inverse().preview(preview).unwrap().run(&reference).unwrap().input)
+    };
+    let ((slow_preview, slow), (fast_preview, fast)) = (drive(1000), drive(4000));
+    assert_eq!(slow_preview, fast_preview);
+    let deviations = slow.iter().zip(fast.iter().step_by(4)).skip(10).map(|(slow, fast)| (slow - fast).abs());
+    let largest = deviations.fold(0.0, f64::max);
+    // Of a range of 80 V; a rate over a step of 0.1 ms differs from that over 0.025 ms.
+    assert!(largest < 0.8, "{largest} V");
+}
+
+/// At the edges of the band of the drive, an edge of the band of the output is the wanted output.
+#[test]
+fn the_band_of_the_drive_is_that_of_the_output() {
+    let (x, y): (Vec<f64>, Vec<f64>) = {
+        let data = models::data(1);
+        let record = &data.records()[0];
+        (record.inputs()[0].to_vec(), record.output().to_vec())
+    };
+    let noisy: Vec<f64> =
+        y.iter().enumerate().map(|(row, y)| y + 0.3 * (12.9898 * row as f64).sin()).collect();
+    let model = hysid::fit(&hysid::Dataset::from_slices(&x, &noisy).unwrap()).unwrap();
+    let level = BandLevel::from(0.9);
+    let (low, high) = model.trained_ranges().output;
+    let mut inverse = model.inverse().band(level).unwrap();
+    let mut stepper = model.stepper();
+    let mut inside = 0;
+    for (row, time) in (0..200).map(|row| (row, 0.02 * f64::from(row))) {
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.07 * f64::from(row)).sin();
+        let found = inverse.step(wanted, &[], time).unwrap();
+        let (from, to) = found.band.unwrap();
+        assert!(from <= found.input && found.input <= to, "{from}, {}, {to}", found.input);
+        let limits = model.trained_ranges().inputs[0];
+        for (edge, sign) in [(from, 1.0), (to, -1.0)] {
+            if edge == limits.0 || edge == limits.1 {
+                continue;
+            }
+            let output = stepper.trial(&[edge], time, None).unwrap();
+            let reached = output + sign * stepper.half_width(level).unwrap();
+            inside += 1;
+            assert!((reached - wanted).abs() <= 1e-6 * (high - low), "row {row}: {reached}, not {wanted}");
+        }
+        stepper.step(&[found.input], time, None).unwrap();
+    }
+    assert!(inside > 300, "{inside}");
+    assert!(self::model("pnn").inverse().band(level).is_err());
+}
+
+#[test]
+fn records_are_refused_with_the_row() {
+    let model = model("xpnn ");
+    let wanted = [100.0, f64::NAN];
+    let time = [0.0, 1.0];
+    let run = |wanted: &[f64], time: Option<&[f64]>| {
+        let others: &[&[f64]] = &[];
+        model.inverse().run(&Reference { wanted, others, time }).unwrap_err().to_string()
+    };
+    assert!(run(&wanted, Some(&time)).starts_with("row 2: "));
+    assert!(run(&[100.0, 100.0], Some(&[0.0, 0.0])).starts_with("row 2: time"));
+    assert!(run(&wanted, Some(&time[..1])).contains("1 values for 2"));
+    assert!(run(&wanted, None).contains("no time stamps"));
+    model.inverse().preview(-1.0).unwrap_err();
+    model.inverse().preview(f64::NAN).unwrap_err();
 }

@@ -115,6 +115,29 @@ impl DeadZones {
         parts.constant + parts.linear * z + zones.map(|(&r, w)| w * dead_zone(z, r)).sum::<f64>()
     }
 
+    /// The sum of plays `z` with the value `S(z) = y`: `S` rises everywhere.
+    pub fn argument(&self, y: f64) -> f64 {
+        let parts = &self.parts;
+        let (mut z, mut value, mut slope) = (0.0, parts.constant, parts.linear);
+        let negative = parts.thresholds.partition_point(|&r| r < 0.0);
+        // From zone to zone away from 0, up to the piece that has the value.
+        let mut walk = |zones: &mut dyn Iterator<Item = usize>| {
+            for zone in zones {
+                let at = value + slope * (parts.thresholds[zone] - z);
+                if (y - parts.constant).abs() <= (at - parts.constant).abs() {
+                    break;
+                }
+                (z, value) = (parts.thresholds[zone], at);
+                slope += parts.weights[zone];
+            }
+        };
+        match y >= parts.constant {
+            true => walk(&mut (negative..parts.thresholds.len())),
+            false => walk(&mut (0..negative).rev()),
+        }
+        z + (y - value) / slope
+    }
+
     /// Slopes of all pieces, from the lowest to the highest.
     pub fn slopes(&self) -> Vec<f64> {
         let parts = &self.parts;
@@ -169,6 +192,11 @@ impl Law for ModifiedPrandtlIshlinskii {
 
     fn step(&self, plays: &mut Vec<f64>, sample: Sample) -> f64 {
         self.superposition.value(self.hysteresis.step(plays, sample))
+    }
+
+    /// That of the sum of plays, after the inverse of the polygon (theory.md (12.2)).
+    fn input_for(&self, plays: &Vec<f64>, output: f64) -> Option<f64> {
+        self.hysteresis.input_for(plays, self.superposition.argument(output))
     }
 
     fn parameters(&self) -> Vec<Parameter> {

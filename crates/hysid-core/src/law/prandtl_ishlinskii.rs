@@ -114,6 +114,32 @@ impl Law for PrandtlIshlinskii {
         self.constant + self.linear * x + sum_of_plays(plays, x, &self.thresholds, &self.weights)
     }
 
+    /// The closed inverse (theory.md (12.1)), if every slope `w_0 + w_1 + ... + w_i` is positive.
+    fn input_for(&self, plays: &Vec<f64>, output: f64) -> Option<f64> {
+        let each = || self.thresholds.iter().zip(&self.weights).zip(plays);
+        let slope = self.linear;
+        let rest = self.constant + each().map(|((_, w), play)| w * play).sum::<f64>();
+        let x = |rest: f64, slope: f64| (slope > 0.0).then(|| (output - rest) / slope);
+        let here = x(rest, slope)?;
+        // Where all plays rest, the input is within the slot of the smallest.
+        let direction = match each().next() {
+            Some(((r, _), play)) if here > play + r => 1.0,
+            Some(((r, _), play)) if here < play - r => -1.0,
+            _ => return Some(here),
+        };
+        let (mut input, mut rest, mut slope) = (here, rest, slope);
+        for ((r, w), play) in each() {
+            // The play rests at this input: those with larger thresholds do too.
+            if direction * (input - play) <= *r {
+                break;
+            }
+            rest -= w * (play + direction * r);
+            slope += w;
+            input = x(rest, slope)?;
+        }
+        Some(input)
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let parameter =
             |symbol: String, meaning, value, bounds, unit| Parameter { symbol, meaning, value, bounds, unit };

@@ -115,6 +115,12 @@ impl Excursion {
     pub fn take(&mut self, x: f64) -> f64 {
         let (low, high) = self.range;
         self.farthest = self.farthest.max(low - x).max(x - high);
+        self.outside()
+    }
+
+    /// The degree `o` of the inputs so far.
+    pub fn outside(&self) -> f64 {
+        let (low, high) = self.range;
         (self.farthest / (WAY_OUT * (high - low))).clamp(0.0, 1.0)
     }
 }

@@ -222,6 +222,11 @@ impl InputTransform {
         self.companding.map_or(x, |scale| (x / scale).asinh())
     }
 
+    /// The first input whose transform this is.
+    pub fn original(&self, seen: f64) -> f64 {
+        self.companding.map_or(seen, |scale| scale * seen.sinh()) + self.origin(0)
+    }
+
     /// Any transformed input; the index 0 is the first.
     pub fn input_as_seen(&self, input: usize, value: f64) -> f64 {
         if input == 0 { self.input(value) } else { value - self.origin(input) }

@@ -2,18 +2,29 @@
 //!
 //! Each step searches the input whose trial output is the wanted one, from the state that the model has reached, and
 //! commits it. So the inverse has the memory of the model, its rate and its wear. Every model has such an inverse where
-//! its output depends on the next input without gap; the result says where it does not.
+//! its output depends on the next input without gap; the result says where it does not. Laws with a closed inverse
+//! propose the input, and a single trial confirms it.
+//!
+//! A model whose output lags behind the input has no such inverse at short time steps: within one step the output hardly
+//! follows the input, or falls while the input rises. With a [preview](Inverse::preview) the search looks further ahead
+//! than one step.
 
+mod record;
 mod search;
 
-use crate::error::{InverseError, Result, SampleError};
+use crate::error::{Error, InverseError, Result, SampleError};
 use crate::model::inverse::search::{Ending, Found, Point, Wanted};
-use crate::model::{Model, Stepper};
+use crate::model::{BandLevel, Model, Stepper};
+
+pub use record::{Inversion, Reference};
 
 /// Deviation at which the search of an input ends, as a share of the trained range of the output.
 const TOLERANCE: f64 = 1e-12;
 
-/// Largest number of model steps for a step of the inverse.
+/// A rounding beyond a trained range, as a share of it, is not outside.
+const SLACK: f64 = 1e-9;
+
+/// Largest number of model steps for a step of the inverse. A band needs as many again for each of its edges.
 pub const MOST_TRIALS: usize =
     2 + search::MOST_STRIDES + search::SCANNED + search::GOLDEN + 3 * search::MOST_HALVINGS + 1;
 
@@ -50,6 +61,11 @@ impl Reach {
             Self::Jump => "jump",
         }
     }
+
+    /// True if the nearest input was at a limit, or at the largest change that is allowed.
+    pub fn is_at_a_bound(self) -> bool {
+        matches!(self, Self::LowLimit | Self::HighLimit | Self::Slew)
+    }
 }
 
 /// A step of the inverse.
@@ -57,11 +73,16 @@ impl Reach {
 pub struct Inverted {
     /// The first input, in its unit.
     pub input: f64,
-    /// The output of the model at this input, in its unit. It is the wanted one, or the nearest.
+    /// The output of the model at this input, in its unit.
     pub output: f64,
-    /// Whether it is the wanted one.
+    /// Whether the wanted output was reached: at this sample, or with a preview by its end.
     pub reach: Reach,
-    /// Steps of the model that the search needed, at most [`MOST_TRIALS`].
+    /// True if the input, or its rate for a model with a rate, is outside the range of the training data.
+    pub is_extrapolated: bool,
+    /// Lowest and highest input whose prediction band contains the wanted output; `None` without
+    /// [`Inverse::band`].
+    pub band: Option<(f64, f64)>,
+    /// Steps of the model that the search needed, at most [`MOST_TRIALS`] without a band.
     pub trials: usize,
 }
 
@@ -70,15 +91,27 @@ pub struct Inverted {
 pub struct Inverse<'m> {
     stepper: Stepper<'m>,
     limits: (f64, f64),
-    /// Largest change of the input per unit of time, or per sample for a model without time.
+    /// Largest change of the input per unit of time.
     slew: Option<f64>,
+    /// Time from a sample to the wanted output that it is given.
+    preview: f64,
+    band: Option<BandLevel>,
     tolerance: f64,
-    /// The last sample.
+    /// The last sample, and its time.
     last: Option<(Point, f64)>,
     /// Slope of the output by the input, as last seen.
     slope: f64,
     /// Inputs of a trial.
     inputs: Vec<f64>,
+}
+
+/// Inputs that a sample may have.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    low: f64,
+    high: f64,
+    /// The slew limit is among what bounds them.
+    has_slew: bool,
 }
 
 impl<'m> Inverse<'m> {
@@ -88,6 +121,8 @@ impl<'m> Inverse<'m> {
         Self {
             limits: ranges.inputs[0],
             slew: None,
+            preview: 0.0,
+            band: None,
             tolerance: TOLERANCE * (high - low),
             last: None,
             slope: f64::NAN,
@@ -120,6 +155,35 @@ impl<'m> Inverse<'m> {
         Ok(self)
     }
 
+    /// The time by which the wanted output of each sample, but the first, is that of a later time.
+    ///
+    /// The search then finds the straight path of the input, from the last sample on, that leads to the wanted output at
+    /// the end of the preview. The sample takes the first part of this path, and the next sample searches anew. 0 stands
+    /// for no preview.
+    ///
+    /// # Errors
+    /// A time that is negative or not finite.
+    pub fn preview(mut self, time: f64) -> Result<Self> {
+        if !(time.is_finite() && time >= 0.0) {
+            return Err(InverseError::Preview(time).into());
+        }
+        self.preview = time;
+        Ok(self)
+    }
+
+    /// Also gives the inputs whose prediction band contains the wanted output.
+    ///
+    /// # Errors
+    /// A model without a band, or a level that no band is calibrated for.
+    pub fn band(mut self, level: BandLevel) -> Result<Self> {
+        level.check()?;
+        if self.stepper.model().band().is_none() {
+            return Err(Error::NoBand(self.stepper.model().name().name()));
+        }
+        self.band = Some(level);
+        Ok(self)
+    }
+
     /// The same with the arithmetic that every machine has: see [`Stepper::portable`].
     #[must_use]
     pub fn portable(mut self) -> Self {
@@ -127,10 +191,16 @@ impl<'m> Inverse<'m> {
         self
     }
 
+    /// The model.
+    pub fn model(&self) -> &Model {
+        self.stepper.model()
+    }
+
     /// Advances to the next sample, at which the model has the output `wanted`, in its unit, if that can be.
     ///
     /// `others` are the further inputs of the model, in their units. `time` is that of the sample; a model without rate
-    /// ignores it, unless there is a slew limit. A rate is the backward difference of the inputs that the inverse gives.
+    /// ignores it, unless there is a slew limit or a preview. A rate is the backward difference of the inputs that the
+    /// inverse gives.
     ///
     /// A step needs at most [`MOST_TRIALS`] steps of the model; in our tests, 1 to 7 on average where the model is
     /// monotone.
@@ -142,38 +212,35 @@ impl<'m> Inverse<'m> {
         if !wanted.is_finite() {
             return Err(SampleError::NotFinite(wanted).into());
         }
-        let (window, is_slew) = self.window(time)?;
-        let wanted = Wanted { value: wanted, tolerance: self.tolerance, window };
-        let first = self.guess(wanted.value);
+        let elapsed = self.elapsed(time)?;
+        // The first sample has no path that leads to it.
+        let ahead = if elapsed.is_some() { self.preview } else { 0.0 };
+        let window = self.window(elapsed.map(|elapsed| elapsed + ahead));
         self.inputs.clear();
-        self.inputs.push(first);
+        self.inputs.push(0.0);
         self.inputs.extend(others);
-        let (stepper, inputs) = (&mut self.stepper, &mut self.inputs);
-        let (mut last_trial, mut trials) = (f64::NAN, 0);
-        let mut output = |input: f64| {
-            last_trial = input;
-            trials += 1;
-            inputs[0] = input;
-            stepper.trial(inputs, time, None)
+        let wanted = Wanted { value: wanted, tolerance: self.tolerance, window: (window.low, window.high) };
+        let inverted = self.search(wanted, window, time, ahead);
+        if inverted.is_err() {
+            self.stepper.revert();
+        }
+        inverted
+    }
+
+    fn search(&mut self, wanted: Wanted, window: Window, time: f64, ahead: f64) -> Result<Inverted> {
+        let first = self.guess(wanted.value, ahead);
+        let band = match self.band {
+            Some(level) => Some(self.edges(wanted, first, level, time + ahead)?),
+            None => None,
         };
-        let searched = (|| {
-            if self.slope.is_nan() || self.slope == 0.0 {
-                let (low, high) = window;
-                self.slope = (output(high)? - output(low)?) / (high - low);
-            }
-            wanted.search(first, self.slope, &mut output)
-        })();
-        let Found { point: Point { argument: input, value: output }, ending, slope } = match searched {
-            Ok(found) => found,
-            Err(error) => {
-                self.stepper.revert();
-                return Err(error);
-            }
-        };
-        if last_trial != input {
-            self.inputs[0] = input;
+        let before = self.last;
+        let mut trials = band.map_or(0, |(_, trials)| trials);
+        let (Found { point, ending, slope }, last_trial) =
+            self.find(wanted, first, time + ahead, &mut trials, |_| Ok(0.0))?;
+        let (input, mut output) = (self.part_of_way(point.argument, time, ahead), point.value);
+        if ahead > 0.0 || last_trial != input {
+            output = self.trial(input, time)?;
             trials += 1;
-            self.stepper.trial(&self.inputs, time, None)?;
         }
         self.stepper.commit();
         // A slope of the other sign is that of a place where the model is not monotone.
@@ -181,17 +248,97 @@ impl<'m> Inverse<'m> {
             self.slope = slope;
         }
         self.last = Some((Point { argument: input, value: output }, time));
+        Ok(Inverted {
+            input,
+            output,
+            reach: self.reach(ending, point.argument, window),
+            is_extrapolated: self.is_extrapolated(input, time, before),
+            band: band.map(|(edges, _)| edges),
+            trials,
+        })
+    }
+
+    /// Searches the input at which the output and what is added to it is the wanted one; also gives the input of the
+    /// last trial.
+    fn find(
+        &mut self,
+        wanted: Wanted,
+        first: f64,
+        time: f64,
+        trials: &mut usize,
+        added: impl Fn(&mut Stepper<'m>) -> Result<f64>,
+    ) -> Result<(Found, f64)> {
+        let mut last_trial = f64::NAN;
+        let (low, high) = wanted.window;
+        let (stepper, inputs) = (&mut self.stepper, &mut self.inputs);
+        let mut output = |input: f64| -> Result<f64> {
+            last_trial = input;
+            *trials += 1;
+            inputs[0] = input;
+            let output = stepper.trial(inputs, time, None)?;
+            Ok(output + added(stepper)?)
+        };
+        if self.slope.is_nan() || self.slope == 0.0 {
+            self.slope = (output(high)? - output(low)?) / (high - low);
+        }
+        let found = wanted.search(first, self.slope, &mut output)?;
+        Ok((found, last_trial))
+    }
+
+    /// The inputs at which either edge of the prediction band has the wanted output, and the number of trials.
+    fn edges(
+        &mut self,
+        wanted: Wanted,
+        first: f64,
+        level: BandLevel,
+        time: f64,
+    ) -> Result<((f64, f64), usize)> {
+        let mut trials = 0;
+        let mut edge = |sign: f64| -> Result<f64> {
+            let half_width = |stepper: &mut Stepper<'m>| Ok(sign * stepper.half_width(level)?);
+            Ok(self.find(wanted, first, time, &mut trials, half_width)?.0.point.argument)
+        };
+        let (a, b) = (edge(1.0)?, edge(-1.0)?);
+        Ok(((a.min(b), a.max(b)), trials))
+    }
+
+    fn trial(&mut self, input: f64, time: f64) -> Result<f64> {
+        self.inputs[0] = input;
+        self.stepper.trial(&self.inputs, time, None)
+    }
+
+    /// The input at this time, on the way from the last sample to the input at the end of the preview.
+    fn part_of_way(&self, end: f64, time: f64, ahead: f64) -> f64 {
+        match self.last {
+            Some((Point { argument, .. }, before)) if ahead > 0.0 => {
+                argument + (end - argument) * ((time - before) / (time + ahead - before))
+            }
+            _ => end,
+        }
+    }
+
+    fn reach(&self, ending: Ending, input: f64, window: Window) -> Reach {
         let at_low = input == self.limits.0;
         let at_high = input == self.limits.1;
-        let reach = match ending {
+        match ending {
             Ending::Reached => Reach::Reached,
-            Ending::Low if at_low || !is_slew => Reach::LowLimit,
-            Ending::High if at_high || !is_slew => Reach::HighLimit,
+            Ending::Low if at_low || !window.has_slew => Reach::LowLimit,
+            Ending::High if at_high || !window.has_slew => Reach::HighLimit,
             Ending::Low | Ending::High => Reach::Slew,
             Ending::Extremum => Reach::NotMonotone,
             Ending::Jump => Reach::Jump,
+        }
+    }
+
+    /// True for an input, or a rate of a model with one, outside the range of the training data.
+    fn is_extrapolated(&self, input: f64, time: f64, before: Option<(Point, f64)>) -> bool {
+        let is_outside = |value: f64, (low, high): (f64, f64)| {
+            let slack = SLACK * (high - low);
+            value < low - slack || value > high + slack
         };
-        Ok(Inverted { input, output, reach, trials })
+        let ranges = self.model().trained_ranges();
+        let rate = before.map_or(0.0, |(last, before)| (input - last.argument) / (time - before));
+        is_outside(input, ranges.inputs[0]) || ranges.rate.is_some_and(|range| is_outside(rate, range))
     }
 
     /// Returns to the initial state of the model.
@@ -201,23 +348,38 @@ impl<'m> Inverse<'m> {
         self.slope = f64::NAN;
     }
 
-    /// Inputs that the next sample may have, and whether the slew limit is among what bounds them.
-    fn window(&self, time: f64) -> Result<((f64, f64), bool)> {
-        let (low, high) = self.limits;
-        let (Some(slew), Some((Point { argument, .. }, before))) = (self.slew, self.last) else {
-            return Ok(((low, high), false));
-        };
-        let elapsed = time - before;
-        if !(elapsed > 0.0 && elapsed.is_finite()) {
+    /// Time since the last sample, if that is needed; `None` at the first.
+    fn elapsed(&self, time: f64) -> Result<Option<f64>> {
+        let is_needed = self.slew.is_some() || self.preview > 0.0;
+        if is_needed && !time.is_finite() {
             return Err(SampleError::Time(time).into());
         }
-        let way = slew * elapsed;
-        let window = ((argument - way).max(low), (argument + way).min(high));
-        Ok((window, true))
+        match self.last {
+            Some((_, before)) if is_needed && time <= before => Err(SampleError::Time(time).into()),
+            Some((_, before)) => Ok(Some(time - before)),
+            None => Ok(None),
+        }
+    }
+
+    /// Inputs that the model may have after this time since the last sample.
+    fn window(&self, elapsed: Option<f64>) -> Window {
+        let (low, high) = self.limits;
+        match (self.slew, self.last, elapsed) {
+            (Some(slew), Some((Point { argument, .. }, _)), Some(elapsed)) => {
+                let way = slew * elapsed;
+                Window { low: (argument - way).max(low), high: (argument + way).min(high), has_slew: true }
+            }
+            _ => Window { low, high, has_slew: false },
+        }
     }
 
     /// The input from which a search begins.
-    fn guess(&self, wanted: f64) -> f64 {
+    fn guess(&mut self, wanted: f64, ahead: f64) -> f64 {
+        if ahead == 0.0
+            && let Some(input) = self.stepper.input_for(wanted)
+        {
+            return input;
+        }
         match self.last {
             Some((Point { argument, value }, _)) => {
                 let guess = argument + (wanted - value) / self.slope;

@@ -6,9 +6,10 @@ mod trial;
 use std::borrow::Cow;
 
 use crate::data::initial_state::InitialState;
-use crate::error::{Result, SampleError};
+use crate::error::{Error, Result, SampleError};
 use crate::law::series::lead_in_samples;
 use crate::law::{ClassicalState, Sample};
+use crate::model::band::{BandLevel, disagreement};
 use crate::model::ensemble::{Excursion, MedianBuffers};
 use crate::model::input_transform::{Past, SeenLeadIn, limited};
 use crate::model::{Model, Predictor};
@@ -37,6 +38,8 @@ struct State {
     seen: Vec<f64>,
     /// Time and first input of the last sample.
     last: Option<(f64, f64)>,
+    /// How far outside the trained range the input has been; `None` without a band, and in a member of an ensemble.
+    excursion: Option<Excursion>,
 }
 
 #[derive(Debug, Clone)]
@@ -75,7 +78,9 @@ impl Memory {
 
 impl<'m> Stepper<'m> {
     pub(super) fn new(model: Cow<'m, Model>) -> Self {
-        Self { state: State::virgin(&model), committed: None, lead_in: model.lead_in.clone(), model }
+        let mut state = State::virgin(&model);
+        state.excursion = excursion(&model);
+        Self { state, committed: None, lead_in: model.lead_in.clone(), model }
     }
 
     /// The model.
@@ -105,6 +110,24 @@ impl<'m> Stepper<'m> {
         self.advance(inputs, time, rate)
     }
 
+    /// Half the width of the prediction band at the last trial or step, in the unit of the output.
+    ///
+    /// # Errors
+    /// A model without a band, or a level that no band is calibrated for.
+    pub fn half_width(&mut self, level: BandLevel) -> Result<f64> {
+        level.check()?;
+        let band = self.model.band().ok_or(Error::NoBand(self.model.name().name()))?;
+        let outside = self.state.excursion.map_or(0.0, |excursion| excursion.outside());
+        let disagreement = match (&self.model.body, &mut self.state.memory) {
+            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) if !memory.outputs.is_empty() => {
+                let EnsembleMemory { outputs, medians, .. } = &mut **memory;
+                disagreement(medians.predictions(ensemble.group(), outside, |member| outputs[member]))
+            }
+            _ => 0.0,
+        };
+        Ok(band.half_width(level, disagreement, outside))
+    }
+
     fn advance(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.state.check(&self.model, inputs, time, rate)?;
         if self.state.last.is_none() && !self.lead_in.is_empty() {
@@ -118,6 +141,7 @@ impl<'m> Stepper<'m> {
     pub fn reset(&mut self) {
         self.committed = None;
         self.state.reset(&self.model);
+        self.state.excursion = excursion(&self.model);
         self.lead_in.clone_from(&self.model.lead_in);
     }
 
@@ -129,8 +153,18 @@ impl<'m> Stepper<'m> {
         self.lead_in = self.model.lead_in_of(state)?;
         self.committed = None;
         self.state.reset(&self.model);
+        self.state.excursion = excursion(&self.model);
         Ok(())
     }
+}
+
+/// For a model with a band: at the beginning of a record.
+fn excursion(model: &Model) -> Option<Excursion> {
+    let range = match &model.body {
+        Predictor::Ensemble(ensemble) => ensemble.range(),
+        _ => model.trained.inputs[0],
+    };
+    model.band().map(|_| Excursion::beyond(range))
 }
 
 impl State {
@@ -140,6 +174,7 @@ impl State {
             past: Past::default(),
             seen: Vec::with_capacity(model.inputs() + model.preprocessing.added_inputs()),
             last: None,
+            excursion: None,
         }
     }
 
@@ -245,6 +280,9 @@ impl State {
             _ => unreachable!("the memory was made for the body"),
         };
         self.last = Some((time, inputs[0]));
+        if let Some(excursion) = &mut self.excursion {
+            excursion.take(inputs[0]);
+        }
         y
     }
 

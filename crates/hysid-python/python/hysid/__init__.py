@@ -15,6 +15,7 @@ from hysid import _hysid, classical, operators
 from hysid._comparison import Compared, Comparison, compare
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import Progress, fit
+from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
@@ -40,6 +41,9 @@ __all__ = [
     "FoldErrors",
     "HysidWarning",
     "HysteresisRegressor",
+    "Inverse",
+    "Inversion",
+    "Inverted",
     "Member",
     "Minimum",
     "Model",

@@ -8,6 +8,7 @@ __all__ = [
     "Dataset",
     "Model",
     "FitSpec",
+    "Inverse",
     "Stepper",
     "__version__",
     "deteriorating_stop",
@@ -96,6 +97,17 @@ class Model:
     def range_warnings(self, data: Dataset) -> list[str]: ...
     def diagnose(self) -> str: ...
     def stepper(self) -> Stepper: ...
+    def inverse(self, limits: tuple[float, float] | None, slew: float | None) -> Inverse: ...
+
+@final
+class Inverse:
+    def step(
+        self, y: float, time: float | None, others: list[float]
+    ) -> tuple[float, float, str, int]: ...
+    def run(
+        self, y: _Column, time: _Column | None, others: _Column
+    ) -> tuple[_Column, _Column, list[str]]: ...
+    def reset(self) -> None: ...
 
 @final
 class Stepper:

@@ -18,6 +18,7 @@ from hysid._arguments import name_of, real, truth, whole
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
+from hysid._inverse import Inverse
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -655,6 +656,37 @@ class Model:
             In the initial state of the model; its `reset` takes another one by its name.
         """
         return self._native.stepper()
+
+    def inverse(self, *, limits: tuple[float, float] | None = None, slew: float | None = None) -> Inverse:
+        """Give the inverse of the model: from a wanted output, the input that gives it.
+
+        It begins in the initial state of the model and has its memory, its rate and its wear.
+
+        Parameters
+        ----------
+        limits : tuple of two floats, optional
+            Least and largest first input; by default those of the training data.
+        slew : float, optional
+            Largest change of the first input per unit of time; by default there is none.
+
+        Returns
+        -------
+        Inverse
+            With the methods `step` for one sample, `run` for a record, and `reset`.
+
+        Raises
+        ------
+        ValueError
+            Limits that are not finite or not in order; a slew that is not positive.
+
+        Examples
+        --------
+        ::
+
+            drive = model.inverse(limits=(0.0, 100.0)).run(wanted, time)
+            drive.input, drive.reached
+        """
+        return Inverse(self._native.inverse(limits, slew))
 
     def diagnose(self) -> ModelDiagnosis:
         """Determine the properties of the hysteresis of the model.

@@ -12,6 +12,7 @@ pub struct Snapshot {
     memory: Remembered,
     past: Past,
     last: Option<(f64, f64)>,
+    excursion: Option<Excursion>,
 }
 
 #[derive(Debug, Clone)]
@@ -30,7 +31,7 @@ impl Snapshot {
                 Remembered::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
             }
         };
-        Self { memory, past: state.past, last: state.last }
+        Self { memory, past: state.past, last: state.last, excursion: state.excursion }
     }
 
     /// Makes the state what it was.
@@ -50,6 +51,7 @@ impl Snapshot {
         }
         state.past = self.past;
         state.last = self.last;
+        state.excursion = self.excursion;
     }
 
     /// The first input of the last sample; `None` before the first.

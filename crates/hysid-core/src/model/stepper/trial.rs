@@ -1,7 +1,8 @@
 //! Trial steps, for solvers that iterate.
 
 use crate::error::Result;
-use crate::model::stepper::{Snapshot, Stepper};
+use crate::model::Predictor;
+use crate::model::stepper::{Memory, Snapshot, Stepper};
 
 /// Length of the difference quotient of a tangent, as a share of the trained range of the first input.
 const SHARE: f64 = 1e-6;
@@ -45,6 +46,18 @@ impl Stepper<'_> {
         let y = self.trial(inputs, time, rate)?;
         let (slope_1, slope_2) = ((y_1 - y) / h_1, (y_2 - y) / h_2);
         Ok((y, slope_1 + (slope_1 - slope_2) * h_1 / (h_2 - h_1)))
+    }
+
+    /// The first input at which the next output is `output`, from the committed state, for a law with a closed inverse.
+    pub(in crate::model) fn input_for(&mut self, output: f64) -> Option<f64> {
+        self.revert();
+        let (Predictor::Law(law), Memory::Law(state)) = (&self.model.body, &self.state.memory) else {
+            return None;
+        };
+        // The lead-in comes with the first sample.
+        let is_begun = self.state.last.is_some() || self.lead_in.is_empty();
+        let seen = law.input_for(state, output).filter(|_| is_begun)?;
+        Some(self.model.preprocessing.original(seen)).filter(|input| input.is_finite())
     }
 
     /// Makes the state of the last trial the committed one. Without a trial, nothing changes.

@@ -1,0 +1,301 @@
+//! The inverse along a whole record, and the choice of its preview.
+
+use crate::error::{Error, InverseError, Result};
+use crate::model::BandLevel;
+use crate::model::inverse::{Inverse, Inverted, Reach};
+
+/// Rows from which a preview is chosen, at most.
+const ROWS_OF_A_CHOICE: usize = 20_000;
+
+/// The longest preview that is tried, as a share of the record.
+const LONGEST: f64 = 0.125;
+
+/// Longer previews are no longer tried after so many that were worse than the best, once that is good: its deviation is
+/// at most this share of the standard deviation of the wanted output.
+const WORSE: usize = 4;
+const GOOD: f64 = 0.1;
+
+/// Share of the rows where the input turns and the wanted output does not, from which on an inverse chatters.
+const CHATTER: f64 = 0.05;
+
+/// What is added to the deviation of an inverse that chatters, as a share of the standard deviation of the wanted output:
+/// it is still better than one that has lost the output.
+const CHATTERING: f64 = 0.5;
+
+/// Wanted outputs of a record.
+#[derive(Debug, Clone, Copy)]
+pub struct Reference<'a> {
+    /// The wanted output of each row, in its unit.
+    pub wanted: &'a [f64],
+    /// Columns of the further inputs of the model, in their units.
+    pub others: &'a [&'a [f64]],
+    /// Time of each row; `None` for a model that needs none.
+    pub time: Option<&'a [f64]>,
+}
+
+/// The inverse along a record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Inversion {
+    /// The first input of each row, in its unit.
+    pub input: Vec<f64>,
+    /// The output of the model there, in its unit.
+    pub output: Vec<f64>,
+    /// Whether the wanted output was reached.
+    pub reach: Vec<Reach>,
+    /// Whether the input or its rate is outside the range of the training data.
+    pub is_extrapolated: Vec<bool>,
+    /// Lowest and highest inputs whose band contains the wanted output; empty without [`Inverse::band`].
+    pub low: Vec<f64>,
+    /// See `low`.
+    pub high: Vec<f64>,
+}
+
+impl Inversion {
+    fn push(&mut self, inverted: &Inverted) {
+        self.input.push(inverted.input);
+        self.output.push(inverted.output);
+        self.reach.push(inverted.reach);
+        self.is_extrapolated.push(inverted.is_extrapolated);
+        if let Some((low, high)) = inverted.band {
+            self.low.push(low);
+            self.high.push(high);
+        }
+    }
+
+    /// Number of rows with this reach.
+    pub fn count(&self, reach: Reach) -> usize {
+        self.reach.iter().filter(|&&found| found == reach).count()
+    }
+
+    /// Root mean square deviation of the output of the model from the wanted one, in the unit of the output.
+    pub fn rms_deviation(&self, wanted: &[f64]) -> f64 {
+        let sum: f64 = self.output.iter().zip(wanted).map(|(output, wanted)| (output - wanted).powi(2)).sum();
+        (sum / self.output.len().max(1) as f64).sqrt()
+    }
+
+    /// True if the input turns at many rows where the wanted output does not.
+    fn chatters(&self, wanted: &[f64]) -> bool {
+        let turns = |values: &[f64]| {
+            values.windows(3).filter(|row| (row[1] - row[0]) * (row[2] - row[1]) < 0.0).count()
+        };
+        turns(&self.input) as f64 - turns(wanted) as f64 > CHATTER * wanted.len() as f64
+    }
+}
+
+impl Reference<'_> {
+    /// Its first rows.
+    fn beginning<'a>(&'a self, rows: usize, others: &'a mut Vec<&'a [f64]>) -> Reference<'a> {
+        others.extend(self.others.iter().map(|column| &column[..rows.min(column.len())]));
+        Reference {
+            wanted: &self.wanted[..rows.min(self.wanted.len())],
+            others,
+            time: self.time.map(|time| &time[..rows.min(time.len())]),
+        }
+    }
+
+    /// Rejects columns of other lengths.
+    fn check(&self) -> Result<()> {
+        let rows = self.wanted.len();
+        let lengths = self.others.iter().map(|column| column.len()).chain(self.time.map(<[f64]>::len));
+        match lengths.into_iter().find(|&length| length != rows) {
+            Some(length) => Err(InverseError::Length { rows, length }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Previews to try: powers of two of the unit of time, so that other time steps of the same record lead to the
+    /// same ones.
+    fn previews(&self) -> impl Iterator<Item = f64> + use<> {
+        let time = self.time.unwrap_or_default();
+        let longest = match time {
+            [first, .., last] => LONGEST * (last - first),
+            _ => 0.0,
+        };
+        let shortest = longest / LONGEST / time.len().max(2) as f64;
+        let exponents = match longest > 0.0 && longest.is_finite() && shortest > 0.0 {
+            true => shortest.log2().ceil() as i32..=longest.log2().floor() as i32,
+            false => 1..=0,
+        };
+        exponents.map(|exponent| f64::from(exponent).exp2())
+    }
+}
+
+/// The wanted output at times that increase.
+struct Ahead<'a> {
+    reference: Reference<'a>,
+    /// The row before the last time.
+    row: usize,
+}
+
+impl Ahead<'_> {
+    /// The wanted output at this time, on a straight line between rows; behind the last row, the last one.
+    fn at(&mut self, time: f64) -> f64 {
+        let (times, wanted) = (self.reference.time.unwrap_or_default(), self.reference.wanted);
+        while self.row + 1 < times.len() && times[self.row + 1] <= time {
+            self.row += 1;
+        }
+        match times.get(self.row + 1) {
+            Some(next) => {
+                let share = (time - times[self.row]) / (next - times[self.row]);
+                wanted[self.row] + share * (wanted[self.row + 1] - wanted[self.row])
+            }
+            None => wanted[self.row],
+        }
+    }
+}
+
+impl Inverse<'_> {
+    /// Takes all rows of a record, after the samples so far. With a preview, the wanted output ahead is that of the rows
+    /// to come.
+    ///
+    /// # Errors
+    /// As [`Inverse::step`], with the row; columns of other lengths. The rows before the invalid one have been taken.
+    pub fn run(&mut self, reference: &Reference<'_>) -> Result<Inversion> {
+        reference.check()?;
+        self.check_time(reference)?;
+        let mut ahead = Ahead { reference: *reference, row: 0 };
+        let mut inversion = Inversion::default();
+        let mut others = vec![0.0; reference.others.len()];
+        for row in 0..reference.wanted.len() {
+            let time = reference.time.map_or(f64::NAN, |time| time[row]);
+            others.iter_mut().zip(reference.others).for_each(|(value, column)| *value = column[row]);
+            let is_first = self.last.is_none();
+            let wanted = match self.preview > 0.0 && !is_first {
+                true => ahead.at(time + self.preview),
+                false => reference.wanted[row],
+            };
+            let inverted = self.step(wanted, &others, time).map_err(|error| at_row(row, error))?;
+            inversion.push(&inverted);
+        }
+        Ok(inversion)
+    }
+
+    /// The preview with which the output of the model deviates least from the wanted one, of those tried: 0 if every row
+    /// within the limits is reached so, otherwise powers of two of the unit of time, up to an eighth of the record.
+    ///
+    /// It is found from the initial state of the model on the first 20,000 rows, or fewer; the state of the inverse stays
+    /// as it is.
+    ///
+    /// # Errors
+    /// As [`Inverse::run`].
+    pub fn best_preview(&self, reference: &Reference<'_>) -> Result<f64> {
+        reference.check()?;
+        if !self.model().needs_time() || reference.time.is_none() {
+            return Ok(0.0);
+        }
+        let mut columns = Vec::new();
+        let reference = reference.beginning(ROWS_OF_A_CHOICE, &mut columns);
+        let mut trial = self.clone();
+        trial.band = None::<BandLevel>;
+        let spread = standard_deviation(reference.wanted);
+        let mut deviation = |preview: f64| -> Result<(f64, bool)> {
+            trial.reset();
+            trial.preview = preview;
+            let inversion = trial.run(&reference)?;
+            let is_exact = inversion.reach.iter().all(|reach| *reach == Reach::Reached || reach.is_at_a_bound());
+            let chatters = inversion.chatters(reference.wanted);
+            let added = if chatters { CHATTERING * spread } else { 0.0 };
+            let deviation = added + inversion.rms_deviation(reference.wanted);
+            Ok((deviation, is_exact && !chatters && inversion.bounds_are_of(reference.wanted)))
+        };
+        let (mut least, is_exact) = deviation(0.0)?;
+        let mut best = 0.0;
+        if is_exact {
+            return Ok(best);
+        }
+        let mut worse = 0;
+        for preview in reference.previews() {
+            let (found, _) = deviation(preview)?;
+            if found < least {
+                (least, best, worse) = (found, preview, 0);
+            } else if least <= GOOD * spread {
+                worse += 1;
+            }
+            if worse == WORSE {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// Rejects a record without time stamps where they are needed.
+    fn check_time(&self, reference: &Reference<'_>) -> Result<()> {
+        let is_needed = self.model().needs_time() || self.slew.is_some() || self.preview > 0.0;
+        match reference.time {
+            None if is_needed => Err(InverseError::NoTime.into()),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Inversion {
+    /// True if rows are at a limit only where the wanted output is beyond what the model reached elsewhere: a model that
+    /// is driven to a limit in the middle of its range has been lost there.
+    fn bounds_are_of(&self, wanted: &[f64]) -> bool {
+        let reached = || {
+            let rows = self.reach.iter().zip(wanted);
+            rows.filter(|(reach, _)| **reach == Reach::Reached).map(|(_, wanted)| *wanted)
+        };
+        let low = reached().fold(f64::INFINITY, f64::min);
+        let high = reached().fold(f64::NEG_INFINITY, f64::max);
+        let is_lost = |(reach, wanted): (&Reach, &f64)| {
+            matches!(reach, Reach::LowLimit | Reach::HighLimit) && *wanted > low && *wanted < high
+        };
+        !self.reach.iter().zip(wanted).any(is_lost)
+    }
+}
+
+fn standard_deviation(values: &[f64]) -> f64 {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+fn at_row(row: usize, error: Error) -> Error {
+    match error {
+        Error::Sample(problem) => InverseError::Row { row, problem }.into(),
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::SampleError;
+
+    #[test]
+    fn wanted_outputs_ahead_lie_on_straight_lines() {
+        let (time, wanted) = ([0.0, 1.0, 3.0], [0.0, 2.0, -2.0]);
+        let reference = Reference { wanted: &wanted, others: &[], time: Some(&time) };
+        let mut ahead = Ahead { reference, row: 0 };
+        let found = [0.0, 0.25, 1.0, 1.5, 2.0, 3.0, 9.0].map(|time| ahead.at(time));
+        assert_eq!(found, [0.0, 0.5, 2.0, 1.0, 0.0, -2.0, -2.0]);
+    }
+
+    #[test]
+    fn previews_do_not_depend_on_the_time_step() {
+        let previews = |rows: usize| -> Vec<f64> {
+            let time: Vec<f64> = (0..rows).map(|row| row as f64 / (rows - 1) as f64).collect();
+            let wanted = vec![0.0; rows];
+            Reference { wanted: &wanted, others: &[], time: Some(&time) }.previews().collect()
+        };
+        assert_eq!(previews(65), [0.015_625, 0.031_25, 0.0625, 0.125]);
+        assert!(previews(1000).ends_with(&previews(65)));
+        assert!(previews(1).is_empty());
+    }
+
+    #[test]
+    fn an_input_that_turns_at_every_row_chatters() {
+        let wanted: Vec<f64> = (0..100).map(|row| (0.1 * f64::from(row)).sin()).collect();
+        let inversion = |input: Vec<f64>| Inversion { input, ..Inversion::default() };
+        assert!(!inversion(wanted.clone()).chatters(&wanted));
+        let alternating = (0..100).map(|row| if row % 2 == 0 { 0.0 } else { 1.0 }).collect();
+        assert!(inversion(alternating).chatters(&wanted));
+    }
+
+    #[test]
+    fn errors_tell_the_row() {
+        let error = at_row(4, SampleError::NotFinite(f64::NAN).into());
+        assert!(error.to_string().starts_with("row 5: "), "{error}");
+    }
+}
