@@ -10,17 +10,19 @@ const ROWS_OF_A_CHOICE: usize = 20_000;
 /// The longest preview that is tried, as a share of the record.
 const LONGEST: f64 = 0.125;
 
-/// Longer previews are no longer tried after so many that were worse than the best, once that is good: its deviation is
-/// at most this share of the standard deviation of the wanted output.
+/// Longer previews are no longer tried after so many that were worse than the best, once no more than this counts against
+/// the best.
 const WORSE: usize = 4;
 const GOOD: f64 = 0.1;
 
-/// Share of the rows where the input turns and the wanted output does not, from which on an inverse chatters.
-const CHATTER: f64 = 0.05;
+/// What counts against an inverse: the deviation of its output in standard deviations of the wanted output, and these
+/// multiples of the share of rows with an input or rate outside the trained range, and of those where the input turns and
+/// the wanted output does not.
+const WEIGHT_OF_EXTRAPOLATION: f64 = 2.0;
+const WEIGHT_OF_TURNS: f64 = 0.25;
 
-/// What is added to the deviation of an inverse that chatters, as a share of the standard deviation of the wanted output:
-/// it is still better than one that has lost the output.
-const CHATTERING: f64 = 0.5;
+/// An inverse whose rows are all reached is good enough without a preview if no more counts against it.
+const LITTLE: f64 = 0.005;
 
 /// Wanted outputs of a record.
 #[derive(Debug, Clone, Copy)]
@@ -73,12 +75,17 @@ impl Inversion {
         (sum / self.output.len().max(1) as f64).sqrt()
     }
 
-    /// True if the input turns at many rows where the wanted output does not.
-    fn chatters(&self, wanted: &[f64]) -> bool {
+    /// What counts against this inverse, for a wanted output with this standard deviation.
+    fn faults(&self, wanted: &[f64], spread: f64) -> f64 {
+        let share = |count: f64| count / wanted.len().max(1) as f64;
+        let extrapolated = self.is_extrapolated.iter().filter(|is_extrapolated| **is_extrapolated).count();
         let turns = |values: &[f64]| {
-            values.windows(3).filter(|row| (row[1] - row[0]) * (row[2] - row[1]) < 0.0).count()
+            values.windows(3).filter(|row| (row[1] - row[0]) * (row[2] - row[1]) < 0.0).count() as f64
         };
-        turns(&self.input) as f64 - turns(wanted) as f64 > CHATTER * wanted.len() as f64
+        let idle_turns = (turns(&self.input) - turns(wanted)).max(0.0);
+        self.rms_deviation(wanted) / spread.max(f64::MIN_POSITIVE)
+            + WEIGHT_OF_EXTRAPOLATION * share(extrapolated as f64)
+            + WEIGHT_OF_TURNS * share(idle_turns)
     }
 }
 
@@ -170,8 +177,11 @@ impl Inverse<'_> {
         Ok(inversion)
     }
 
-    /// The preview with which the output of the model deviates least from the wanted one, of those tried: 0 if every row
-    /// within the limits is reached so, otherwise powers of two of the unit of time, up to an eighth of the record.
+    /// The best preview of those tried: none, and powers of two of the unit of time, up to an eighth of the record.
+    ///
+    /// It is the one with which the output of the model deviates little from the wanted one, while the input stays within
+    /// the trained range and rates, and turns seldom where the wanted output does not. Without time stamps, or for a
+    /// model without rate and relaxation, it is 0.
     ///
     /// It is found from the initial state of the model on the first 20,000 rows, or fewer; the state of the inverse stays
     /// as it is.
@@ -188,27 +198,26 @@ impl Inverse<'_> {
         let mut trial = self.clone();
         trial.band = None::<BandLevel>;
         let spread = standard_deviation(reference.wanted);
-        let mut deviation = |preview: f64| -> Result<(f64, bool)> {
+        let mut faults = |preview: f64| -> Result<(f64, bool)> {
             trial.reset();
             trial.preview = preview;
             let inversion = trial.run(&reference)?;
-            let is_exact = inversion.reach.iter().all(|reach| *reach == Reach::Reached || reach.is_at_a_bound());
-            let chatters = inversion.chatters(reference.wanted);
-            let added = if chatters { CHATTERING * spread } else { 0.0 };
-            let deviation = added + inversion.rms_deviation(reference.wanted);
-            Ok((deviation, is_exact && !chatters && inversion.bounds_are_of(reference.wanted)))
+            let is_at_bounds = |reach: &Reach| *reach == Reach::Reached || reach.is_at_a_bound();
+            let is_exact =
+                inversion.reach.iter().all(is_at_bounds) && inversion.bounds_are_of(reference.wanted);
+            Ok((inversion.faults(reference.wanted, spread), is_exact))
         };
-        let (mut least, is_exact) = deviation(0.0)?;
+        let (mut least, is_exact) = faults(0.0)?;
         let mut best = 0.0;
-        if is_exact {
+        if is_exact && least <= LITTLE {
             return Ok(best);
         }
         let mut worse = 0;
         for preview in reference.previews() {
-            let (found, _) = deviation(preview)?;
+            let (found, _) = faults(preview)?;
             if found < least {
                 (least, best, worse) = (found, preview, 0);
-            } else if least <= GOOD * spread {
+            } else if least <= GOOD {
                 worse += 1;
             }
             if worse == WORSE {
@@ -285,12 +294,16 @@ mod tests {
     }
 
     #[test]
-    fn an_input_that_turns_at_every_row_chatters() {
+    fn an_input_that_runs_to_and_fro_has_faults() {
         let wanted: Vec<f64> = (0..100).map(|row| (0.1 * f64::from(row)).sin()).collect();
-        let inversion = |input: Vec<f64>| Inversion { input, ..Inversion::default() };
-        assert!(!inversion(wanted.clone()).chatters(&wanted));
+        let faults = |input: Vec<f64>| {
+            let is_extrapolated = vec![false; 100];
+            let output = wanted.clone();
+            Inversion { input, output, is_extrapolated, ..Inversion::default() }.faults(&wanted, 0.7)
+        };
+        assert_eq!(faults(wanted.clone()), 0.0);
         let alternating = (0..100).map(|row| if row % 2 == 0 { 0.0 } else { 1.0 }).collect();
-        assert!(inversion(alternating).chatters(&wanted));
+        assert!((0.2..0.25).contains(&faults(alternating)));
     }
 
     #[test]
