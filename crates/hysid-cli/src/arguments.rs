@@ -1,5 +1,6 @@
 //! The command line.
 
+pub mod limits;
 mod model_options;
 
 use std::ops::RangeInclusive;
@@ -19,6 +20,7 @@ use hysid::specimens::Specimen;
 use hysid_export::Target;
 
 use crate::reproduction::Experiment;
+pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
@@ -67,6 +69,8 @@ pub enum Command {
     Simulate(Simulate),
     /// Compute the errors of a model on measured data
     Evaluate(Evaluate),
+    /// Find the input that drives a model along a wanted output
+    Invert(Box<Invert>),
     /// Cross-validate a model; gives its errors on held-out data, fold by fold
     Validate(Box<Validate>),
     /// Fit all models to the same data and compare their errors on unseen data
@@ -243,6 +247,12 @@ Examples:
   hysid evaluate model.json test.csv
   hysid evaluate model.json test.csv --band 0.9
   hysid evaluate model.json test.csv --json";
+
+const INVERT_EXAMPLES: &str = "\
+Examples:
+  hysid invert model.json reference.csv -o drive.csv    report drive.html
+  hysid invert model.json reference.csv --limits 0:150 --slew 2000 -o drive.csv
+  hysid simulate model.json drive.csv -o check.csv      the output of that input";
 
 const VALIDATE_EXAMPLES: &str = "\
 Examples:
@@ -433,6 +443,62 @@ pub struct Simulate {
     /// Which units are the same.
     #[command(flatten)]
     pub units: UnitOptions,
+}
+
+/// Arguments of `invert`.
+#[derive(Debug, Args)]
+#[command(after_help = INVERT_EXAMPLES)]
+pub struct Invert {
+    /// A model file of `hysid fit`
+    #[arg(value_name = "MODEL.json")]
+    pub model: PathBuf,
+    /// Table with the wanted output, and with time and further inputs if the model has them
+    #[arg(value_name = "REFERENCE.csv")]
+    pub reference: PathBuf,
+    /// Table to write [default: stdout, as with `-`]
+    ///
+    /// It has the columns of the reference, the input that was found, the output of the model at this input, and the
+    /// columns `reach` and `extrapolated`. A report with the same name and `.html` is written beside it.
+    #[arg(short, long, value_name = "DRIVE.csv")]
+    pub out: Option<PathBuf>,
+    /// Do not write a report
+    #[arg(long)]
+    pub no_report: bool,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Lowest and highest input, such as 0:150 or -1:1 [default: the trained range]
+    #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits, allow_hyphen_values = true)]
+    pub limits: Option<(f64, f64)>,
+    /// Largest change of the input in a unit of time [default: none]
+    #[arg(long, value_name = "RATE", value_parser = limits::slew, allow_hyphen_values = true)]
+    pub slew: Option<f64>,
+    /// Time by which the search looks ahead in the reference, in the unit of time; 0 for not at all [default: auto]
+    ///
+    /// It matters for models whose output lags behind the input. `auto` finds the time with which the model follows the
+    /// reference best.
+    #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, allow_hyphen_values = true)]
+    pub preview: Preview,
+    /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
+    ///
+    /// The columns `<input>_low` and `<input>_high` are the lowest and the highest of them.
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
+    pub band: Option<f64>,
+    /// In how many of ten data sets the band is to contain that share.
+    #[command(flatten)]
+    pub data_sets: DataSetsOptions,
+    /// Where the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Which units are the same.
+    #[command(flatten)]
+    pub units: UnitOptions,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
 }
 
 /// Arguments of `evaluate`.

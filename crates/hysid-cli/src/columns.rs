@@ -111,6 +111,27 @@ impl Roles {
     /// Finds the columns that a model needs, by the names it was trained on or those of options.
     /// `scored` tells if the output is needed too.
     pub fn of_model(model: &Model, table: &Head, options: &ColumnOptions, scored: bool) -> Result<Self> {
+        Self::of_inputs(model, &model.names().inputs, model.needs_time(), table, options, scored)
+    }
+
+    /// Finds the columns that the inverse of a model needs: the wanted output, and all inputs but the first.
+    pub fn of_inverse(
+        model: &Model,
+        needs_time: bool,
+        table: &Head,
+        options: &ColumnOptions,
+    ) -> Result<Self> {
+        Self::of_inputs(model, &model.names().inputs[1..], needs_time, table, options, true)
+    }
+
+    fn of_inputs(
+        model: &Model,
+        needed: &[String],
+        needs_time: bool,
+        table: &Head,
+        options: &ColumnOptions,
+        scored: bool,
+    ) -> Result<Self> {
         let names = model.names();
         let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
             Some(name) => require(table, name, option).map(|()| name.clone()),
@@ -129,13 +150,17 @@ impl Roles {
         let given_rate = rate_of_model(model, options)?;
         let inputs: Vec<String> = if options.input.is_empty() {
             let find = |name: &String| find(&None, name, "input", "--input");
-            names.inputs.iter().map(find).collect::<Result<_>>()?
+            needed.iter().map(find).collect::<Result<_>>()?
         } else {
-            let (expected, found) = (names.inputs.len(), options.input.len());
+            let (expected, found) = (needed.len(), options.input.len());
             if expected != found {
-                let inputs = listed(&names.inputs);
+                let (what, inputs) = match expected {
+                    0 => ("further inputs", String::from("none")),
+                    _ if expected < names.inputs.len() => ("further inputs", listed(needed)),
+                    _ => ("inputs", listed(needed)),
+                };
                 return Err(Usage(format!(
-                    "--input names {found} columns, but the model's inputs are {expected}: {inputs}"
+                    "--input names {found} columns, but the model's {what} are {expected}: {inputs}"
                 ))
                 .into());
             }
@@ -145,7 +170,7 @@ impl Roles {
                 .map(|name| require(table, name, "--input").map(|()| name.clone()))
                 .collect::<Result<_>>()?
         };
-        let time = match model.needs_time() {
+        let time = match needs_time {
             true => Some(find(&options.time, names.time.as_deref().unwrap_or("t"), "time", "--time")?),
             false => None,
         };

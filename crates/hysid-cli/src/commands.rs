@@ -8,6 +8,7 @@ pub mod evaluate;
 pub mod export;
 pub mod fit;
 pub mod generate;
+pub mod invert;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

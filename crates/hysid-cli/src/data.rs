@@ -34,10 +34,12 @@ pub struct Source {
 }
 
 /// Where a record stands.
-struct Place {
-    record: String,
+pub struct Place {
+    /// Name of the record.
+    pub record: String,
     table: usize,
-    rows: Range<usize>,
+    /// Its rows in the table.
+    pub rows: Range<usize>,
 }
 
 impl Data {
@@ -184,6 +186,12 @@ fn stems(tables: &[Table]) -> Vec<String> {
     all.iter().zip(tables).map(name).map(numbered).collect()
 }
 
+/// The records of one table.
+pub fn places_of(table: &Table, roles: &Roles) -> Result<Vec<Place>> {
+    let stems = stems(std::slice::from_ref(table));
+    places(table, 0, roles, &stems[0], false)
+}
+
 /// The records of a table: runs of rows with the same name in the record column.
 fn places(table: &Table, index: usize, roles: &Roles, stem: &str, several: bool) -> Result<Vec<Place>> {
     let Some(column) = &roles.record else {
@@ -245,7 +253,7 @@ impl Columns {
 }
 
 /// The numbers of a column; a blank output is NaN.
-fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
+pub fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
     let at = |line: u64, problem: &str| {
         anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))

@@ -18,6 +18,7 @@ mod errors_table;
 mod files;
 mod identification;
 mod interrupt;
+mod inversion;
 mod messages;
 mod progress;
 mod record_names;
@@ -64,6 +65,7 @@ pub fn run() -> ExitCode {
         Command::Validate(arguments) => commands::validate::run(&arguments),
         Command::Simulate(arguments) => commands::simulate::run(&arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
+        Command::Invert(arguments) => commands::invert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),

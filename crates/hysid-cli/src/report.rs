@@ -4,7 +4,7 @@ mod band;
 mod ensemble;
 mod errors;
 mod figures;
-mod histories;
+pub mod histories;
 mod neurons;
 mod parameters;
 mod provenance;

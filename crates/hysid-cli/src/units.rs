@@ -38,7 +38,11 @@ impl Factors {
             (Some(found), Some(trained)) => column(found, trained),
             _ => Ok(None),
         };
-        let inputs = roles.inputs.iter().zip(&trained.inputs);
+        // The inverse has all inputs but the first.
+        let inputs = {
+            let missing = trained.inputs.len() - roles.inputs.len();
+            roles.inputs.iter().zip(&trained.inputs[missing..])
+        };
         Ok(Self {
             time: both(&roles.time, &trained.time)?,
             inputs: inputs.map(|(found, trained)| column(found, trained)).collect::<Result<_>>()?,

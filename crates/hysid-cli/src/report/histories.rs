@@ -59,7 +59,8 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
         Some(time) => time.to_vec(),
         None => (1..=record.len()).map(|row| row as f64).collect(),
     };
-    let panel = Panel { time: &time, record: record.name(), time_label: time_label(set.data), points };
+    let panel =
+        Panel { time: &time, record: record.name(), time_label: time_label(set.data), points, band: BAND };
     let output = unit::label(&names.output);
     let error = match unit::split(&names.output).1 {
         Some(unit) => format!("error ({unit})"),
@@ -80,7 +81,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
             (Colour::Measured, "measured", 2.4, record.output()),
             (Colour::Simulated, "model", 1.1, &set.simulated[index]),
         ],
-        predicted.map(|predicted| panel.band(&predicted.low, &predicted.high)),
+        predicted.map(|predicted| panel.area(&predicted.low, &predicted.high)),
     ));
     let errors = errors(set, index);
     let line = (Colour::Error, "model − measured", 1.1, errors.as_slice());
@@ -94,16 +95,22 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
 }
 
 /// What the charts of a record have in common.
-struct Panel<'a> {
-    time: &'a [f64],
-    time_label: String,
-    record: &'a str,
-    points: usize,
+pub struct Panel<'a> {
+    /// Times of the rows, or their numbers.
+    pub time: &'a [f64],
+    /// Label of the axis of time.
+    pub time_label: String,
+    /// Name of the record.
+    pub record: &'a str,
+    /// Points of each curve, at most.
+    pub points: usize,
+    /// Probability of the band.
+    pub band: f64,
 }
 
 impl Panel<'_> {
     /// The area between two curves.
-    fn band(&self, low: &[f64], high: &[f64]) -> Curve {
+    pub fn area(&self, low: &[f64], high: &[f64]) -> Curve {
         Curve::new(outline(self.time, low, high, self.points), Colour::Band, 0.0)
     }
 
@@ -112,11 +119,11 @@ impl Panel<'_> {
         let from = |edges: &[f64]| -> Vec<f64> {
             predicted.output.iter().zip(edges).map(|(output, edge)| output - edge).collect()
         };
-        self.band(&from(&predicted.high), &from(&predicted.low))
+        self.area(&from(&predicted.high), &from(&predicted.low))
     }
 
     /// Lines over time, in front of a band if there is one.
-    fn figure(
+    pub fn figure(
         &self,
         label: &str,
         height: f64,
@@ -130,7 +137,7 @@ impl Panel<'_> {
         let mut legend: Vec<(Colour, String)> =
             lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect();
         if band.is_some() {
-            legend.push((Colour::Band, format!("{} % band", number(100.0 * BAND, 3))));
+            legend.push((Colour::Band, format!("{} % band", number(100.0 * self.band, 3))));
         }
         let lines: Vec<Curve> = lines.iter().map(curve).collect();
         let y = Axis::linear(label, reach(&lines, band.as_ref()).into_iter());

@@ -1,0 +1,264 @@
+//! `hysid invert`: the input that drives a model along a wanted output.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, ensure};
+use hysid::Model;
+use hysid::data::metrics::Errors;
+use hysid::data::unit;
+use hysid::significant::Significant;
+use hysid_document::count;
+use hysid_files::{Destination, Kind};
+use serde::Serialize;
+
+use crate::arguments::{Invert, Preview};
+use crate::cell::push_shortest;
+use crate::columns::Roles;
+use crate::commands::{check_band, read_model};
+use crate::csv_text::header_line;
+use crate::errors_table::errors_table;
+use crate::files::{self, check_outputs};
+use crate::inversion::{self, Bounds, Inverted, Wanted};
+use crate::messages::{Usage, json_results, note, raw_results, results, warning};
+use crate::table::Table;
+use crate::terminal::clipped;
+use crate::units::Factors;
+use crate::{Outcome, understanding};
+
+/// Runs the command.
+pub fn run(arguments: &Invert) -> Result<Outcome> {
+    let model = arguments.beginning.of(read_model(&arguments.model)?)?;
+    arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
+    let table = Table::read(&arguments.reference)?;
+    let names = Names::of(&model, &table, arguments.band.is_some())?;
+    let header = header_line(table.delimiter, table.header.iter().chain(names.all()).map(String::as_str))?;
+    let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
+    if arguments.json && out.is_none() {
+        return Err(Usage("--json prints the result in the place of the table: name a file with -o".into()).into());
+    }
+    let force = arguments.overwriting.force;
+    let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
+    let page_path = out.filter(|_| !arguments.no_report).map(|out| out.with_extension("html"));
+    let page = page_path.as_ref().map(|path| Destination::new(path.clone(), Kind::Page, force));
+    let destinations: Vec<&Destination> = drive.iter().chain(&page).collect();
+    check_outputs(&destinations, &[&arguments.reference, &arguments.model])?;
+
+    let needs_time = model.needs_time()
+        || arguments.slew.is_some()
+        || matches!(arguments.preview, Preview::Time(time) if time > 0.0);
+    let roles = Roles::of_inverse(&model, needs_time, &table, &arguments.columns)?;
+    let factors = Factors::of(&model, &roles, &table.file, true, arguments.units.same_units)?;
+    let wanted = Wanted::of(&table, &roles, &factors)?;
+    let bounds = Bounds {
+        limits: arguments.limits,
+        slew: arguments.slew,
+        preview: arguments.preview,
+        band: arguments.data_sets.level(arguments.band),
+    };
+    let inverted = Inverted::of(&model, &wanted, &bounds)?;
+
+    let understood = understood(arguments, &model, &roles, &inverted);
+    understanding::print(&understood);
+    let warnings = warnings(&inverted);
+    warnings.iter().for_each(warning);
+    let text = header.into_iter().chain(rows(&table, &wanted, &inverted)?).collect::<Vec<u8>>();
+    match &drive {
+        None => raw_results(&String::from_utf8(text)?)?,
+        Some(drive) => {
+            files::write(drive, &text)?;
+            match arguments.json {
+                true => json_results(&Printed::of(drive.path(), page_path.as_deref(), &inverted))?,
+                false => results(&summary(&inverted))?,
+            }
+        }
+    }
+    if let Some(page) = &page {
+        let report = inversion::page(&model, &wanted, &inverted, &bounds, &understood, &warnings);
+        files::write_page(page, &report)?;
+    }
+    for (what, destination) in [("drive", &drive), ("report", &page)] {
+        if let Some(destination) = destination {
+            note(format_args!("{what:<8}{}", files::shown(destination.path())));
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Names of the columns that are added.
+struct Names {
+    drive: String,
+    edges: Vec<String>,
+    others: [String; 3],
+}
+
+impl Names {
+    /// The drive is named after the input of the model, so that the table can be simulated; if the table has such a
+    /// column, `_inverse` is appended.
+    fn of(model: &Model, table: &Table, has_band: bool) -> Result<Self> {
+        let input = &model.names().inputs[0];
+        let drive = match table.column(input) {
+            None => input.clone(),
+            Some(_) => format!("{input}_inverse"),
+        };
+        let edges = if has_band { vec![format!("{drive}_low"), format!("{drive}_high")] } else { Vec::new() };
+        let others =
+            [format!("{}_model", model.names().output), "reach".to_string(), "extrapolated".to_string()];
+        let names = Self { drive, edges, others };
+        for name in names.all() {
+            ensure!(
+                table.column(name).is_none(),
+                "{}: there is already a column \"{}\" (rename or remove it)",
+                table.file,
+                clipped(name)
+            );
+        }
+        Ok(names)
+    }
+
+    fn all(&self) -> impl Iterator<Item = &String> + Clone {
+        std::iter::once(&self.drive).chain(&self.edges).chain(&self.others)
+    }
+}
+
+/// The rows of the table with the columns that are added.
+fn rows(table: &Table, wanted: &Wanted, inverted: &Inverted) -> Result<Vec<u8>> {
+    let mut writer = csv::WriterBuilder::new().delimiter(table.delimiter).from_writer(Vec::new());
+    let mut number = String::new();
+    for (record, inversion) in wanted.records.iter().zip(&inverted.records) {
+        for (row, place) in record.rows.clone().enumerate() {
+            for column in 0..table.header.len() {
+                writer.write_field(table.cell(place, column))?;
+            }
+            for column in [&inversion.input, &inversion.low, &inversion.high, &inversion.output] {
+                if let Some(&value) = column.get(row) {
+                    number.clear();
+                    push_shortest(&mut number, value, wanted.sign);
+                    writer.write_field(&number)?;
+                }
+            }
+            writer.write_field(inversion.reach[row].word())?;
+            writer.write_field(if inversion.is_extrapolated[row] { "yes" } else { "no" })?;
+            writer.write_record(None::<&[u8]>)?;
+        }
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// What was asked for and taken, label and text.
+fn understood(
+    arguments: &Invert,
+    model: &Model,
+    roles: &Roles,
+    inverted: &Inverted,
+) -> Vec<(String, String)> {
+    let names = model.names();
+    let with_unit = |value: f64, name: &str| {
+        let unit = unit::of_column(name).map_or_else(String::new, |unit| format!(" {}", clipped(&unit)));
+        format!("{:.4}{unit}", Significant(value))
+    };
+    let input = &names.inputs[0];
+    let (low, high) = arguments.limits.unwrap_or(model.trained_ranges().inputs[0]);
+    let of = if arguments.limits.is_some() { "" } else { ", the trained range" };
+    let mut lines = vec![
+        ("model", format!("{}: {}", files::shown(&arguments.model), model.name().name())),
+        ("wanted", format!("{} of {}", clipped(&roles.output), files::shown(&arguments.reference))),
+        (
+            "drive",
+            format!("{}, from {:.4} to {}{of}", clipped(input), Significant(low), with_unit(high, input)),
+        ),
+    ];
+    if let Some(slew) = arguments.slew {
+        lines.push(("slew", format!("at most {:.4} per unit of time", Significant(slew))));
+    }
+    if model.needs_time() || inverted.previews.iter().any(|preview| *preview > 0.0) {
+        let time = names.time.as_deref().unwrap_or("time");
+        let mut all: Vec<String> = inverted.previews.iter().map(|&preview| with_unit(preview, time)).collect();
+        all.dedup();
+        let chosen = if arguments.preview == Preview::Auto { " (chosen; change: --preview)" } else { "" };
+        let shown = if all.len() > 4 { format!("{} to others", all[0]) } else { all.join(", ") };
+        lines.push(("preview", format!("{shown}{chosen}")));
+    }
+    lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
+}
+
+/// Deviation of the driven model, in percent of the standard deviation of the wanted output, above which it is said.
+const LARGE: f64 = 5.0;
+
+/// What the user must know of the drive.
+fn warnings(inverted: &Inverted) -> Vec<String> {
+    let rows = inverted.rows();
+    let mut all = Vec::new();
+    let missed = inverted.not_reached();
+    if !missed.is_empty() {
+        let counts: Vec<String> = missed.iter().map(|(word, count)| format!("{word} {count}")).collect();
+        let total = rows - inverted.reached();
+        all.push(format!(
+            "{total} of {rows} rows do not reach the wanted output and have the nearest input: {} (column reach)",
+            counts.join(", ")
+        ));
+    }
+    let extrapolated = inverted.extrapolated();
+    if extrapolated > 0 {
+        all.push(format!(
+            "{extrapolated} of {rows} rows have an input or a rate outside the range of the training data (column extrapolated)"
+        ));
+    }
+    if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
+        all.push(format!(
+            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: the model \
+             cannot follow this reference"
+        ));
+    }
+    all
+}
+
+/// The result as text.
+fn summary(inverted: &Inverted) -> String {
+    let (low, high) = inverted.range();
+    format!(
+        "{}\nrows reached: {} of {}; drive from {:.4} to {:.4}\n",
+        errors_table(&[("model driven", &inverted.errors)]),
+        inverted.reached(),
+        count(inverted.rows(), "row"),
+        Significant(low),
+        Significant(high)
+    )
+}
+
+/// The object that `--json` prints.
+#[derive(Serialize)]
+struct Printed<'a> {
+    drive: PathBuf,
+    report: Option<&'a Path>,
+    rows: usize,
+    records: usize,
+    /// Rows that reach the wanted output.
+    reached: usize,
+    /// Rows by why they do not.
+    not_reached: BTreeMap<&'static str, usize>,
+    extrapolated: usize,
+    /// Lowest and highest input.
+    drive_range: (f64, f64),
+    /// How far the search looked ahead, for each record.
+    previews: &'a [f64],
+    /// The output of the driven model against the wanted one.
+    errors: &'a Errors,
+}
+
+impl<'a> Printed<'a> {
+    fn of(drive: &Path, report: Option<&'a Path>, inverted: &'a Inverted) -> Self {
+        Self {
+            drive: drive.to_path_buf(),
+            report,
+            rows: inverted.rows(),
+            records: inverted.records.len(),
+            reached: inverted.reached(),
+            not_reached: inverted.not_reached(),
+            extrapolated: inverted.extrapolated(),
+            drive_range: inverted.range(),
+            previews: &inverted.previews,
+            errors: &inverted.errors,
+        }
+    }
+}

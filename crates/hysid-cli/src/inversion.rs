@@ -1,0 +1,133 @@
+//! Wanted outputs of a table, and the inputs that drive a model along them.
+
+mod page;
+mod reference;
+
+use std::collections::BTreeMap;
+
+use anyhow::{Result, anyhow};
+use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::error::InverseError;
+use hysid::model::{BandLevel, Inverse, Inversion, Model, Reach};
+
+pub use page::page;
+pub use reference::{Wanted, WantedRecord};
+
+use crate::arguments::Preview;
+
+/// What bounds the search of the inputs.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds {
+    /// Lowest and highest input; `None` for the trained range.
+    pub limits: Option<(f64, f64)>,
+    /// Largest change of the input in a unit of time.
+    pub slew: Option<f64>,
+    /// How far the search looks ahead.
+    pub preview: Preview,
+    /// Band of the output that becomes one of the input.
+    pub band: Option<BandLevel>,
+}
+
+/// The inputs of all records.
+pub struct Inverted {
+    /// One for each record of the reference.
+    pub records: Vec<Inversion>,
+    /// How far the search looked ahead in each.
+    pub previews: Vec<f64>,
+    /// Errors of the output of the driven model against the wanted one.
+    pub errors: Errors,
+}
+
+impl Inverted {
+    /// Inverts a model along all records, each from the initial state.
+    pub fn of(model: &Model, wanted: &Wanted, bounds: &Bounds) -> Result<Self> {
+        let (mut records, mut previews, mut sums) = (Vec::new(), Vec::new(), ErrorSums::default());
+        for record in &wanted.records {
+            let explained = |error: hysid::Error| explained(error, wanted, record);
+            let columns = record.columns();
+            let reference = record.reference(&columns);
+            let inverse = inverse(model, bounds)?;
+            let preview = match bounds.preview {
+                Preview::Auto => inverse.best_preview(&reference).map_err(explained)?,
+                Preview::Time(time) => time,
+            };
+            let inversion = inverse.preview(preview)?.run(&reference).map_err(explained)?;
+            sums.add(&record.wanted, &inversion.output);
+            records.push(inversion);
+            previews.push(preview);
+        }
+        let errors = sums.errors(&model.names().output).ok_or_else(|| anyhow!("there are no rows"))?;
+        Ok(Self { records, previews, errors })
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.records.iter().map(|record| record.input.len()).sum()
+    }
+
+    /// Number of rows that were reached.
+    pub fn reached(&self) -> usize {
+        self.records.iter().map(|record| record.count(Reach::Reached)).sum()
+    }
+
+    /// Number of rows by each other reach.
+    pub fn not_reached(&self) -> BTreeMap<&'static str, usize> {
+        let mut counts = BTreeMap::new();
+        for reach in Reach::ALL.into_iter().filter(|reach| *reach != Reach::Reached) {
+            let count: usize = self.records.iter().map(|record| record.count(reach)).sum();
+            if count > 0 {
+                counts.insert(reach.word(), count);
+            }
+        }
+        counts
+    }
+
+    /// Rows with an input, or a rate of it, outside the trained range.
+    pub fn extrapolated(&self) -> usize {
+        let rows = self.records.iter().flat_map(|record| &record.is_extrapolated);
+        rows.filter(|is_extrapolated| **is_extrapolated).count()
+    }
+
+    /// Lowest and highest input.
+    pub fn range(&self) -> (f64, f64) {
+        let inputs = self.records.iter().flat_map(|record| &record.input);
+        inputs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    }
+}
+
+/// What the reach of a row means.
+pub fn meaning(reach: Reach) -> &'static str {
+    match reach {
+        Reach::Reached => "the model has the wanted output",
+        Reach::LowLimit => "the wanted output is beyond that of the lowest input",
+        Reach::HighLimit => "the wanted output is beyond that of the highest input",
+        Reach::Slew => "the input cannot change so quickly",
+        Reach::NotMonotone => "no input within the limits has the output: the model is not monotone there",
+        Reach::Jump => "the output of the model jumps over the wanted one",
+    }
+}
+
+/// An inverse at the initial state of the model.
+fn inverse<'m>(model: &'m Model, bounds: &Bounds) -> Result<Inverse<'m>> {
+    let mut inverse = model.inverse();
+    if let Some((low, high)) = bounds.limits {
+        inverse = inverse.limits(low, high)?;
+    }
+    if let Some(rate) = bounds.slew {
+        inverse = inverse.slew(rate)?;
+    }
+    if let Some(level) = bounds.band {
+        inverse = inverse.band(level)?;
+    }
+    Ok(inverse)
+}
+
+/// An error of a row with its line.
+fn explained(error: hysid::Error, wanted: &Wanted, record: &WantedRecord) -> anyhow::Error {
+    match error {
+        hysid::Error::Inverse(InverseError::Row { row, problem }) => {
+            anyhow!("{}, line {}: {problem}", wanted.file, wanted.lines[record.rows.start + row])
+        }
+        other => anyhow!("{}: {other}", wanted.file),
+    }
+}

@@ -1,0 +1,199 @@
+//! The page of an inversion: whether the model follows, where it does not, and the drive.
+
+use hysid::Model;
+use hysid::model::{Inversion, Reach};
+use hysid_document::chart::thin::{Point, thin, thin_path};
+use hysid_document::{Cell, Chart, Colour, Curve, Page, Part, Piece, Table, Text, number, unit};
+
+use super::{Bounds, Inverted, Wanted, WantedRecord, meaning};
+use crate::report::histories::Panel;
+
+/// Most records drawn; of more, those with the largest deviations.
+const MOST_RECORDS: usize = 6;
+
+/// Points of each kind of curve in all records together.
+const POINTS: usize = 4000;
+
+/// Points of the loops.
+const LOOP_POINTS: usize = 6000;
+
+/// The whole page.
+pub fn page(
+    model: &Model,
+    wanted: &Wanted,
+    inverted: &Inverted,
+    bounds: &Bounds,
+    understood: &[(String, String)],
+    warnings: &[String],
+) -> Page {
+    let shown = shown_records(wanted, inverted);
+    let mut parts = vec![lead(model, inverted)];
+    if !warnings.is_empty() {
+        parts.push(Part::warnings(warnings));
+    }
+    let charts = [Part::chart(loops(model, wanted, inverted, &shown))];
+    parts.push(Part::section("Output over the drive", charts));
+    let points = POINTS / shown.len().max(1);
+    let mut histories = Vec::new();
+    if shown.len() < wanted.records.len() {
+        histories.push(Part::note(format!(
+            "Of {} records the {} with the largest deviations are drawn.",
+            wanted.records.len(),
+            shown.len()
+        )));
+    }
+    histories.extend(shown.iter().flat_map(|&index| {
+        record(model, &wanted.records[index], &inverted.records[index], bounds, points)
+    }));
+    parts.push(Part::section("Histories", histories));
+    parts.push(Part::section("Rows", [Part::Table(reaches(wanted, inverted))]));
+    parts.push(Part::section("What was asked for", [Part::Definitions(understood.to_vec())]));
+    parts.push(Part::section(
+        "What this page does not show",
+        [Part::paragraph(
+            "The deviations are those of the model from the wanted output. How well the drive works on the real \
+             system depends on the model's own error too: measure the response to this drive, and compare.",
+        )],
+    ));
+    Page { title: format!("Inverse of {}", model.name().name()), parts }
+}
+
+fn lead(model: &Model, inverted: &Inverted) -> Part {
+    let errors = &inverted.errors;
+    let percent = errors.nrmse_std_percent.map_or_else(String::new, |percent| {
+        format!(", {} % of its standard deviation", number(percent, 3))
+    });
+    let rmse = unit::with(&number(errors.rmse, 3), &model.names().output);
+    Part::Lead(
+        format!(
+            "Driven by this input, the model deviates from the wanted output by {rmse} (RMSE){percent}; {} of {} rows are \
+             reached.",
+            inverted.reached(),
+            inverted.rows()
+        )
+        .into(),
+    )
+}
+
+fn shown_records(wanted: &Wanted, inverted: &Inverted) -> Vec<usize> {
+    let deviation = |index: &usize| inverted.records[*index].rms_deviation(&wanted.records[*index].wanted);
+    let mut order: Vec<usize> = (0..wanted.records.len()).collect();
+    order.sort_by(|a, b| deviation(b).total_cmp(&deviation(a)));
+    order.truncate(MOST_RECORDS);
+    order.sort_unstable();
+    order
+}
+
+/// Wanted output and that of the model over the drive.
+fn loops(model: &Model, wanted: &Wanted, inverted: &Inverted, shown: &[usize]) -> Chart {
+    let most = (LOOP_POINTS / shown.len().max(1)).max(16);
+    let (mut back, mut front) = (Vec::new(), Vec::new());
+    for &index in shown {
+        let (record, inversion) = (&wanted.records[index], &inverted.records[index]);
+        let drawn = thin_path(&[&inversion.input, &record.wanted, &inversion.output], most);
+        let curve = |colour: Colour, width: f64, y: &[f64]| {
+            let point =
+                |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (inversion.input[row], y[row]));
+            Curve::new(drawn.iter().map(point).collect(), colour, width)
+        };
+        back.push(curve(Colour::Measured, 2.2, &record.wanted));
+        front.push(curve(Colour::Simulated, 1.1, &inversion.output));
+    }
+    back.extend(front);
+    let names = model.names();
+    let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
+    Chart::new(format!("Wanted and simulated {y} over the drive {x}"), &x, &y, back)
+        .sized(560.0, 400.0)
+        .with_legend([(Colour::Measured, "wanted"), (Colour::Simulated, "model")])
+}
+
+/// The charts of a record, one below the other.
+fn record(
+    model: &Model,
+    record: &WantedRecord,
+    inversion: &Inversion,
+    bounds: &Bounds,
+    points: usize,
+) -> Vec<Part> {
+    let names = model.names();
+    let time: Vec<f64> = match &record.time {
+        Some(time) => time.clone(),
+        None => (1..=record.wanted.len()).map(|row| row as f64).collect(),
+    };
+    let time_label = match (&record.time, &names.time) {
+        (Some(_), Some(name)) => unit::label(name),
+        (Some(_), None) => "time".into(),
+        (None, _) => "row".into(),
+    };
+    let band = bounds.band.map_or(0.0, |level| level.probability);
+    let panel = Panel { time: &time, record: &record.name, time_label, points, band };
+    let rms = unit::with(&number(inversion.rms_deviation(&record.wanted), 3), &names.output);
+    let heading = Text::from(record.name.as_str()).and(Piece::Aside(format!("RMS deviation {rms}")));
+    let deviation: Vec<f64> =
+        inversion.output.iter().zip(&record.wanted).map(|(output, wanted)| output - wanted).collect();
+    let deviation_label = match unit::split(&names.output).1 {
+        Some(unit) => format!("deviation ({unit})"),
+        None => "deviation".into(),
+    };
+    let drive = (Colour::Input, "drive", 1.2, inversion.input.as_slice());
+    let area = (!inversion.low.is_empty()).then(|| panel.area(&inversion.low, &inversion.high));
+    vec![
+        Part::Heading(heading),
+        panel.figure(
+            &unit::label(&names.output),
+            220.0,
+            &[
+                (Colour::Measured, "wanted", 2.4, &record.wanted),
+                (Colour::Simulated, "model", 1.1, &inversion.output),
+            ],
+            None,
+        ),
+        panel.figure(&deviation_label, 165.0, &[(Colour::Error, "model − wanted", 1.1, &deviation)], None),
+        panel.figure(&unit::label(&names.inputs[0]), 200.0, &[drive], area),
+    ]
+    .into_iter()
+    .chain(missed(&panel, &unit::label(&names.inputs[0]), inversion))
+    .collect()
+}
+
+/// The drive with a dot at each row that was not reached; `None` if all were.
+fn missed(panel: &Panel, label: &str, inversion: &Inversion) -> Option<Part> {
+    let place = |row: usize| (panel.time[row], inversion.input[row]);
+    let rows = (0..inversion.input.len()).filter(|&row| inversion.reach[row] != Reach::Reached);
+    let dots: Vec<Point> = thin(&rows.map(place).collect::<Vec<_>>(), panel.points / 4);
+    if dots.is_empty() {
+        return None;
+    }
+    let line: Vec<Point> = (0..inversion.input.len()).map(place).collect();
+    let curves = vec![
+        Curve::new(thin(&line, panel.points), Colour::Input, 1.2),
+        Curve::dots(dots, Colour::Error, 2.5),
+    ];
+    let description = format!("{label}: rows that do not reach the wanted output, record {}", panel.record);
+    let chart = Chart::new(description, &panel.time_label, label, curves)
+        .with_height(200.0)
+        .with_legend([(Colour::Input, "drive"), (Colour::Error, "not reached")]);
+    Some(Part::chart(chart))
+}
+
+/// How many rows have which reach, and where the first of them stands.
+fn reaches(wanted: &Wanted, inverted: &Inverted) -> Table {
+    let mut table = Table::new(["reach", "meaning", "rows", "first line"]);
+    for reach in Reach::ALL {
+        let count: usize = inverted.records.iter().map(|record| record.count(reach)).sum();
+        if count == 0 {
+            continue;
+        }
+        let first = wanted.records.iter().zip(&inverted.records).find_map(|(record, inversion)| {
+            let row = inversion.reach.iter().position(|found| *found == reach)?;
+            Some(wanted.lines[record.rows.start + row])
+        });
+        table.push([
+            reach.word().into(),
+            meaning(reach).into(),
+            Cell::from(count.to_string()),
+            Cell::from(first.map_or_else(String::new, |line| line.to_string())),
+        ]);
+    }
+    table
+}

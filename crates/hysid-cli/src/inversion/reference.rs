@@ -1,0 +1,95 @@
+//! The wanted outputs of a table, record by record.
+
+use std::ops::Range;
+
+use anyhow::{Result, anyhow};
+use hysid::Reference;
+
+use crate::cell::{CellReader, DecimalSign};
+use crate::columns::Roles;
+use crate::data::{column_of, places_of};
+use crate::table::Table;
+use crate::terminal::clipped;
+use crate::units::Factors;
+
+/// The wanted outputs of a table, in the units of the model.
+pub struct Wanted {
+    /// The file.
+    pub file: String,
+    /// Line of each row.
+    pub lines: Vec<u64>,
+    /// The records.
+    pub records: Vec<WantedRecord>,
+    /// How the numbers of the table are written.
+    pub sign: DecimalSign,
+}
+
+/// The wanted outputs of a record.
+pub struct WantedRecord {
+    /// Its name.
+    pub name: String,
+    /// Its rows in the table.
+    pub rows: Range<usize>,
+    /// The wanted output of each row.
+    pub wanted: Vec<f64>,
+    /// Time of each row.
+    pub time: Option<Vec<f64>>,
+    others: Vec<Vec<f64>>,
+}
+
+impl WantedRecord {
+    /// The columns of its further inputs.
+    pub fn columns(&self) -> Vec<&[f64]> {
+        self.others.iter().map(Vec::as_slice).collect()
+    }
+
+    /// As the library takes it.
+    pub fn reference<'a>(&'a self, others: &'a [&'a [f64]]) -> Reference<'a> {
+        Reference { wanted: &self.wanted, others, time: self.time.as_deref() }
+    }
+}
+
+impl Wanted {
+    /// Reads the columns of a table.
+    ///
+    /// # Errors
+    /// A cell that is no number, a blank wanted output, with its line.
+    pub fn of(table: &Table, roles: &Roles, factors: &Factors) -> Result<Self> {
+        let mut cells = CellReader::new(table.delimiter);
+        let mut read = |name: &String, factor: Option<f64>, is_output: bool| -> Result<Vec<f64>> {
+            let mut numbers = column_of(table, name, is_output, &mut cells)?;
+            if let Some(factor) = factor {
+                numbers.iter_mut().for_each(|number| *number *= factor);
+            }
+            Ok(numbers)
+        };
+        let time = roles.time.as_ref().map(|name| read(name, factors.time, false)).transpose()?;
+        let inputs = roles.inputs.iter().zip(&factors.inputs);
+        let others: Vec<Vec<f64>> =
+            inputs.map(|(name, &factor)| read(name, factor, false)).collect::<Result<_>>()?;
+        let wanted = read(&roles.output, factors.output, true)?;
+        if let Some(row) = wanted.iter().position(|wanted| wanted.is_nan()) {
+            let (line, column) = (table.lines[row], clipped(&roles.output));
+            return Err(anyhow!(
+                "{}, line {line}, column \"{column}\": the cell is empty (every row needs a wanted output)",
+                table.file
+            ));
+        }
+        let record = |place: crate::data::Place| {
+            let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
+            WantedRecord {
+                wanted: cut(&wanted),
+                time: time.as_ref().map(cut),
+                others: others.iter().map(cut).collect(),
+                name: place.record,
+                rows: place.rows,
+            }
+        };
+        Ok(Self {
+            file: table.file.clone(),
+            records: places_of(table, roles)?.into_iter().map(record).collect(),
+            lines: table.lines.clone(),
+            sign: cells.sign().unwrap_or(DecimalSign::Point),
+        })
+    }
+}
