@@ -6,6 +6,7 @@ mod models;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use hysid::diagnosis::{ModelDiagnosis, Verdict};
 use hysid::model::MOST_TRIALS;
 use hysid::{Model, Reach};
 
@@ -167,5 +168,36 @@ fn invalid_samples_leave_the_inverse_as_it_was() {
     }
     for slew in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         model.inverse().slew(slew).unwrap_err();
+    }
+}
+
+/// Laws that are monotone whatever their fit to these data, in one direction.
+const MONOTONE: [&str; 6] = [
+    "prandtl-ishlinskii",
+    "modified-prandtl-ishlinskii",
+    "generalized-prandtl-ishlinskii",
+    "masing",
+    "preisach",
+    "jiles-atherton",
+];
+
+/// The diagnosis drives a model to other pasts than the round trip: where the first finds a model monotone, the second
+/// must find the inputs.
+#[test]
+fn models_judged_invertible_are_inverted() {
+    const ROWS: usize = 5000;
+    for (name, model) in MODELS.iter() {
+        let found = ModelDiagnosis::of(model).unwrap().invertibility;
+        let (_, counts) = round_trip(model, ROWS);
+        let verdict = found.finding.verdict;
+        println!("{name}: {verdict}, index {:.1e}, {counts:?}", found.finding.index.unwrap());
+        println!("    {}", found.finding.statement);
+        let count = |reach: Reach| counts.get(reach.word()).copied().unwrap_or(0);
+        let missed = count(Reach::NotMonotone) + count(Reach::Jump);
+        assert!(verdict != Verdict::Yes || missed <= ROWS / 1000, "{name}: {counts:?}");
+        assert!(missed == 0 || verdict == Verdict::No, "{name}: {counts:?}");
+        if MONOTONE.contains(&name.split(' ').next().unwrap()) {
+            assert_eq!(verdict, Verdict::Yes, "{name}");
+        }
     }
 }
