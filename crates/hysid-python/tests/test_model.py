@@ -316,7 +316,7 @@ def test_a_model_is_diagnosed(spring_and_slider):
 
 def test_a_model_is_invertible_or_not(spring_and_slider):
     x, y = spring_and_slider
-    found = hysid.fit(x, y, model="prandtl-ishlinskii", sign="non-negative").diagnose()["invertible"]
+    found = hysid.fit(x, y, model="prandtl-ishlinskii").diagnose()["invertible"]
     assert (found.verdict, found.details["direction"]) == ("yes", "rising")
     low, high = found.details["always"]
     assert low < high and found.details["monotone_outputs"] == [low, high]

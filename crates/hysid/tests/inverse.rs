@@ -171,7 +171,7 @@ fn invalid_samples_leave_the_inverse_as_it_was() {
     }
 }
 
-/// Laws that are monotone whatever their fit to these data, in one direction.
+/// Laws whose fits to these data are monotone.
 const MONOTONE: [&str; 6] = [
     "prandtl-ishlinskii",
     "modified-prandtl-ishlinskii",
