@@ -70,7 +70,7 @@ impl Words {
             }
         };
         let step = if tried.is_some() { "in one step that is long enough" } else { "in one step" };
-        let jumps = if found.jumps > 0 { ", jumps left out," } else { "" };
+        let jumps = if found.jumps > 0 { ", except in jumps," } else { "" };
         statement += &match found.always {
             Some(always) => format!(
                 "; outputs from {}{jumps} can be reached {step} after any past tried",
