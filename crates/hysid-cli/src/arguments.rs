@@ -457,7 +457,7 @@ pub struct Invert {
     pub reference: PathBuf,
     /// Table to write [default: stdout, as with `-`]
     ///
-    /// It has the columns of the reference, the input that was found, the output of the model at this input, and the
+    /// It has the columns of the reference, the input that was found, `<output>_reached`, the output of the model, and the
     /// columns `reach` and `extrapolated`. A report with the same name and `.html` is written beside it.
     #[arg(short, long, value_name = "DRIVE.csv")]
     pub out: Option<PathBuf>,

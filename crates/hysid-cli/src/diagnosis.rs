@@ -4,6 +4,7 @@ mod cards;
 mod counsel;
 mod data;
 mod findings;
+mod invertibility;
 mod loops;
 mod model;
 mod overview;

@@ -127,11 +127,11 @@ fn the_doctor_speaks_and_the_advice_can_be_followed() {
     assert_eq!(fitted.status, Some(0), "{}", fitted.stderr);
 }
 
-/// The promised fields of each property.
-fn check_properties(diagnosis: &Value) {
+/// The promised fields of each property; a model has further ones at the end.
+fn check_properties(diagnosis: &Value, further: &[&str]) {
     let properties = diagnosis["properties"].as_array().unwrap();
     let names: Vec<&str> = properties.iter().map(|property| property["name"].as_str().unwrap()).collect();
-    assert_eq!(names, PROPERTIES);
+    assert_eq!(names, [&PROPERTIES, further].concat());
     for property in properties {
         let verdict = property["verdict"].as_str().unwrap();
         assert!(VERDICTS.contains(&verdict), "{verdict}");
@@ -157,7 +157,7 @@ fn json_has_the_promised_shape_for_data_and_models() {
     let bench = Workbench::new();
     succeeds(&bench, "generate ferromagnet -o sheet.csv");
     let of_data = json(&bench, "diagnose sheet.csv --json --no-report");
-    check_properties(&of_data);
+    check_properties(&of_data, &[]);
     assert_eq!((&of_data["input"], &of_data["output"]), (&"H_A_per_m".into(), &"B_T".into()));
     assert!(of_data["cycles"].is_array() && of_data["turning_points"].is_u64());
     for complaint in of_data["doctor"].as_array().unwrap() {
@@ -174,7 +174,12 @@ fn json_has_the_promised_shape_for_data_and_models() {
 
     succeeds(&bench, "fit sheet.csv -o sheet.json --model preisach --no-report");
     let of_model = json(&bench, "diagnose sheet.json --json --no-report");
-    check_properties(&of_model);
+    check_properties(&of_model, &["invertible"]);
+    let invertible = of_model["properties"].as_array().unwrap().last().unwrap();
+    for field in ["direction", "always", "monotone_outputs", "pasts", "scans", "flat_share", "jumps", "worst"]
+    {
+        assert!(invertible.get(field).is_some(), "{field}: {invertible}");
+    }
     assert_eq!(of_model["model"], "preisach");
     assert_eq!(verdict(&of_model, "congruency"), "yes", "every Preisach model has it");
     assert_eq!(of_model["memory"]["return_point_memory"]["holds"], true);

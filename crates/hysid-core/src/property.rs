@@ -28,10 +28,14 @@ pub enum Property {
     Deterioration,
     /// After a period of the input the output has its earlier value.
     LoopClosure,
+    /// After any past, each output that can be reached in one step belongs to one input. Only a model can be asked: no
+    /// record holds several next inputs after one past.
+    Invertible,
 }
 
 impl Property {
-    /// All properties, in the order in which they are reported.
+    /// The properties of data and of models, in the order in which they are reported. [`Property::Invertible`], of models
+    /// only, follows them.
     pub const ALL: [Self; 10] = [
         Self::StaticHysteresis,
         Self::Orientation,
@@ -58,6 +62,7 @@ impl Property {
             Self::Saturation => "saturation",
             Self::Deterioration => "deterioration",
             Self::LoopClosure => "loop-closure",
+            Self::Invertible => "invertible",
         }
     }
 }

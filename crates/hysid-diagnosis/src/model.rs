@@ -24,6 +24,7 @@
 mod bound;
 mod certificate;
 mod direct;
+mod invertibility;
 mod loop_widths;
 mod neurons;
 mod probe;
@@ -33,13 +34,15 @@ mod structure;
 mod tests;
 mod weights;
 
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 
 use super::{Finding, Property, Verdict};
 pub use certificate::{Basis, Bound, Claim, MemoryCertificate, Refinement};
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 use hysid_core::options::ModelName;
+pub use invertibility::{AtTimeStep, Direction, Invertibility, Place, PlaceKind, Scans};
 pub use loop_widths::{LoopWidths, WidthAtSpeed};
 pub use neurons::{Neuron, NeuronKind};
 use probe::Probe;
@@ -48,7 +51,7 @@ pub use structure::StructuralProperty;
 pub use weights::{Criterion, WeightDiagnosis};
 
 /// Everything that can be said about the hysteresis of a fitted model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ModelDiagnosis {
     /// Which model it is.
     pub model: ModelName,
@@ -56,6 +59,8 @@ pub struct ModelDiagnosis {
     pub probing: Probing,
     /// The properties, in the order of [`Property::ALL`], found by driving it.
     pub properties: Vec<Finding>,
+    /// Whether it can be inverted sample by sample; serialized as the last of the properties.
+    pub invertibility: Invertibility,
     /// What its equations promise.
     pub promises: Vec<StructuralProperty>,
     /// What its weights say; `None` for a classical law.
@@ -84,6 +89,7 @@ impl ModelDiagnosis {
             model: model.name(),
             probing: probe.description(),
             loop_widths: LoopWidths::of(&probe)?,
+            invertibility: Invertibility::of(&probe)?,
             properties,
             promises,
             weights,
@@ -91,16 +97,43 @@ impl ModelDiagnosis {
         })
     }
 
+    /// The findings on all properties, that on invertibility at the end.
+    pub fn findings(&self) -> impl Iterator<Item = &Finding> {
+        self.properties.iter().chain([&self.invertibility.finding])
+    }
+
     /// The finding on a property.
     pub fn finding(&self, property: Property) -> &Finding {
-        self.properties
-            .iter()
-            .find(|finding| finding.property == property)
-            .expect("a diagnosis has every property")
+        self.findings().find(|finding| finding.property == property).expect("a diagnosis has every property")
     }
 
     /// The verdict on a property.
     pub fn verdict(&self, property: Property) -> Verdict {
         self.finding(property).verdict
+    }
+}
+
+/// An element of the serialized properties.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Listed<'a> {
+    Property(&'a Finding),
+    Invertible(&'a Invertibility),
+}
+
+impl Serialize for ModelDiagnosis {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let Self { model, probing, properties, invertibility, promises, weights, loop_widths, memory } = self;
+        let properties = properties.iter().map(Listed::Property);
+        let properties: Vec<Listed> = properties.chain([Listed::Invertible(invertibility)]).collect();
+        let mut object = serializer.serialize_struct("ModelDiagnosis", 7)?;
+        object.serialize_field("model", model)?;
+        object.serialize_field("probing", probing)?;
+        object.serialize_field("properties", &properties)?;
+        object.serialize_field("promises", promises)?;
+        object.serialize_field("weights", weights)?;
+        object.serialize_field("loop_widths", loop_widths)?;
+        object.serialize_field("memory", memory)?;
+        object.end()
     }
 }

@@ -314,6 +314,19 @@ def test_a_model_is_diagnosed(spring_and_slider):
     assert "<table>" in diagnosis._repr_html_() and "masing" in str(diagnosis)
 
 
+def test_a_model_is_invertible_or_not(spring_and_slider):
+    x, y = spring_and_slider
+    found = hysid.fit(x, y, model="prandtl-ishlinskii").diagnose()["invertible"]
+    assert (found.verdict, found.details["direction"]) == ("yes", "rising")
+    low, high = found.details["always"]
+    assert low < high and found.details["monotone_outputs"] == [low, high]
+    assert found.details["worst"] is None and found.details["pasts"] > 100
+    assert "after each of" in found.statement
+    # Data do not have it.
+    assert [other.name for other in hysid.diagnose(x, y).properties if other.name == "invertible"] == []
+    assert hysid.diagnose(x, y)["masing"].details == {}
+
+
 def test_a_record_begins_in_its_initial_state(spring_and_slider, tmp_path):
     x, y = spring_and_slider
     model = hysid.fit(x, y, model="prandtl-ishlinskii", initial_state="saturated-down")

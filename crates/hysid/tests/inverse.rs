@@ -6,6 +6,7 @@ mod models;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use hysid::diagnosis::{ModelDiagnosis, Verdict};
 use hysid::model::{BandLevel, MOST_TRIALS};
 use hysid::specimens::Specimen;
 use hysid::{Fit, Model, Reach, Reference};
@@ -316,4 +317,34 @@ fn records_are_refused_with_the_row() {
     assert!(run(&wanted, None).contains("no time stamps"));
     model.inverse().preview(-1.0).unwrap_err();
     model.inverse().preview(f64::NAN).unwrap_err();
+
+/// Laws whose fits to these data are monotone.
+const MONOTONE: [&str; 6] = [
+    "prandtl-ishlinskii",
+    "modified-prandtl-ishlinskii",
+    "generalized-prandtl-ishlinskii",
+    "masing",
+    "preisach",
+    "jiles-atherton",
+];
+
+/// The diagnosis drives a model to other pasts than the round trip: where the first finds a model monotone, the second
+/// must find the inputs.
+#[test]
+fn models_judged_invertible_are_inverted() {
+    const ROWS: usize = 5000;
+    for (name, model) in MODELS.iter() {
+        let found = ModelDiagnosis::of(model).unwrap().invertibility;
+        let (_, counts) = round_trip(model, ROWS);
+        let verdict = found.finding.verdict;
+        println!("{name}: {verdict}, index {:.1e}, {counts:?}", found.finding.index.unwrap());
+        println!("    {}", found.finding.statement);
+        let count = |reach: Reach| counts.get(reach.word()).copied().unwrap_or(0);
+        let missed = count(Reach::NotMonotone) + count(Reach::Jump);
+        assert!(verdict != Verdict::Yes || missed <= ROWS / 1000, "{name}: {counts:?}");
+        assert!(missed == 0 || verdict == Verdict::No, "{name}: {counts:?}");
+        if MONOTONE.contains(&name.split(' ').next().unwrap()) {
+            assert_eq!(verdict, Verdict::Yes, "{name}");
+        }
+    }
 }

@@ -103,7 +103,7 @@ impl Names {
         };
         let edges = if has_band { vec![format!("{drive}_low"), format!("{drive}_high")] } else { Vec::new() };
         let others =
-            [format!("{}_model", model.names().output), "reach".to_string(), "extrapolated".to_string()];
+            [format!("{}_reached", model.names().output), "reach".to_string(), "extrapolated".to_string()];
         let names = Self { drive, edges, others };
         for name in names.all() {
             ensure!(

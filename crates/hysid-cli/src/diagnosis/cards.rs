@@ -16,24 +16,27 @@ pub const EXPLANATION: &str = "The index is a relative difference or size. The t
                                and the difference that noise alone can cause in this number of comparisons.";
 
 /// All verdicts, each with what was found, as links to the cards.
-pub fn verdicts(findings: &[Finding]) -> Part {
+pub fn verdicts<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> Part {
     let verdict = |finding: &Finding| {
         let anchor = finding.property.name().to_string();
         let link = Piece::Link { anchor, text: heading(finding) };
         Text::from(badge(finding.verdict)).and(link).and(Piece::Aside(finding.statement.clone()))
     };
-    Part::Verdicts(findings.iter().map(verdict).collect())
+    Part::Verdicts(findings.into_iter().map(verdict).collect())
 }
 
 /// A card for each property; `place` tells where it is seen, if that means anything to the reader.
-pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Finding) -> String) -> Part {
-    Part::Cards(findings.iter().map(|finding| card(finding, quantities, &place(finding))).collect())
+pub fn cards(findings: &[Finding], quantities: &Quantities, place: impl Fn(&Finding) -> String) -> Vec<Card> {
+    findings
+        .iter()
+        .map(|finding| card(finding, drawing(finding, quantities).into_iter().collect(), &place(finding)))
+        .collect()
 }
 
-fn card(finding: &Finding, quantities: &Quantities, place: &str) -> Card {
+/// The card of a property, with its charts.
+pub fn card(finding: &Finding, charts: Vec<Chart>, place: &str) -> Card {
     let mut parts = vec![Part::note(format!("Yes means: {}.", meaning(finding.property)))];
-    let picture = finding.picture.as_ref().filter(|picture| is_drawn(picture));
-    parts.extend(picture.map(|picture| Part::chart(chart(finding, picture, quantities))));
+    parts.extend(charts.into_iter().map(Part::chart));
     parts.push(Part::paragraph(sentence(&finding.statement)));
     parts.extend(finding.experiment.as_ref().map(|experiment| {
         Part::Paragraph(
@@ -80,8 +83,11 @@ pub fn sentence(text: &str) -> String {
     if text.ends_with(['.', '!', '?']) { text } else { text + "." }
 }
 
-fn is_drawn(picture: &Picture) -> bool {
-    picture.curves.iter().any(|curve| !curve.points.is_empty())
+/// The chart of a picture with any points.
+fn drawing(finding: &Finding, quantities: &Quantities) -> Option<Chart> {
+    let picture = finding.picture.as_ref()?;
+    let is_drawn = picture.curves.iter().any(|curve| !curve.points.is_empty());
+    is_drawn.then(|| chart(finding, picture, quantities))
 }
 
 fn chart(finding: &Finding, picture: &Picture, quantities: &Quantities) -> Chart {

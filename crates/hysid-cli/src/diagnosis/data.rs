@@ -92,7 +92,7 @@ impl<'a> DataDiagnosis<'a> {
             Part::section("Verdicts", [verdicts(found)]),
             counsel::doctor_section(&diagnosis.doctor),
             overview.section(),
-            Part::section("Property by property", [cards, Part::note(EXPLANATION)]),
+            Part::section("Property by property", [Part::Cards(cards), Part::note(EXPLANATION)]),
         ]);
         parts.extend(loops::cycles_section(&diagnosis.cycles, quantities, several));
         let understood = [Part::Definitions(understood.to_vec()), Part::paragraph(self.noise())];

@@ -14,15 +14,16 @@ const INDENT: usize = 4;
 const SMALLEST_PERCENT: f64 = 0.001;
 
 /// The verdicts in a table, under each what was found; and which experiments would tell the rest.
-pub fn text(findings: &[Finding]) -> String {
+pub fn text<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> String {
+    let findings: Vec<&Finding> = findings.into_iter().collect();
     let mut rows = vec![HEADINGS.map(String::from).to_vec()];
-    rows.extend(findings.iter().map(cells));
+    rows.extend(findings.iter().map(|finding| cells(finding)));
     let mut lines = aligned(&rows).into_iter();
     let mut text = lines.next().unwrap_or_default() + "\n";
-    for (line, finding) in lines.zip(findings) {
+    for (line, finding) in lines.zip(&findings) {
         text += &(line + "\n" + &indented(&finding.statement, INDENT));
     }
-    let experiments = experiments(findings);
+    let experiments = experiments(&findings);
     if !experiments.is_empty() {
         text += "\nexperiments for what could not be tested\n";
         for (experiment, properties) in experiments {
@@ -33,7 +34,7 @@ pub fn text(findings: &[Finding]) -> String {
 }
 
 /// Every experiment that would tell more, once, and the properties it would tell.
-fn experiments(findings: &[Finding]) -> Vec<(&str, Vec<&'static str>)> {
+fn experiments<'f>(findings: &[&'f Finding]) -> Vec<(&'f str, Vec<&'static str>)> {
     let mut experiments: Vec<(&str, Vec<&str>)> = Vec::new();
     for finding in findings {
         let Some(experiment) = finding.experiment.as_deref() else { continue };
@@ -78,6 +79,7 @@ pub fn meaning(property: Property) -> &'static str {
         Property::Saturation => "the output hardly changes at the ends of the input range",
         Property::Deterioration => "loops shrink when they are repeated",
         Property::LoopClosure => "the output is the same after each period of the input",
+        Property::Invertible => "after any past, the next input follows from the next output",
     }
 }
 

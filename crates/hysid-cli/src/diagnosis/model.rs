@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};
 use super::quantities::{Quantities, text_label};
-use super::{findings, paragraph};
+use super::{findings, invertibility, paragraph};
 use crate::terminal::{self, listed};
 
 /// Neurons in the table of a page; of more, those that matter most.
@@ -84,7 +84,7 @@ impl<'a> DiagnosedModel<'a> {
 
     /// All of it within 80 columns.
     pub fn text(&self) -> String {
-        let mut parts = vec![findings::text(&self.diagnosis.properties)];
+        let mut parts = vec![findings::text(self.diagnosis.findings())];
         let inside = self.inside();
         if !inside.rows.is_empty() {
             let mut text =
@@ -128,16 +128,16 @@ impl<'a> DiagnosedModel<'a> {
 
     /// The page.
     pub fn page(&self) -> Page {
-        let found = &self.diagnosis.properties;
-        let cards = cards(found, &self.quantities, |_: &Finding| String::new());
+        let mut cards = cards(&self.diagnosis.properties, &self.quantities, |_: &Finding| String::new());
+        cards.push(invertibility::card(&self.diagnosis.invertibility, &self.quantities));
         let claims: Vec<(String, String)> =
             self.claims().into_iter().map(|(name, text)| (name.to_string(), sentence(&text))).collect();
         let mut widths = vec![Part::paragraph(sentence(&self.widths_heading()))];
         widths.extend(self.widths(unit_label).map(Part::Table));
         let mut parts = vec![
-            Part::section("Verdicts", [verdicts(found)]),
+            Part::section("Verdicts", [verdicts(self.diagnosis.findings())]),
             Part::section("Memory", [Part::Definitions(claims)]),
-            Part::section("Property by property", [cards, Part::note(EXPLANATION)]),
+            Part::section("Property by property", [Part::Cards(cards), Part::note(EXPLANATION)]),
         ];
         parts.extend(self.inside_section());
         parts.extend(self.neurons_section());

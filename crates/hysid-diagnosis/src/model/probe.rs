@@ -166,6 +166,11 @@ impl<'m> Probe<'m> {
         origin(self.model)
     }
 
+    /// All inputs of a sample: the first, and those that are held.
+    pub fn inputs(&self, x: f64) -> Vec<f64> {
+        [&[x], &self.held[..]].concat()
+    }
+
     /// A record as the body of the model sees it, and how the rate is found there.
     ///
     /// # Errors

@@ -19,7 +19,7 @@ pub(super) const PROTOCOL: [f64; 29] = [
 ];
 
 /// Equal minor loops shifted along the way up and the way down, and loops nested four deep.
-const SHIFTED: [f64; 28] = [
+pub(super) const SHIFTED: [f64; 28] = [
     0.0, 1.0, -1.0, -0.3, -0.7, 0.2, -0.2, 0.7, 0.3, 1.0, 0.3, 0.7, -0.2, 0.2, -0.7, -0.3, -1.0, 1.0, -0.8,
     0.8, -0.6, 0.6, -0.4, 0.4, -0.2, 1.0, -1.0, 1.0,
 ];

@@ -1,5 +1,7 @@
 //! Models of known weights: closed forms, and what each neuron is.
 
+mod invertibility;
+
 use super::*;
 use hysid_core::data::rate::RateMethod;
 use hysid_core::data::record::{ColumnNames, Dataset, Record};

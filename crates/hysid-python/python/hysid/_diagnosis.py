@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -39,6 +39,9 @@ class Finding:
         If the property could not be tested: an experiment that tests it.
     evidence : list of dict
         The rows behind the index, the strongest evidence first.
+    details : dict
+        What only this property has. ``"invertible"`` has ``"always"`` and ``"monotone_outputs"`` (low and high, or
+        None), ``"direction"``, ``"shortest_time_step"`` and others.
     """
 
     name: str
@@ -50,6 +53,13 @@ class Finding:
     statement: str
     experiment: str | None
     evidence: list[dict[str, Any]]
+    details: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def _of(cls, printed: dict[str, Any]) -> Finding:
+        common = {attribute.name for attribute in fields(cls)} - {"details"}
+        details = {name: value for name, value in printed.items() if name not in common}
+        return cls(**{name: printed[name] for name in common}, details=details)
 
 
 class _Findings:
@@ -61,7 +71,7 @@ class _Findings:
     @cached_property
     def properties(self) -> list[Finding]:
         """All findings."""
-        return [Finding(**finding) for finding in self.content["properties"]]
+        return [Finding._of(finding) for finding in self.content["properties"]]
 
     def __getitem__(self, name: str) -> Finding:
         for finding in self.properties:
@@ -134,7 +144,8 @@ class ModelDiagnosis(_Findings):
     Attributes
     ----------
     properties : list of Finding
-        Ten properties, found by probing the model.
+        Ten properties, found by probing the model, and ``"invertible"``: whether the next input follows from the
+        wanted output. Only models have this one.
     content : dict
         The properties, the verdicts from equations and weights, the widths of the loops, and statements on the
         memory.
