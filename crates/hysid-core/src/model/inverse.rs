@@ -127,6 +127,11 @@ impl<'m> Inverse<'m> {
         self
     }
 
+    /// The deviation of an output at which a search ends, in the unit of the output.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Advances to the next sample, at which the model has the output `wanted`, in its unit, if that can be.
     ///
     /// `others` are the further inputs of the model, in their units. `time` is that of the sample; a model without rate

@@ -16,8 +16,14 @@ use crate::options::FmiVersion;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "fmu", has_single_precision: false, reserved: &["fmi2", "fmi3"], write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "fmu",
+    has_single_precision: false,
+    has_inverse: true,
+    reserved: &["fmi2", "fmi3"],
+    write,
+    usage,
+};
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let (name, version) = (subject.name(), subject.fmi());

@@ -15,11 +15,11 @@ use crate::models::{data, path, time_step};
 use crate::tools::{succeeds, tool};
 
 /// Warnings are errors.
-const STRICT: [&str; 8] =
+pub const STRICT: [&str; 8] =
     ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-ffp-contract=off"];
 
 /// The compilers that this machine has, of gcc and clang.
-fn compilers() -> Vec<String> {
+pub fn compilers() -> Vec<String> {
     ["gcc", "clang"]
         .into_iter()
         .filter_map(|compiler| {

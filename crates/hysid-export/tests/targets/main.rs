@@ -6,6 +6,8 @@ mod models;
 mod c;
 mod case;
 mod fmu;
+mod inverse;
+mod inverse_case;
 mod matlab;
 mod names;
 mod onnx;
