@@ -6,12 +6,13 @@ use std::process::Command;
 
 use hysid::Reach;
 use hysid::model::MOST_TRIALS;
+use hysid_export::description::{Argument, RateSource};
 use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 
 use crate::c::{STRICT, compilers};
 use crate::case::{MODELS, NAME, written};
 use crate::inverse_case::{InverseCase, code, tight};
-use crate::tools::succeeds;
+use crate::tools::{succeeds, tool};
 
 fn with_inverse(inverse: InverseOptions) -> Options {
     Options { inverse: Some(inverse), ..Options::named(NAME) }
@@ -93,20 +94,98 @@ fn inverses_equal_those_of_the_library_to_the_last_bit() {
 fn test_vectors_of_inverses_agree_in_both_precisions() {
     for compiler in compilers() {
         for (name, model) in MODELS.iter() {
-            for precision in [Precision::Double, Precision::Single] {
-                for inverse in [InverseOptions::default(), tight(model)] {
-                    let folder = tempfile::tempdir().unwrap();
-                    let options = Options { precision, ..with_inverse(inverse) };
-                    written(model, Target::C, &options, folder.path());
-                    compiled(&compiler, folder.path(), "actuator_test.c");
-                    let output = succeeds(&mut Command::new(folder.path().join("program")));
-                    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-                    println!("{name}, {precision:?}: {}", text.lines().nth(1).unwrap());
-                    let agrees = text.lines().all(|line| line.starts_with("0 of "));
-                    assert!(precision == Precision::Single || agrees, "{name}, {precision:?}: {text}");
-                }
+            for (precision, inverse) in
+                [(Precision::Double, InverseOptions::default()), (Precision::Single, tight(model))]
+            {
+                let folder = tempfile::tempdir().unwrap();
+                let options = Options { precision, ..with_inverse(inverse) };
+                written(model, Target::C, &options, folder.path());
+                compiled(&compiler, folder.path(), "actuator_test.c");
+                let output = succeeds(&mut Command::new(folder.path().join("program")));
+                let text = String::from_utf8_lossy(&output.stdout).into_owned();
+                println!("{name}, {precision:?}: {}", text.lines().nth(1).unwrap());
+                let agrees = text.lines().all(|line| line.starts_with("0 of "));
+                assert!(precision == Precision::Single || agrees, "{name}, {precision:?}: {text}");
             }
         }
+    }
+}
+
+/// A program of random wanted outputs of all sizes; it fails where a result is not finite or not within its bounds.
+fn soak(kinds: &[Argument], (low, high): (f64, f64)) -> String {
+    let given: String = (1..=kinds.len()).map(|index| format!(", a[{index}]")).collect();
+    let others: String = (1..=kinds.len())
+        .map(|index| match kinds[index - 1] {
+            Argument::TimeStep => format!("a[{index}] = 0.001 + 0.01 * unit();"),
+            _ => format!("a[{index}] = 10.0 * unit();"),
+        })
+        .collect();
+    format!(
+        "#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include \"actuator_inverse.h\"
+static uint64_t bits = 7;
+static double unit(void)
+{{
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    return (double)(bits >> 11) / 9007199254740992.0;
+}}
+int main(int count, char **values)
+{{
+    static actuator_inverse inverse;
+    static unsigned char saved[ACTUATOR_INVERSE_STATE_BYTES];
+    const long steps = count > 1 ? atol(values[1]) : 0;
+    double a[{arguments}] = {{{low:?}}}, input, output;
+    long k;
+    actuator_inverse_reset(&inverse);
+    actuator_inverse_save(&inverse, saved);
+    for (k = 0; k < steps; k++) {{
+        const double kind = unit();
+        actuator_reach reach;
+        a[0] += ({high:?} - {low:?}) * pow(10.0, 3.0 * unit() - 3.0) * (unit() < 0.5 ? -1.0 : 1.0);
+        if (!(a[0] > {low:?}) || !(a[0] < {high:?}))
+            a[0] = {low:?} + ({high:?} - {low:?}) * unit();
+        if (kind > 0.99)
+            a[0] *= pow(10.0, 300.0 * unit());
+        {others}
+        reach = actuator_inverse_step(&inverse, a[0]{given}, &input, &output);
+        if (reach < ACTUATOR_REACHED || reach > ACTUATOR_JUMP || !isfinite(output) ||
+            !(input >= ACTUATOR_INVERSE_LOW && input <= ACTUATOR_INVERSE_HIGH) ||
+            inverse.trials > ACTUATOR_INVERSE_MOST_TRIALS) {{
+            printf(\"step %ld: wanted %g, input %g, output %g\\n\", k, a[0], input, output);
+            return 1;
+        }}
+        if (kind < 0.01)
+            actuator_inverse_save(&inverse, saved);
+        else if (kind < 0.02)
+            actuator_inverse_restore(&inverse, saved);
+    }}
+    return 0;
+}}
+",
+        arguments = kinds.len() + 1,
+    )
+}
+
+/// `HYSID_SOAK_STEPS=1000000 cargo test --release -p hysid-export --test targets inverses_survive` is the long one.
+#[test]
+fn inverses_survive_the_sanitizers() {
+    let install = "run: sudo apt-get install gcc";
+    let Some(compiler) = tool("exports to C", "gcc", &["--version"], install) else { return };
+    let steps = std::env::var("HYSID_SOAK_STEPS").unwrap_or_else(|_| "1000".into());
+    for (name, model) in MODELS.iter() {
+        let folder = tempfile::tempdir().unwrap();
+        let inverse = tight(model);
+        written(model, Target::C, &with_inverse(inverse), folder.path());
+        let kinds = InverseCase::of(model, inverse, 1, false).arguments;
+        fs::write(folder.path().join("soak.c"), soak(&kinds, model.trained_ranges().output)).unwrap();
+        let sanitizers = ["-O1", "-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
+        let files = ["actuator.c", "actuator_inverse.c", "soak.c", "-lm", "-o", "soak"];
+        succeeds(Command::new(&compiler).current_dir(&folder).args(STRICT).args(sanitizers).args(files));
+        let output = succeeds(Command::new(folder.path().join("soak")).arg(&steps));
+        assert!(output.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
 
@@ -130,7 +209,7 @@ fn what_cannot_be_inverted_is_refused() {
     assert!(matches!(export(pnn, Target::C, &single), Err(Error::Limits(_))));
 
     let options = with_inverse(InverseOptions::default());
-    let with_rate = Options { rate: hysid_export::description::RateSource::Argument, ..options.clone() };
+    let with_rate = Options { rate: RateSource::Argument, ..options.clone() };
     assert_eq!(export(model("xpnn "), Target::C, &with_rate), Err(Error::InverseRate));
     export(pnn, Target::C, &with_rate).unwrap();
     for target in Target::ALL.into_iter().filter(|target| ![Target::C, Target::Fmu].contains(target)) {

@@ -8,6 +8,7 @@ mod case;
 mod fmu;
 mod inverse;
 mod inverse_case;
+mod inverse_fmu;
 mod matlab;
 mod names;
 mod onnx;
