@@ -189,6 +189,32 @@ fn inverses_survive_the_sanitizers() {
     }
 }
 
+/// Names that could meet those inside the files of an inverse.
+#[test]
+fn names_do_not_meet_those_of_an_inverse() {
+    let model = &MODELS.iter().find(|(name, _)| name.starts_with("pnn")).unwrap().1;
+    let compilers = compilers();
+    for name in ["inverse", "at", "found", "point", "search", "unit", "REACH", "MODEL", "model", "x_inverse"]
+    {
+        for target in [Target::C, Target::Fmu] {
+            let folder = tempfile::tempdir().unwrap();
+            let options = Options { name: name.into(), ..with_inverse(tight(model)) };
+            // The binary of a unit is built here too.
+            written(model, target, &options, folder.path());
+            if target == Target::C
+                && let Some(compiler) = compilers.first()
+            {
+                let files = ["", "_inverse", "_test"].map(|part| format!("{name}{part}.c"));
+                let mut command = Command::new(compiler);
+                succeeds(
+                    command.current_dir(&folder).args(STRICT).args(files).args(["-lm", "-o", "program"]),
+                );
+                succeeds(&mut Command::new(folder.path().join("program")));
+            }
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_inverted_is_refused() {
     let model = |beginning: &str| &MODELS.iter().find(|(name, _)| name.starts_with(beginning)).unwrap().1;

@@ -66,6 +66,7 @@ class Model:
         rate: str,
         fmi: int,
         band: tuple[float, int] | None,
+        inverse: tuple[tuple[float, float] | None, float | None] | None,
         force: bool,
     ) -> tuple[list[str], str | None]: ...
     def parameters(self) -> int: ...
