@@ -85,7 +85,7 @@ assert len(result) == len(rows)
 ";
 
 #[test]
-fn importers_find_nothing_wrong_and_inverses_equal_those_of_the_library() {
+fn importers_find_nothing_wrong_and_units_of_inverses_agree() {
     const ROWS: usize = 300;
     let Some(_) = tool("binaries of FMUs", "cc", &["--version"], "run: sudo apt-get install gcc") else {
         return;

@@ -100,8 +100,8 @@ reach = {name}_inverse_step(&inverse, wanted{further}, &input, &output);
 ```
 
 `output` is that of the model at this input: the wanted one, or the nearest, and `reach` says why. Limits of the input,
-the tolerance and the largest number of model steps of a call are in `{name}_inverse.h`. `inverse_vectors.csv` has steps
-of the inverse and what they must give; {name}_test.c runs them too.
+the tolerance and the largest number of model steps of a call are in `{name}_inverse.h`. {name}_test.c
+runs the test vectors of the inverse too.
 "
     )
 }
