@@ -65,7 +65,9 @@ impl Model {
         rate: &str,
         fmi: u32,
         band: Option<(f64, usize)>,
-        inverse: Option<(Option<(f64, f64)>, Option<f64>)>,
+        inverse: bool,
+        limits: Option<(f64, f64)>,
+        slew: Option<f64>,
         force: bool,
     ) -> PyResult<(Vec<String>, Option<String>)> {
         let target = Target::named(to).ok_or_else(|| refused(format!("there is no target {to:?}")))?;
@@ -74,7 +76,7 @@ impl Model {
             rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
             band: band.map(|(probability, of_ten)| BandLevel { probability, of_ten }),
             fmi: if fmi == 2 { FmiVersion::Two } else { FmiVersion::Three },
-            inverse: inverse.map(|(limits, slew)| InverseOptions { limits, slew }),
+            inverse: inverse.then_some(InverseOptions { limits, slew }),
             ..Options::named(name)
         };
         let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;

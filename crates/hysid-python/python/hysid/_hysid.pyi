@@ -66,7 +66,9 @@ class Model:
         rate: str,
         fmi: int,
         band: tuple[float, int] | None,
-        inverse: tuple[tuple[float, float] | None, float | None] | None,
+        inverse: bool,
+        limits: tuple[float, float] | None,
+        slew: float | None,
         force: bool,
     ) -> tuple[list[str], str | None]: ...
     def parameters(self) -> int: ...

@@ -285,14 +285,16 @@ class Model:
         if name is None:
             name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
         level = None if band is None else (real("band", band), whole("of_ten", of_ten))
-        bounds = (
-            None if limits is None else pair("limits", limits),
-            None if slew is None else real("slew", slew),
-        )
-        if not truth("inverse", inverse) and bounds != (None, None):
+        if limits is not None:
+            limits = pair("limits", limits)
+        if slew is not None:
+            slew = real("slew", slew)
+        inverse = truth("inverse", inverse)
+        if not inverse and (limits, slew) != (None, None):
             raise ValueError("limits and slew are for the input of an inverse: add inverse=True")
+        force = truth("force", force)
         files, note = self._native.export(
-            to, folder, name, precision, rate, fmi, level, bounds if inverse else None, truth("force", force)
+            to, folder, name, precision, rate, fmi, level, inverse, limits, slew, force
         )
         warn([] if note is None else [note])
         return files
