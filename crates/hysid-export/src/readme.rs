@@ -24,8 +24,8 @@ committed, and a state that is saved and restored.",
     }
     if subject.inverse().is_some() {
         vectors.push(
-            "`inverse_vectors.csv` has the same of the inverse: wanted outputs, further arguments, and the input, the output
-and the reach that they must give.",
+            "`inverse_vectors.csv` lists actions on the inverse, their arguments, and the input, the output and the reach that
+they must give: steps, and a state that is saved and restored.",
         );
     }
     let usage = (to.back_end().usage)(subject);

@@ -81,6 +81,7 @@ fn usage(subject: &Subject<'_>) -> String {
         Some(_) => (
             "the inverse of the model as a unit",
             "It has no directional derivative.
+
 `reach` is 0 where the model has the wanted output. It is 1 beyond the output of the lowest input, 2 beyond that of the
 highest input, 3 where the input cannot change so quickly, 4 where the model is not monotone, 5 where its output jumps
 over the wanted one, and -1 after an invalid time step. The limits are in `{name}_inverse.h` among the sources.",
@@ -88,8 +89,12 @@ over the wanted one, and -1 after an invalid time step. The limits are in `{name
     };
     let more = more.replace("{name}", name);
     format!(
-        "`{name}.fmu` is {what} for co-simulation with FMI {version}: inputs {inputs}, outputs {outputs}. It has its
-source code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
+        "`{name}.fmu` is {what} for co-simulation with FMI {version}.
+
+- Inputs: {inputs}
+- Outputs: {outputs}
+
+It has its source code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
 
 A row of the model is the inputs at a communication point. A step from there commits them. The output after inputs were
 set is that of these inputs; an importer that reads it before it sets new ones, at the end of a step, reads the output
