@@ -1,6 +1,6 @@
 //! The command line.
 
-pub mod limits;
+mod limits;
 mod model_options;
 
 use std::ops::RangeInclusive;
@@ -33,7 +33,8 @@ pub struct Arguments {
 }
 
 /// What stands for a number in the usage of an option.
-const NUMBERS: [&str; 7] = ["N", "SHARE", "ROWS", "SECONDS", "FRACTION", "PROBABILITY", "PERCENT"];
+const NUMBERS: [&str; 10] =
+    ["N", "SHARE", "ROWS", "SECONDS", "FRACTION", "PROBABILITY", "PERCENT", "LOW:HIGH", "RATE", "TIME"];
 
 impl Arguments {
     /// What was typed.
@@ -288,7 +289,8 @@ const EXPORT_EXAMPLES: &str = "\
 Examples:
   hysid export model.json --to c                      the folder model_c
   hysid export model.json --to c --name piezo -o src/piezo --precision f32
-  hysid export model.json --to fmu --fmi 2            for tools that read FMI 2.0";
+  hysid export model.json --to fmu --fmi 2            for tools that read FMI 2.0
+  hysid export model.json --to c --inverse --limits 0:150 --slew 2000";
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
@@ -468,16 +470,16 @@ pub struct Invert {
     #[command(flatten)]
     pub overwriting: Overwriting,
     /// Lowest and highest input, such as 0:150 or -1:1 [default: the trained range]
-    #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits)]
     pub limits: Option<(f64, f64)>,
     /// Largest change of the input in a unit of time [default: none]
-    #[arg(long, value_name = "RATE", value_parser = limits::slew, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATE", value_parser = limits::slew)]
     pub slew: Option<f64>,
     /// Time by which the search looks ahead in the reference, in the unit of time; 0 for not at all [default: auto]
     ///
     /// It matters for models whose output lags behind the input. `auto` finds the time with which the model follows the
     /// reference best.
-    #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true)]
     pub preview: Preview,
     /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
     ///
@@ -713,6 +715,21 @@ pub struct Export {
     /// Version of the Functional Mock-up Interface of `--to fmu`: 3 or 2 [default: 3]
     #[arg(long, value_name = "3|2", value_parser = ["3", "2"], hide_possible_values = true)]
     pub fmi: Option<String>,
+    /// Also export the inverse, which gives the input for a wanted output (c, fmu)
+    ///
+    /// With `--to fmu`, the unit is the inverse alone: its inputs are the wanted output and the further inputs, its
+    /// outputs the first input of the model, the output of the model, and whether it is the wanted one.
+    #[arg(long)]
+    pub inverse: bool,
+    /// Lowest and highest input of the inverse [default: trained range]
+    #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits)]
+    pub limits: Option<(f64, f64)>,
+    /// Largest change of the input of the inverse in a unit of time
+    ///
+    /// The unit of time is that of the training data. The first sample is free. A step of the inverse in C then takes
+    /// the time step, also if the model does not need it.
+    #[arg(long, value_name = "RATE", value_parser = limits::slew)]
+    pub slew: Option<f64>,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,

@@ -83,6 +83,17 @@ fn bad_requests_are_one_line_and_leave_nothing() {
         ("--to c --fmi 2", 2, "--fmi is a version of --to fmu"),
         ("--to fmu --fmi 1", 2, "--fmi"),
         ("--to cobol", 2, "cobol"),
+        ("--to rust --inverse", 2, "--inverse: exports to rust have no inverse: those to c and fmu have one"),
+        ("--to c --limits 0:1", 2, "--limits is for the input of an inverse: add --inverse"),
+        ("--to c --slew 1", 2, "--slew is for the input of an inverse: add --inverse"),
+        ("--to c --inverse --limits 3:1", 2, "'3:1' for '--limits <LOW:HIGH>': the low limit 3 is not below"),
+        ("--to c --inverse --limits nan:1", 2, "--limits <LOW:HIGH>': two numbers are needed"),
+        ("--to c --inverse --slew -1", 2, "'-1' for '--slew <RATE>': a number above 0 is needed"),
+        (
+            "--to c --inverse --precision f32 --limits 1:1.00000001",
+            2,
+            "--limits: the limits of the input are 1",
+        ),
         ("--to c -o file", 2, "file: a file is there already"),
         ("--to c -o train.csv/new", 1, "train.csv/new: cannot be written"),
     ] {
@@ -96,4 +107,34 @@ fn bad_requests_are_one_line_and_leave_nothing() {
         fs::read_dir(bench.path("")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["file", "stage-2.json", "train.csv"]);
+}
+
+#[test]
+fn an_inverse_has_the_bounds_that_were_asked_for() {
+    let bench = with_model();
+    for (bounds, low, high) in [
+        ("", None, None),
+        ("--limits -0.5:0.75", Some("(-0.5)"), Some("0.75")),
+        ("--limits=-0.5:-0.25 --slew 2e3", Some("(-0.5)"), Some("(-0.25)")),
+    ] {
+        let ran = bench.run(&format!("export stage-2.json --to c --inverse {bounds}"));
+        assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+        let header = fs::read_to_string(bench.path("stage_2_c").join("stage_2_inverse.h")).unwrap();
+        for (bound, value) in [("LOW", low), ("HIGH", high)] {
+            let line = format!("#define STAGE_2_INVERSE_{bound} {}", value.unwrap_or_default());
+            assert!(header.contains(&line), "{header}");
+        }
+        let slew = header.contains("#define STAGE_2_INVERSE_SLEW 2000.0");
+        assert_eq!(slew, bounds.contains("slew"), "{header}");
+        assert!(bench.path("stage_2_c").join("inverse_vectors.csv").exists());
+    }
+    let ran = bench.run("export stage-2.json --to fmu --inverse --json");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    let files: Vec<&str> =
+        answer["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
+    assert_eq!(
+        files,
+        ["stage_2.fmu", "stage_2_test.py", "inverse_vectors.csv", "README.md", "manifest.json"]
+    );
 }

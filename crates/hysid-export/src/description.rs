@@ -35,6 +35,18 @@ pub enum Argument {
     Rate,
 }
 
+impl Argument {
+    /// Its name in exported functions.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Input(0) => "x".to_string(),
+            Self::Input(input) => format!("x{}", input + 1),
+            Self::TimeStep => "time_step".to_string(),
+            Self::Rate => "rate".to_string(),
+        }
+    }
+}
+
 /// The program of a model's step, and what its arguments mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {

@@ -40,4 +40,18 @@ pub enum Error {
     /// Single precision for a target that computes in double precision.
     #[error("{0} computes in double precision: leave the precision at f64")]
     Precision(&'static str),
+    /// An inverse for a target that has none.
+    #[error("exports to {0} have no inverse: those to c and fmu have one")]
+    NoInverse(&'static str),
+    /// Limits of the input of an inverse.
+    #[error("{0}")]
+    Limits(String),
+    /// Largest change of the input of an inverse.
+    #[error("{0}")]
+    Slew(String),
+    /// An inverse of a model whose rate is an argument.
+    #[error(
+        "the inverse gives the input and so its rate, which cannot be an argument: use backward differences"
+    )]
+    InverseRate,
 }

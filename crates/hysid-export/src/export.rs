@@ -22,18 +22,28 @@ pub struct Export {
 /// Exports a model.
 ///
 /// # Errors
-/// A name that is no identifier, or that the target has already; a precision that the target does not have; a model that cannot be exported there.
+/// A name that is no identifier, or that the target has already; a precision or an inverse that the target does not
+/// have; bounds of an inverse that cannot be used; a model that cannot be exported there.
 pub fn export(model: &Model, to: Target, options: &Options) -> Result<Export, Error> {
     let back_end = to.back_end();
     if options.precision == Precision::Single && !back_end.has_single_precision {
         return Err(Error::Precision(back_end.name));
+    }
+    if options.inverse.is_some() && !back_end.has_inverse {
+        return Err(Error::NoInverse(back_end.name));
     }
     if back_end.reserved.contains(&options.name.as_str()) {
         return Err(Error::Reserved { name: options.name.clone(), target: back_end.name });
     }
     let subject = Subject::of(model, options)?;
     let Written { mut files, note } = (back_end.write)(&subject)?;
-    files.push(File::new("test_vectors.csv", subject.vectors_csv()));
+    // A unit of the inverse has no steps of the model itself.
+    if subject.inverse().is_none() || to != Target::Fmu {
+        files.push(File::new("test_vectors.csv", subject.vectors_csv()));
+    }
+    if let Some(inverse) = subject.inverse() {
+        files.push(File::new("inverse_vectors.csv", inverse.vectors_csv()));
+    }
     files.push(File::new("README.md", readme(&subject, to, &files)));
     files.push(File::new(MANIFEST, manifest(&subject, back_end.name, &files)));
     Ok(Export { files, note })

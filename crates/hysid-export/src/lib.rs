@@ -11,6 +11,7 @@
 pub mod description;
 pub mod error;
 mod export;
+mod inverse;
 mod manifest;
 mod options;
 pub mod program;
@@ -22,7 +23,7 @@ pub mod vectors;
 pub use error::Error;
 pub use export::{Export, export};
 pub use manifest::{MANIFEST, files_of};
-pub use options::{FmiVersion, Options};
+pub use options::{FmiVersion, InverseOptions, Options};
 pub use program::Precision;
 pub use subject::File;
 pub use target::Target;

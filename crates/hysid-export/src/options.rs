@@ -18,6 +18,8 @@ pub struct Options {
     pub band: Option<BandLevel>,
     /// Version of a Functional Mock-up Unit.
     pub fmi: FmiVersion,
+    /// Also export the inverse of the model, with these bounds of its input.
+    pub inverse: Option<InverseOptions>,
     /// Facts about the source that the model itself does not have, as they are to be shown: its file, the date.
     pub source: Vec<(String, String)>,
 }
@@ -31,9 +33,19 @@ impl Options {
             rate: RateSource::default(),
             band: None,
             fmi: FmiVersion::default(),
+            inverse: None,
             source: Vec::new(),
         }
     }
+}
+
+/// Bounds of the input that an inverse gives.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct InverseOptions {
+    /// Lowest and highest input, in its unit, in place of the trained range.
+    pub limits: Option<(f64, f64)>,
+    /// Largest change of the input in a unit of time. The first sample is free.
+    pub slew: Option<f64>,
 }
 
 /// Version of the Functional Mock-up Interface.

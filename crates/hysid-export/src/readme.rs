@@ -15,6 +15,19 @@ pub(crate) fn readme(subject: &Subject<'_>, to: Target, files: &[File]) -> Strin
     let list: String = files.iter().map(|file| format!("- `{}`\n", file.path)).collect();
     let (states, constants) = (subject.program().state_len(), subject.program().constants_len());
     let bytes = subject.bytes();
+    let mut vectors = Vec::new();
+    if files.iter().any(|file| file.path == "test_vectors.csv") {
+        vectors.push(
+            "`test_vectors.csv` lists actions, their arguments, and what they must give: steps, trials that are reverted or
+committed, and a state that is saved and restored.",
+        );
+    }
+    if subject.inverse().is_some() {
+        vectors.push(
+            "`inverse_vectors.csv` lists actions on the inverse, their arguments, and the input, the output and the reach that
+they must give: steps, and a state that is saved and restored.",
+        );
+    }
     let usage = (to.back_end().usage)(subject);
     let band = subject.half_width().map_or(String::new(), |place| {
         format!(
@@ -41,13 +54,13 @@ A model of hysteresis, written by Hysid from a model file.
 
 {list}- `manifest.json`: every file with its SHA-256 checksum
 
-`test_vectors.csv` lists actions, their arguments, and what they must give: steps, trials that are reverted or
-committed, and a state that is saved and restored.
+{vectors}
 ",
         states * bytes,
         constants * bytes,
         operations(subject),
         name = subject.name(),
+        vectors = vectors.join("\n\n"),
     )
 }
 

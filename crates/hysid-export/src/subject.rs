@@ -5,6 +5,7 @@ use hysid_core::significant::Significant;
 
 use crate::description::{Argument, Description, HALF_WIDTH};
 use crate::error::Error;
+use crate::inverse::Inverse;
 use crate::options::{FmiVersion, Options};
 use crate::program::interpreter::Machine;
 use crate::program::tangent::with_tangent;
@@ -34,6 +35,7 @@ pub(crate) struct Subject<'m> {
     description: Description,
     tangent: Program,
     vectors: Vec<Vector>,
+    inverse: Option<Inverse>,
 }
 
 impl<'m> Subject<'m> {
@@ -56,7 +58,9 @@ impl<'m> Subject<'m> {
         let ranges = model.trained_ranges();
         let rate = ranges.rate.map_or(0.0, |(low, high)| low.abs().max(high.abs()));
         let vectors = vectors(&description, &tangent, &ranges.inputs, rate);
-        Ok(Self { model, options, description, tangent, vectors })
+        let inverse = options.inverse.map(|asked| Inverse::of(model, asked, &description, options.precision));
+        let inverse = inverse.transpose()?;
+        Ok(Self { model, options, description, tangent, vectors, inverse })
     }
 
     pub fn model(&self) -> &Model {
@@ -91,15 +95,14 @@ impl<'m> Subject<'m> {
         &self.vectors
     }
 
+    /// The inverse of the model, if the export has one.
+    pub fn inverse(&self) -> Option<&Inverse> {
+        self.inverse.as_ref()
+    }
+
     /// Names of the arguments of a step.
     pub fn argument_names(&self) -> Vec<String> {
-        let name = |argument: &Argument| match argument {
-            Argument::Input(0) => "x".to_string(),
-            Argument::Input(input) => format!("x{}", input + 1),
-            Argument::TimeStep => "time_step".to_string(),
-            Argument::Rate => "rate".to_string(),
-        };
-        self.description.arguments.iter().map(name).collect()
+        self.description.arguments.iter().map(|argument| argument.name()).collect()
     }
 
     /// The place among the numbers of the state that has half the width of the band, if the export has one.

@@ -8,6 +8,7 @@ mod opensees;
 mod printer;
 mod python;
 mod rust;
+mod template;
 
 use crate::error::Error;
 use crate::subject::{File, Subject};
@@ -63,6 +64,8 @@ impl Target {
 pub(crate) struct BackEnd {
     pub name: &'static str,
     pub has_single_precision: bool,
+    /// True if it can have the inverse of a model too.
+    pub has_inverse: bool,
     /// Names that a model cannot have there.
     pub reserved: &'static [&'static str],
     /// Writes the files, without those that every export has.

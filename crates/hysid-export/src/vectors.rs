@@ -144,6 +144,6 @@ impl Path<'_> {
 }
 
 /// The place between -1 and 1 in a range.
-fn within((low, high): (f64, f64), place: f64) -> f64 {
+pub(crate) fn within((low, high): (f64, f64), place: f64) -> f64 {
     0.5 * (low + high) + 0.5 * (high - low) * place
 }

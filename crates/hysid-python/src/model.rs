@@ -9,7 +9,7 @@ use hysid::diagnosis::ModelDiagnosis;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, Prediction};
 use hysid_export::description::RateSource;
-use hysid_export::{FmiVersion, MANIFEST, Options, Precision, Target, files_of};
+use hysid_export::{FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of};
 use hysid_files::{Destination, Folder, Kind};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
@@ -66,6 +66,9 @@ impl Model {
         rate: &str,
         fmi: u32,
         band: Option<(f64, usize)>,
+        inverse: bool,
+        limits: Option<(f64, f64)>,
+        slew: Option<f64>,
         force: bool,
     ) -> PyResult<(Vec<String>, Option<String>)> {
         let target = Target::named(to).ok_or_else(|| refused(format!("there is no target {to:?}")))?;
@@ -74,6 +77,7 @@ impl Model {
             rate: if rate == "argument" { RateSource::Argument } else { RateSource::Backward },
             band: band.map(|(probability, of_ten)| BandLevel { probability, of_ten }),
             fmi: if fmi == 2 { FmiVersion::Two } else { FmiVersion::Three },
+            inverse: inverse.then_some(InverseOptions { limits, slew }),
             ..Options::named(name)
         };
         let exported = py.detach(|| hysid_export::export(&self.model, target, &options)).map_err(refused)?;

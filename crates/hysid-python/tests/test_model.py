@@ -71,6 +71,31 @@ def test_an_export_is_compiled_and_passes_its_own_test(quick_model, tmp_path):
     assert not (tmp_path / "new").exists()
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a C compiler of Unix")
+def test_an_inverse_is_compiled_and_passes_its_own_test(quick_model, tmp_path):
+    folder = tmp_path / "stage"
+    files = quick_model.export("c", folder, inverse=True, limits=(-0.5, 0.75), slew=20)
+    assert {"stage_inverse.c", "stage_inverse.h", "inverse_vectors.csv"} <= set(files)
+    header = (folder / "stage_inverse.h").read_text()
+    assert "STAGE_INVERSE_LOW (-0.5)" in header and "STAGE_INVERSE_SLEW 20.0" in header
+    sources = ["stage.c", "stage_inverse.c", "stage_test.c"]
+    subprocess.run(["cc", "-std=c99", "-ffp-contract=off", "-o", "test", *sources, "-lm"], cwd=folder, check=True)
+    subprocess.run(["./test"], cwd=folder, check=True)
+    for error, arguments, message in [
+        (ValueError, {"limits": (0, 1)}, "inverse=True"),
+        (ValueError, {"slew": 1.0}, "inverse=True"),
+        (ValueError, {"inverse": True, "limits": (3, 1)}, "limits of the input are 3 and 1"),
+        (ValueError, {"inverse": True, "limits": (float("nan"), 1)}, "limits of the input"),
+        (ValueError, {"inverse": True, "slew": 0}, "largest rate of the input is 0"),
+        (ValueError, {"to": "rust", "inverse": True}, "exports to rust have no inverse"),
+        (TypeError, {"inverse": True, "limits": 1.0}, "limits 1.0: two numbers are needed"),
+        (TypeError, {"inverse": "yes"}, "inverse"),
+    ]:
+        with pytest.raises(error, match=message):
+            quick_model.export(**{"to": "c", "folder": tmp_path / "new", **arguments})
+    assert not (tmp_path / "new").exists()
+
+
 def test_every_target_has_its_files(quick_model, tmp_path):
     for target, file in [
         ("fmu", "stage.fmu"),

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow};
 use hysid_document::count;
 use hysid_export::description::RateSource;
-use hysid_export::{Error, Export as Exported, FmiVersion, MANIFEST, Options, Precision, Target, files_of};
+use hysid_export::{
+    Error, Export as Exported, FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of,
+};
 use hysid_files::Folder;
 use serde::Serialize;
 
@@ -27,12 +29,18 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
     if arguments.fmi.is_some() && arguments.to != Target::Fmu {
         return Err(Usage("--fmi is a version of --to fmu".into()).into());
     }
+    let bounds = [("limits", arguments.limits.is_some()), ("slew", arguments.slew.is_some())];
+    if let Some((bound, _)) = bounds.into_iter().find(|(_, is_given)| *is_given && !arguments.inverse) {
+        return Err(Usage(format!("--{bound} is for the input of an inverse: add --inverse")).into());
+    }
+    let inverse = InverseOptions { limits: arguments.limits, slew: arguments.slew };
     let options = Options {
         name,
         precision: if arguments.precision == "f32" { Precision::Single } else { Precision::Double },
         rate: if arguments.rate == "argument" { RateSource::Argument } else { RateSource::Backward },
         band: arguments.data_sets.level(arguments.band),
         fmi: if arguments.fmi.as_deref() == Some("2") { FmiVersion::Two } else { FmiVersion::Three },
+        inverse: arguments.inverse.then_some(inverse),
         source: source(&arguments.model),
     };
     let exported = hysid_export::export(&model, arguments.to, &options).map_err(|error| match error {
@@ -41,6 +49,10 @@ pub fn run(arguments: &Export) -> Result<Outcome> {
         }
         Error::Reserved { .. } => Usage(format!("{error} with --name")).into(),
         Error::Band(_) | Error::NoBand => Usage(format!("--band: {error}")).into(),
+        Error::NoInverse(_) => Usage(format!("--inverse: {error}")).into(),
+        Error::InverseRate => Usage(format!("--rate argument: {error}")).into(),
+        Error::Limits(_) if arguments.limits.is_some() => Usage(format!("--limits: {error}")).into(),
+        Error::Slew(_) => Usage(format!("--slew: {error}")).into(),
         Error::Precision(_) => Usage(format!("--precision: {error}")).into(),
         error => anyhow!("{}: {error}", arguments.model.display()),
     })?;

@@ -35,7 +35,9 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let header = header_line(table.delimiter, table.header.iter().chain(names.all()).map(String::as_str))?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     if arguments.json && out.is_none() {
-        return Err(Usage("--json prints the result in the place of the table: name a file with -o".into()).into());
+        return Err(
+            Usage("--json prints the result in the place of the table: name a file with -o".into()).into()
+        );
     }
     let force = arguments.overwriting.force;
     let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
@@ -173,7 +175,8 @@ fn understood(
     }
     if model.needs_time() || inverted.previews.iter().any(|preview| *preview > 0.0) {
         let time = names.time.as_deref().unwrap_or("time");
-        let mut all: Vec<String> = inverted.previews.iter().map(|&preview| with_unit(preview, time)).collect();
+        let mut all: Vec<String> =
+            inverted.previews.iter().map(|&preview| with_unit(preview, time)).collect();
         all.dedup();
         let chosen = if arguments.preview == Preview::Auto { " (chosen; change: --preview)" } else { "" };
         let shown = if all.len() > 4 { format!("{} to others", all[0]) } else { all.join(", ") };

@@ -42,9 +42,11 @@ pub fn page(
             shown.len()
         )));
     }
-    histories.extend(shown.iter().flat_map(|&index| {
-        record(model, &wanted.records[index], &inverted.records[index], bounds, points)
-    }));
+    histories.extend(
+        shown.iter().flat_map(|&index| {
+            record(model, &wanted.records[index], &inverted.records[index], bounds, points)
+        }),
+    );
     parts.push(Part::section("Histories", histories));
     parts.push(Part::section("Rows", [Part::Table(reaches(wanted, inverted))]));
     parts.push(Part::section("What was asked for", [Part::Definitions(understood.to_vec())]));
@@ -60,9 +62,9 @@ pub fn page(
 
 fn lead(model: &Model, inverted: &Inverted) -> Part {
     let errors = &inverted.errors;
-    let percent = errors.nrmse_std_percent.map_or_else(String::new, |percent| {
-        format!(", {} % of its standard deviation", number(percent, 3))
-    });
+    let percent = errors
+        .nrmse_std_percent
+        .map_or_else(String::new, |percent| format!(", {} % of its standard deviation", number(percent, 3)));
     let rmse = unit::with(&number(errors.rmse, 3), &model.names().output);
     Part::Lead(
         format!(

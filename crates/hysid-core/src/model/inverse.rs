@@ -25,8 +25,7 @@ const TOLERANCE: f64 = 1e-12;
 const SLACK: f64 = 1e-9;
 
 /// Largest number of model steps for a step of the inverse. A band needs as many again for each of its edges.
-pub const MOST_TRIALS: usize =
-    2 + search::MOST_STRIDES + search::SCANNED + search::GOLDEN + 3 * search::MOST_HALVINGS + 1;
+pub const MOST_TRIALS: usize = 2 + 2 * search::MOST_VALUES + 2;
 
 /// Whether an output was reached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +36,8 @@ pub enum Reach {
     LowLimit,
     /// The wanted output is beyond that of the highest input.
     HighLimit,
-    /// The input cannot change so quickly.
+    /// The input cannot change so quickly: it takes the way towards the wanted output at the slew limit, or at the largest
+    /// trained rate.
     Slew,
     /// No input within the limits has the output, and the nearest is between them: the model is not monotone.
     NotMonotone,
@@ -93,9 +93,13 @@ pub struct Inverse<'m> {
     limits: (f64, f64),
     /// Largest change of the input per unit of time.
     slew: Option<f64>,
+    /// Largest rate of the training data, for a model with a rate.
+    trained_rate: Option<f64>,
     /// Time from a sample to the wanted output that it is given.
     preview: f64,
     band: Option<BandLevel>,
+    /// Closed inverses are not used.
+    is_search: bool,
     tolerance: f64,
     /// The last sample, and its time.
     last: Option<(Point, f64)>,
@@ -107,11 +111,13 @@ pub struct Inverse<'m> {
 
 /// Inputs that a sample may have.
 #[derive(Debug, Clone, Copy)]
-struct Window {
-    low: f64,
-    high: f64,
-    /// The slew limit is among what bounds them.
-    has_slew: bool,
+struct Windows {
+    /// Those that are reached at trained rates.
+    trained: (f64, f64),
+    /// Those within the limits and the slew limit.
+    all: (f64, f64),
+    /// Whether a rate is among what bounds them.
+    is_of_rate: bool,
 }
 
 impl<'m> Inverse<'m> {
@@ -121,7 +127,12 @@ impl<'m> Inverse<'m> {
         Self {
             limits: ranges.inputs[0],
             slew: None,
+            trained_rate: ranges
+                .rate
+                .map(|(low, high)| low.abs().max(high.abs()))
+                .filter(|rate| *rate > 0.0 && rate.is_finite()),
             preview: 0.0,
+            is_search: false,
             band: None,
             tolerance: TOLERANCE * (high - low),
             last: None,
@@ -184,10 +195,12 @@ impl<'m> Inverse<'m> {
         Ok(self)
     }
 
-    /// The same with the arithmetic that every machine has: see [`Stepper::portable`].
+    /// The same with the arithmetic that every machine has (see [`Stepper::portable`]), and without closed inverses: as
+    /// exports compute it.
     #[must_use]
     pub fn portable(mut self) -> Self {
         self.stepper = self.stepper.portable();
+        self.is_search = true;
         self
     }
 
@@ -196,7 +209,24 @@ impl<'m> Inverse<'m> {
         self.stepper.model()
     }
 
+    /// Lowest and highest input.
+    pub fn input_limits(&self) -> (f64, f64) {
+        self.limits
+    }
+
+    /// Largest rate of the training data, for a model with a rate.
+    pub fn trained_rate(&self) -> Option<f64> {
+        self.trained_rate
+    }
+
+    /// The deviation of an output at which a search ends, in the unit of the output.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// Advances to the next sample, at which the model has the output `wanted`, in its unit, if that can be.
+    ///
+    /// Inputs that are reached at trained rates are searched first, for a model with a rate, then all others.
     ///
     /// `others` are the further inputs of the model, in their units. `time` is that of the sample; a model without rate
     /// ignores it, unless there is a slew limit or a preview. A rate is the backward difference of the inputs that the
@@ -215,28 +245,46 @@ impl<'m> Inverse<'m> {
         let elapsed = self.elapsed(time)?;
         // The first sample has no path that leads to it.
         let ahead = if elapsed.is_some() { self.preview } else { 0.0 };
-        let window = self.window(elapsed.map(|elapsed| elapsed + ahead));
+        let windows = self.windows(elapsed.map(|elapsed| elapsed + ahead));
         self.inputs.clear();
         self.inputs.push(0.0);
         self.inputs.extend(others);
-        let wanted = Wanted { value: wanted, tolerance: self.tolerance, window: (window.low, window.high) };
-        let inverted = self.search(wanted, window, time, ahead);
+        let inverted = self.search(wanted, windows, time, ahead);
         if inverted.is_err() {
             self.stepper.revert();
         }
         inverted
     }
 
-    fn search(&mut self, wanted: Wanted, window: Window, time: f64, ahead: f64) -> Result<Inverted> {
-        let first = self.guess(wanted.value, ahead);
+    fn search(&mut self, value: f64, windows: Windows, time: f64, ahead: f64) -> Result<Inverted> {
+        let wanted = |window| Wanted { value, tolerance: self.tolerance, window };
+        let (trained, all) = (wanted(windows.trained), wanted(windows.all));
+        let mut trials = 0;
+        let first = self.guess(value, ahead);
+        if self.slope.is_nan() || self.slope == 0.0 {
+            let (low, high) = windows.trained;
+            let at_high = self.trial(high, time + ahead)?;
+            self.slope = (at_high - self.trial(low, time + ahead)?) / (high - low);
+            trials += 2;
+        }
         let band = match self.band {
-            Some(level) => Some(self.edges(wanted, first, level, time + ahead)?),
+            Some(level) => Some(self.edges(all, first, level, time + ahead, &mut trials)?),
             None => None,
         };
         let before = self.last;
-        let mut trials = band.map_or(0, |(_, trials)| trials);
-        let (Found { point, ending, slope }, last_trial) =
-            self.find(wanted, first, time + ahead, &mut trials, |_| Ok(0.0))?;
+        let (Found { mut point, mut ending, mut slope }, mut last_trial) =
+            self.find(trained, first, time + ahead, &mut trials, |_| Ok(0.0))?;
+        if ending.is_beside() && windows.trained != windows.all {
+            let (wider, trial) = self.find(all, first, time + ahead, &mut trials, |_| Ok(0.0))?;
+            (point, ending, slope, last_trial) = (wider.point, wider.ending, wider.slope, trial);
+        }
+        if ending.is_beside() && windows.is_of_rate {
+            let (end, side) = self.towards(value, windows.trained);
+            point = Point { argument: end, value: self.trial(end, time + ahead)? };
+            last_trial = end;
+            trials += 1;
+            ending = if ending == Ending::Extremum { ending } else { side };
+        }
         let (input, mut output) = (self.part_of_way(point.argument, time, ahead), point.value);
         if ahead > 0.0 || last_trial != input {
             output = self.trial(input, time)?;
@@ -251,9 +299,9 @@ impl<'m> Inverse<'m> {
         Ok(Inverted {
             input,
             output,
-            reach: self.reach(ending, point.argument, window),
+            reach: self.reach(ending, point.argument, windows),
             is_extrapolated: self.is_extrapolated(input, time, before),
-            band: band.map(|(edges, _)| edges),
+            band,
             trials,
         })
     }
@@ -269,7 +317,6 @@ impl<'m> Inverse<'m> {
         added: impl Fn(&mut Stepper<'m>) -> Result<f64>,
     ) -> Result<(Found, f64)> {
         let mut last_trial = f64::NAN;
-        let (low, high) = wanted.window;
         let (stepper, inputs) = (&mut self.stepper, &mut self.inputs);
         let mut output = |input: f64| -> Result<f64> {
             last_trial = input;
@@ -278,28 +325,32 @@ impl<'m> Inverse<'m> {
             let output = stepper.trial(inputs, time, None)?;
             Ok(output + added(stepper)?)
         };
-        if self.slope.is_nan() || self.slope == 0.0 {
-            self.slope = (output(high)? - output(low)?) / (high - low);
-        }
         let found = wanted.search(first, self.slope, &mut output)?;
         Ok((found, last_trial))
     }
 
-    /// The inputs at which either edge of the prediction band has the wanted output, and the number of trials.
+    /// The inputs at which either edge of the prediction band has the wanted output.
     fn edges(
         &mut self,
         wanted: Wanted,
         first: f64,
         level: BandLevel,
         time: f64,
-    ) -> Result<((f64, f64), usize)> {
-        let mut trials = 0;
+        trials: &mut usize,
+    ) -> Result<(f64, f64)> {
         let mut edge = |sign: f64| -> Result<f64> {
             let half_width = |stepper: &mut Stepper<'m>| Ok(sign * stepper.half_width(level)?);
-            Ok(self.find(wanted, first, time, &mut trials, half_width)?.0.point.argument)
+            Ok(self.find(wanted, first, time, trials, half_width)?.0.point.argument)
         };
         let (a, b) = (edge(1.0)?, edge(-1.0)?);
-        Ok(((a.min(b), a.max(b)), trials))
+        Ok((a.min(b), a.max(b)))
+    }
+
+    /// The end of a window that leads to the wanted output, by the slope of the model over the whole range. The nearest
+    /// output in a narrow window may lie the other way, and the input would rest at a local extremum.
+    fn towards(&self, wanted: f64, (low, high): (f64, f64)) -> (f64, Ending) {
+        let rises = self.last.is_none_or(|(last, _)| wanted > last.value);
+        if rises == (self.slope > 0.0) { (high, Ending::High) } else { (low, Ending::Low) }
     }
 
     fn trial(&mut self, input: f64, time: f64) -> Result<f64> {
@@ -317,13 +368,13 @@ impl<'m> Inverse<'m> {
         }
     }
 
-    fn reach(&self, ending: Ending, input: f64, window: Window) -> Reach {
+    fn reach(&self, ending: Ending, input: f64, windows: Windows) -> Reach {
         let at_low = input == self.limits.0;
         let at_high = input == self.limits.1;
         match ending {
             Ending::Reached => Reach::Reached,
-            Ending::Low if at_low || !window.has_slew => Reach::LowLimit,
-            Ending::High if at_high || !window.has_slew => Reach::HighLimit,
+            Ending::Low if at_low || !windows.is_of_rate => Reach::LowLimit,
+            Ending::High if at_high || !windows.is_of_rate => Reach::HighLimit,
             Ending::Low | Ending::High => Reach::Slew,
             Ending::Extremum => Reach::NotMonotone,
             Ending::Jump => Reach::Jump,
@@ -350,7 +401,7 @@ impl<'m> Inverse<'m> {
 
     /// Time since the last sample, if that is needed; `None` at the first.
     fn elapsed(&self, time: f64) -> Result<Option<f64>> {
-        let is_needed = self.slew.is_some() || self.preview > 0.0;
+        let is_needed = self.slew.is_some() || self.trained_rate.is_some() || self.preview > 0.0;
         if is_needed && !time.is_finite() {
             return Err(SampleError::Time(time).into());
         }
@@ -362,20 +413,23 @@ impl<'m> Inverse<'m> {
     }
 
     /// Inputs that the model may have after this time since the last sample.
-    fn window(&self, elapsed: Option<f64>) -> Window {
-        let (low, high) = self.limits;
-        match (self.slew, self.last, elapsed) {
-            (Some(slew), Some((Point { argument, .. }, _)), Some(elapsed)) => {
-                let way = slew * elapsed;
-                Window { low: (argument - way).max(low), high: (argument + way).min(high), has_slew: true }
+    fn windows(&self, elapsed: Option<f64>) -> Windows {
+        let within = |rate: Option<f64>, (low, high): (f64, f64)| match (rate, self.last, elapsed) {
+            (Some(rate), Some((Point { argument, .. }, _)), Some(elapsed)) => {
+                let way = rate * elapsed;
+                ((argument - way).max(low), (argument + way).min(high))
             }
-            _ => Window { low, high, has_slew: false },
-        }
+            _ => (low, high),
+        };
+        let all = within(self.slew, self.limits);
+        let trained = within(self.trained_rate, all);
+        Windows { trained, all, is_of_rate: trained != self.limits }
     }
 
     /// The input from which a search begins.
     fn guess(&mut self, wanted: f64, ahead: f64) -> f64 {
         if ahead == 0.0
+            && !self.is_search
             && let Some(input) = self.stepper.input_for(wanted)
         {
             return input;

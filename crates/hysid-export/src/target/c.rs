@@ -1,6 +1,8 @@
-//! C99: one header, one source file, and a program that tests both.
+//! C99: a header and a source file of the model, the same of its inverse, and a program that tests them.
 
 mod header;
+mod inverse;
+mod inverse_test;
 mod self_test;
 mod source;
 
@@ -9,7 +11,7 @@ use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written};
 
 pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "c", has_single_precision: true, reserved: &[], write, usage };
+    BackEnd { name: "c", has_single_precision: true, has_inverse: true, reserved: &[], write, usage };
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let mut files = sources(subject);
@@ -22,17 +24,27 @@ pub(super) fn test(subject: &Subject<'_>) -> File {
     File::new(format!("{}_test.c", subject.name()), self_test::self_test(subject))
 }
 
-/// The header and the source file.
+/// The headers and the source files.
 pub(super) fn sources(subject: &Subject<'_>) -> Vec<File> {
     let name = subject.name();
-    vec![
+    let mut files = vec![
         File::new(format!("{name}.h"), header::header(subject)),
         File::new(format!("{name}.c"), source::source(subject)),
-    ]
+    ];
+    if let Some(inverse) = subject.inverse() {
+        let [header, source] = inverse::header_and_source(subject, inverse);
+        files.push(File::new(format!("{name}_inverse.h"), header));
+        files.push(File::new(format!("{name}_inverse.c"), source));
+    }
+    files
 }
 
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
+    let (inverse, more) = match subject.inverse() {
+        Some(inverse) => (inverse::usage(name, inverse), format!(" {name}_inverse.c")),
+        None => Default::default(),
+    };
     format!(
         "```c
 #include \"{name}.h\"
@@ -44,12 +56,12 @@ y = {name}_step(&model, x);      /* further arguments: see {name}.h */
 
 A solver that iterates calls `{name}_trial` or `{name}_trial_tangent` as often as it needs, each time from the committed
 state, and `{name}_commit` once it accepts.
-
+{inverse}
 Compile with `-ffp-contract=off` where the machine fuses products and sums: the outputs then equal those of Hysid to
 the last bit, if the C library computes `exp` and its like as that of Hysid does. `-ffast-math` is refused.
 
 ```
-cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c -lm && ./{name}_test
+cc -std=c99 -O3 -ffp-contract=off -o {name}_test {name}_test.c {name}.c{more} -lm && ./{name}_test
 ```
 "
     )

@@ -16,8 +16,14 @@ use crate::options::FmiVersion;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "fmu", has_single_precision: false, reserved: &["fmi2", "fmi3"], write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "fmu",
+    has_single_precision: false,
+    has_inverse: true,
+    reserved: &["fmi2", "fmi3"],
+    write,
+    usage,
+};
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let (name, version) = (subject.name(), subject.fmi());
@@ -37,14 +43,15 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
         vec![File::new("modelDescription.xml", description::model_description(subject, version, &token))];
     content.extend(binary);
     if version == FmiVersion::Three {
-        content.push(File::new("sources/buildDescription.xml", description::build_description(name)));
+        content.push(File::new("sources/buildDescription.xml", description::build_description(subject)));
     }
     content.extend(sources.into_iter().map(|file| File::new(format!("sources/{}", file.path), file.content)));
     let archive = zipped(&content).map_err(|error| Error::Archive(error.to_string()))?;
-    let files = vec![
-        File::new(format!("{name}.fmu"), archive),
-        File::new(format!("{name}_test.py"), self_test::self_test(subject)),
-    ];
+    let test = match subject.inverse() {
+        None => self_test::self_test(subject),
+        Some(inverse) => self_test::of_inverse(subject, inverse),
+    };
+    let files = vec![File::new(format!("{name}.fmu"), archive), File::new(format!("{name}_test.py"), test)];
     Ok(Written { files, note })
 }
 
@@ -63,18 +70,38 @@ fn zipped(files: &[File]) -> zip::result::ZipResult<Vec<u8>> {
 
 fn usage(subject: &Subject<'_>) -> String {
     let name = subject.name();
-    let (inputs, output) = description::variable_names(subject);
-    let inputs: Vec<String> = inputs.iter().map(|name| format!("`{name}`")).collect();
+    let (inputs, outputs) = description::variable_names(subject);
+    let listed =
+        |names: &[String]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let (what, more) = match subject.inverse() {
+        None => (
+            "a unit",
+            "The directional derivative is that of the output by the first input.",
+        ),
+        Some(_) => (
+            "the inverse of the model as a unit",
+            "It has no directional derivative.
+
+`reach` is 0 where the model has the wanted output. It is 1 beyond the output of the lowest input, 2 beyond that of the
+highest input, 3 where the input cannot change so quickly, 4 where the model is not monotone, 5 where its output jumps
+over the wanted one, and -1 after an invalid time step. The limits are in `{name}_inverse.h` among the sources.",
+        ),
+    };
+    let more = more.replace("{name}", name);
     format!(
-        "`{name}.fmu` is a unit for co-simulation with FMI {version}: inputs {inputs}, output `{output}`. It has its source
-code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
+        "`{name}.fmu` is {what} for co-simulation with FMI {version}.
+
+- Inputs: {inputs}
+- Outputs: {outputs}
+
+It has its source code, and a binary if there was a C compiler where it was written (`unzip -l {name}.fmu` shows it).
 
 A row of the model is the inputs at a communication point. A step from there commits them. The output after inputs were
 set is that of these inputs; an importer that reads it before it sets new ones, at the end of a step, reads the output
 of the inputs at the step's beginning. The communication step may vary. A model that depends on the rate forms it from
 the inputs of two communication points: choose steps like those of the training data.
 
-The state can be saved, restored and serialised. The directional derivative is that of the output by the first input.
+The state can be saved, restored and serialised. {more}
 
 ```
 python -m pip install fmpy
@@ -84,6 +111,7 @@ python {name}_test.py
 runs the test vectors.
 ",
         version = subject.fmi().number(),
-        inputs = inputs.join(", "),
+        inputs = listed(&inputs),
+        outputs = listed(&outputs),
     )
 }

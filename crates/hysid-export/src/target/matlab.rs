@@ -12,8 +12,14 @@ use crate::target::printer::{Binding, Language, Printer};
 use crate::target::{BackEnd, Written};
 use crate::vectors::Action;
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "matlab", has_single_precision: false, reserved: RESERVED, write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "matlab",
+    has_single_precision: false,
+    has_inverse: false,
+    reserved: RESERVED,
+    write,
+    usage,
+};
 
 /// Words of the language, functions that the files call, and variables that the test and the page have.
 const RESERVED: &[&str] = &[

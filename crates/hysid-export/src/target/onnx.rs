@@ -14,7 +14,7 @@ use graph::{NEXT_STATE, OUTPUT, STATE, row};
 use messages::{Attribute, Entry, Graph, Model, Node, OperatorSet, ValueInfo};
 
 pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "onnx", has_single_precision: false, reserved: &[], write, usage };
+    BackEnd { name: "onnx", has_single_precision: false, has_inverse: false, reserved: &[], write, usage };
 
 /// Version of the format, and of its operators, as of ONNX 1.12.
 const FORMAT: i64 = 8;

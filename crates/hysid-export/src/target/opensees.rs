@@ -7,8 +7,14 @@ use crate::error::Error;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "opensees", has_single_precision: false, reserved: &[], write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "opensees",
+    has_single_precision: false,
+    has_inverse: false,
+    reserved: &[],
+    write,
+    usage,
+};
 
 fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     let inputs = subject.model().names().inputs.len();

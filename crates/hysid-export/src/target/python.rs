@@ -12,8 +12,14 @@ use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "python", has_single_precision: false, reserved: RESERVED, write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "python",
+    has_single_precision: false,
+    has_inverse: false,
+    reserved: RESERVED,
+    write,
+    usage,
+};
 
 /// Words of the language, and modules that the files import.
 const RESERVED: &[&str] = &[

@@ -13,8 +13,14 @@ use crate::subject::{File, Subject};
 use crate::target::printer::{Binding, Language, Printer, rows_of_numbers};
 use crate::target::{BackEnd, Written};
 
-pub(super) const BACK_END: BackEnd =
-    BackEnd { name: "rust", has_single_precision: true, reserved: RESERVED, write, usage };
+pub(super) const BACK_END: BackEnd = BackEnd {
+    name: "rust",
+    has_single_precision: true,
+    has_inverse: false,
+    reserved: RESERVED,
+    write,
+    usage,
+};
 
 /// Words of the language, and names that the test has.
 const RESERVED: &[&str] = &[

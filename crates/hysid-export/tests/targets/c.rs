@@ -7,7 +7,7 @@ use hysid::Fit;
 use hysid_core::data::record::Excitation;
 use hysid_core::model::BandLevel;
 use hysid_export::description::{Argument, Description, RateSource};
-use hysid_export::{Error, Options, Precision, Target, export};
+use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 use serde_json::json;
 
 use crate::case::{Case, MODELS, NAME, written};
@@ -15,11 +15,11 @@ use crate::models::{data, path, time_step};
 use crate::tools::{succeeds, tool};
 
 /// Warnings are errors.
-const STRICT: [&str; 8] =
+pub const STRICT: [&str; 8] =
     ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-ffp-contract=off"];
 
 /// The compilers that this machine has, of gcc and clang.
-fn compilers() -> Vec<String> {
+pub fn compilers() -> Vec<String> {
     ["gcc", "clang"]
         .into_iter()
         .filter_map(|compiler| {
@@ -60,8 +60,9 @@ fn the_header_is_good_for_cpp() {
     };
     let folder = tempfile::tempdir().unwrap();
     let (_, model) = &MODELS[0];
-    written(model, Target::C, &Options::named(NAME), folder.path());
-    let program = "#include \"actuator.h\"\nint main() { actuator_model m; actuator_reset(&m); return actuator_step(&m, 1.0) > 1e9; }\n";
+    let options = Options { inverse: Some(InverseOptions::default()), ..Options::named(NAME) };
+    written(model, Target::C, &options, folder.path());
+    let program = "#include \"actuator_inverse.h\"\nint main() { actuator_model m; actuator_reset(&m); return actuator_step(&m, 1.0) > 1e9; }\n";
     fs::write(folder.path().join("main.cpp"), program).unwrap();
     succeeds(Command::new("gcc").current_dir(folder.path()).args(STRICT).args(["-c", "actuator.c"]));
     succeeds(Command::new(compiler).current_dir(folder.path()).args([

@@ -9,7 +9,7 @@ use crate::case::{MODELS, written};
 use crate::tools::{python, succeeds, tool};
 
 /// Names of models: those that users choose, and parts of names inside the files.
-const NAMES: [&str; 7] = ["model", "data", "state", "first", "real", "MODEL", "y"];
+const NAMES: [&str; 8] = ["model", "data", "state", "first", "real", "MODEL", "y", "inverse"];
 
 /// Runs the test that an export has.
 fn run(target: Target, name: &str, folder: &Path) {

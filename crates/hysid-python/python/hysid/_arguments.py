@@ -29,6 +29,21 @@ def real(name: str, value: Any) -> float:
     raise TypeError(f"{name} {value!r}: a number is needed")
 
 
+def pair(name: str, value: Any) -> tuple[float, float]:
+    """Two numbers as floats.
+
+    Raises
+    ------
+    TypeError
+        Something else.
+    """
+    try:
+        low, high = value
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} {value!r}: two numbers are needed") from None
+    return real(name, low), real(name, high)
+
+
 def whole(name: str, value: Any, low: int = 0, high: int = LARGEST) -> int:
     """A whole number within bounds.
 

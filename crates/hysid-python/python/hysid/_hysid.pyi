@@ -67,6 +67,9 @@ class Model:
         rate: str,
         fmi: int,
         band: tuple[float, int] | None,
+        inverse: bool,
+        limits: tuple[float, float] | None,
+        slew: float | None,
         force: bool,
     ) -> tuple[list[str], str | None]: ...
     def parameters(self) -> int: ...

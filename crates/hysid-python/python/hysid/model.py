@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hysid import _hysid
-from hysid._arguments import name_of, real, truth, whole
+from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._data import Column, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
@@ -224,6 +224,9 @@ class Model:
         fmi: int = 3,
         band: float | None = None,
         of_ten: int = 5,
+        inverse: bool = False,
+        limits: tuple[float, float] | None = None,
+        slew: float | None = None,
         force: bool = False,
     ) -> list[str]:
         """Write the model as source code for other programs, with tests and test vectors.
@@ -249,6 +252,12 @@ class Model:
             Also compute half the width of the prediction band that contains this share of the rows (0.5 to 0.99).
         of_ten : int
             The band contains that share, or more, in so many of ten data sets (5 to 9).
+        inverse : bool
+            Also export the inverse, which gives the first input for a wanted output (``to="c"`` or ``"fmu"``).
+        limits : (float, float), optional
+            Lowest and highest input of the inverse, in its unit. By default, the trained range.
+        slew : float, optional
+            Largest change of the input of the inverse in a unit of time.
         force : bool
             Replace a folder even if Hysid did not write it, with all that is in it.
 
@@ -260,7 +269,8 @@ class Model:
         Raises
         ------
         ValueError
-            A target, precision, rate or name that cannot be used; a model that cannot be exported.
+            A target, precision, rate or name that cannot be used; an inverse that the target does not have; limits that
+            cannot be used; a model that cannot be exported.
         FileExistsError
             The folder has other files, and `force` is False.
         OSError
@@ -276,7 +286,17 @@ class Model:
         if name is None:
             name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
         level = None if band is None else (real("band", band), whole("of_ten", of_ten))
-        files, note = self._native.export(to, folder, name, precision, rate, fmi, level, truth("force", force))
+        if limits is not None:
+            limits = pair("limits", limits)
+        if slew is not None:
+            slew = real("slew", slew)
+        inverse = truth("inverse", inverse)
+        if not inverse and (limits, slew) != (None, None):
+            raise ValueError("limits and slew are for the input of an inverse: add inverse=True")
+        force = truth("force", force)
+        files, note = self._native.export(
+            to, folder, name, precision, rate, fmi, level, inverse, limits, slew, force
+        )
         warn([] if note is None else [note])
         return files
 

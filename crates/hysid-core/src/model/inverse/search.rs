@@ -23,6 +23,9 @@ pub const SCANNED: usize = 33;
 /// Function values of the search of an extremum.
 pub const GOLDEN: usize = 40;
 
+/// Function values of a search, at most.
+pub const MOST_VALUES: usize = 1 + MOST_STRIDES + SCANNED + GOLDEN + 3 * MOST_HALVINGS;
+
 /// The smallest first stride, as a share of the window.
 const LEAST_STRIDE: f64 = 1e-6;
 
@@ -42,6 +45,13 @@ pub enum Ending {
     Extremum,
     /// The function jumps over the value.
     Jump,
+}
+
+impl Ending {
+    /// True if the value is not among those of the window.
+    pub fn is_beside(self) -> bool {
+        matches!(self, Self::Low | Self::High | Self::Extremum)
+    }
 }
 
 /// An argument with its function value.

@@ -2,6 +2,7 @@
 
 use crate::program::Precision;
 use crate::subject::Subject;
+use crate::target::c::inverse_test::inverse_test;
 use crate::vectors::Action;
 
 /// The text of the program.
@@ -41,13 +42,21 @@ pub(super) fn self_test(subject: &Subject<'_>) -> String {
     let given: String = (0..count).map(|index| format!(", v->arguments[{index}]")).collect();
     let (low, high) = subject.model().trained_ranges().output;
     let scale = number(0.5 * (high - low));
+    let (include, test, and_inverse) = match subject.inverse() {
+        Some(inverse) => (
+            format!("#include \"{name}_inverse.h\"\n"),
+            inverse_test(subject, inverse),
+            "    is_good = test_inverse() && is_good;\n",
+        ),
+        None => Default::default(),
+    };
     format!(
         "/* {name}_test.c: compares {name}.c with the test vectors. Exit status 0 if all agree. */
 
 #include <stdio.h>
 
 #include \"{name}.h\"
-
+{include}
 typedef enum {{ {names} }} action;
 
 typedef struct {{
@@ -73,12 +82,13 @@ static void compare({name}_real found, {name}_real expected, {name}_real scale)
         largest = difference / scale;
 }}
 
-int main(void)
+{test}int main(void)
 {{
     static {name}_model model;
     static unsigned char saved[{upper}_STATE_BYTES];
     const {name}_real scale = {scale};
     const size_t count = sizeof(vectors) / sizeof(vectors[0]);
+    int is_good;
     size_t i;
 
     {name}_reset(&model);
@@ -101,7 +111,8 @@ int main(void)
     }}
     printf(\"%d of %d test vectors differ, by at most %.1e of half the trained range\\n\", different, (int)count,
            (double)largest);
-    return largest <= ({name}_real){tolerance} ? 0 : 1;
+    is_good = largest <= ({name}_real){tolerance};
+{and_inverse}    return is_good ? 0 : 1;
 }}
 "
     )

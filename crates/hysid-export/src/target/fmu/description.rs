@@ -17,6 +17,10 @@ pub(super) const OUTPUT: usize = 1000;
 /// Value reference of half the width of the band.
 pub(super) const HALF_WIDTH: usize = 1001;
 
+/// In a unit of an inverse, value references of the model's output and of the reach.
+pub(super) const MODEL_OUTPUT: usize = 1002;
+pub(super) const REACH: usize = 1003;
+
 /// A variable of the FMU.
 struct Variable {
     name: String,
@@ -29,7 +33,8 @@ pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
     let ranges = subject.model().trained_ranges();
     let of = |argument: &Argument| match *argument {
         Argument::Input(input) => {
-            let (low, high) = ranges.inputs[input];
+            let is_wanted = input == 0 && subject.inverse().is_some();
+            let (low, high) = if is_wanted { ranges.output } else { ranges.inputs[input] };
             Some(0f64.clamp(low, high))
         }
         Argument::TimeStep => None,
@@ -38,11 +43,21 @@ pub(super) fn start_values(subject: &Subject<'_>) -> Vec<f64> {
     subject.description().arguments.iter().filter_map(of).collect()
 }
 
-/// The inputs, the output and, if there is a band, half its width.
+/// What the values of the reach mean.
+const REACHES: &str = "whether the wanted output was reached: 0 reached, 1 beyond the lowest input, 2 beyond the highest \
+                       input, 3 the input cannot change so quickly, 4 the model is not monotone, 5 the output jumps over \
+                       it, -1 invalid time step";
+
+/// The inputs, the outputs and, if there is a band, half its width.
 fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     let names = subject.model().names();
     let time = names.time.as_deref().and_then(unit::of_column);
     let of = |argument: &Argument| match *argument {
+        Argument::Input(0) if subject.inverse().is_some() => Some(Variable {
+            name: format!("wanted {}", names.output),
+            unit: unit::of_column(&names.output),
+            description: "wanted output".into(),
+        }),
         Argument::Input(input) => Some(Variable {
             name: names.inputs[input].clone(),
             unit: unit::of_column(&names.inputs[input]),
@@ -59,11 +74,21 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
         }),
     };
     let mut all: Vec<Variable> = subject.description().arguments.iter().filter_map(of).collect();
+    if subject.inverse().is_some() {
+        all.push(Variable {
+            name: names.inputs[0].clone(),
+            unit: unit::of_column(&names.inputs[0]),
+            description: "input 1, for which the model has the wanted output or the nearest".into(),
+        });
+    }
     all.push(Variable {
         name: names.output.clone(),
         unit: unit::of_column(&names.output),
         description: "output".into(),
     });
+    if subject.inverse().is_some() {
+        all.push(Variable { name: "reach".into(), unit: None, description: REACHES.into() });
+    }
     if subject.half_width().is_some() {
         all.push(Variable {
             name: format!("half width of {}", names.output),
@@ -80,16 +105,21 @@ fn variables(subject: &Subject<'_>) -> Vec<Variable> {
     all
 }
 
-/// Names of the inputs, and of the output.
-pub(super) fn variable_names(subject: &Subject<'_>) -> (Vec<String>, String) {
+/// Names of the inputs, and of the outputs.
+pub(super) fn variable_names(subject: &Subject<'_>) -> (Vec<String>, Vec<String>) {
     let inputs = start_values(subject).len();
     let mut names = variables(subject).into_iter().map(|variable| variable.name);
-    (names.by_ref().take(inputs).collect(), names.next().unwrap_or_default())
+    (names.by_ref().take(inputs).collect(), names.collect())
 }
 
 /// The value references of the outputs.
 fn outputs(subject: &Subject<'_>) -> Vec<usize> {
-    [OUTPUT].into_iter().chain(subject.half_width().map(|_| HALF_WIDTH)).collect()
+    let of_inverse = subject.inverse().map(|_| [MODEL_OUTPUT, REACH]);
+    [OUTPUT]
+        .into_iter()
+        .chain(of_inverse.into_iter().flatten())
+        .chain(subject.half_width().map(|_| HALF_WIDTH))
+        .collect()
 }
 
 /// The text of the file.
@@ -130,8 +160,8 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
 <fmiModelDescription fmiVersion=\"3.0\" modelName=\"{name}\" instantiationToken=\"{token}\"
   description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\">
   <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
-    canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\" providesDirectionalDerivatives=\"true\"
-    providesAdjointDerivatives=\"true\" providesPerElementDependencies=\"true\"/>
+    canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"{derivatives}
+    providesPerElementDependencies=\"true\"/>
 {units}  <LogCategories>
     <Category name=\"logStatusError\" description=\"errors\"/>
   </LogCategories>
@@ -144,6 +174,10 @@ fn version_three(subject: &Subject<'_>, token: &str) -> String {
 </fmiModelDescription>
 ",
         name = subject.name(),
+        derivatives = match subject.inverse() {
+            None => "\n    providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"",
+            Some(_) => "",
+        },
         description = summary(subject),
         tool = env!("CARGO_PKG_VERSION"),
         units = units(&variables),
@@ -187,12 +221,12 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
   description=\"{description}\" generationTool=\"Hysid {tool}\" variableNamingConvention=\"flat\"
   numberOfEventIndicators=\"0\">
   <CoSimulation modelIdentifier=\"{name}\" canHandleVariableCommunicationStepSize=\"true\"
-    canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\" providesDirectionalDerivative=\"true\"
+    canGetAndSetFMUstate=\"true\" canSerializeFMUstate=\"true\"{derivative}
     canNotUseMemoryManagementFunctions=\"true\">
     <SourceFiles>
       <File name=\"fmi2.c\"/>
       <File name=\"{name}.c\"/>
-    </SourceFiles>
+{inverse}    </SourceFiles>
   </CoSimulation>
 {units}  <LogCategories>
     <Category name=\"logStatusError\" description=\"errors\"/>
@@ -209,6 +243,11 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
   </ModelStructure>
 </fmiModelDescription>
 ",
+        derivative = if subject.inverse().is_none() { " providesDirectionalDerivative=\"true\"" } else { "" },
+        inverse = match subject.inverse() {
+            None => String::new(),
+            Some(_) => format!("      <File name=\"{name}_inverse.c\"/>\n"),
+        },
         description = summary(subject),
         tool = env!("CARGO_PKG_VERSION"),
         units = units(&variables),
@@ -217,7 +256,12 @@ fn version_two(subject: &Subject<'_>, token: &str) -> String {
 }
 
 /// `sources/buildDescription.xml` of version 3.
-pub(super) fn build_description(name: &str) -> String {
+pub(super) fn build_description(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    let inverse = match subject.inverse() {
+        None => String::new(),
+        Some(_) => format!("      <SourceFile name=\"{name}_inverse.c\"/>\n"),
+    };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>
 <fmiBuildDescription fmiVersion=\"3.0\">
@@ -225,7 +269,7 @@ pub(super) fn build_description(name: &str) -> String {
     <SourceFileSet language=\"C99\" compilerOptions=\"-ffp-contract=off\">
       <SourceFile name=\"fmi3.c\"/>
       <SourceFile name=\"{name}.c\"/>
-    </SourceFileSet>
+{inverse}    </SourceFileSet>
   </BuildConfiguration>
 </fmiBuildDescription>
 "
@@ -263,7 +307,8 @@ fn units(variables: &[Variable]) -> String {
 /// The facts about the model, in a line.
 fn summary(subject: &Subject<'_>) -> String {
     let facts: Vec<String> = subject.facts().iter().map(|(fact, text)| format!("{fact}: {text}")).collect();
-    escaped(&format!("A model of hysteresis, written by Hysid. {}", facts.join("; ")))
+    let what = if subject.inverse().is_some() { "The inverse of a model" } else { "A model" };
+    escaped(&format!("{what} of hysteresis, written by Hysid. {}", facts.join("; ")))
 }
 
 /// Text inside an attribute of XML.

@@ -1,7 +1,9 @@
 //! A program that runs the test vectors with FMPy.
 
 use crate::description::Argument;
+use crate::inverse::Inverse;
 use crate::subject::Subject;
+use crate::target::template::filled;
 
 /// The text of the program.
 pub(super) fn self_test(subject: &Subject<'_>) -> String {
@@ -108,5 +110,20 @@ sys.exit(0 if max(differences) <= 1e-9 else 1)
         inputs = inputs.join(", "),
         count = subject.argument_names().len(),
         time_step = time_step.map_or("None".into(), |index| index.to_string()),
+    )
+}
+
+/// The text of the program for a unit of an inverse.
+pub(super) fn of_inverse(subject: &Subject<'_>, inverse: &Inverse) -> String {
+    let time_step = inverse.arguments.iter().position(|argument| *argument == Argument::TimeStep);
+    let (low, high) = subject.model().trained_ranges().output;
+    filled(
+        include_str!("inverse_test.py.txt"),
+        &[
+            ("NAME", subject.name()),
+            ("@scale@", &format!("{:?}", 0.5 * (high - low))),
+            ("@inputs@", &(1 + inverse.arguments.len() - usize::from(time_step.is_some())).to_string()),
+            ("@time_step@", &time_step.map_or("None".into(), |place| (place + 1).to_string())),
+        ],
     )
 }

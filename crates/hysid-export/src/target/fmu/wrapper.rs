@@ -5,15 +5,22 @@
 //! before.
 
 use crate::description::Argument;
+use crate::inverse::Inverse;
 use crate::options::FmiVersion;
 use crate::subject::Subject;
-use crate::target::fmu::description::{FIRST_INPUT, HALF_WIDTH, OUTPUT, start_values};
+use crate::target::fmu::description::{FIRST_INPUT, HALF_WIDTH, MODEL_OUTPUT, OUTPUT, REACH, start_values};
+use crate::target::template::filled;
 
 /// The text of `fmi3.c` or `fmi2.c`.
 pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -> String {
     let functions = match version {
         FmiVersion::Three => include_str!("fmi3.c.txt"),
         FmiVersion::Two => include_str!("fmi2.c.txt"),
+    };
+    let name = subject.name();
+    let (header, unit) = match subject.inverse() {
+        None => (format!("{name}.h"), of_model(subject)),
+        Some(inverse) => (format!("{name}_inverse.h"), of_inverse(subject, inverse)),
     };
     let head = format!(
         "/* {file}: the Functional Mock-up Interface {number} around {name}.c. */
@@ -22,49 +29,81 @@ pub(super) fn wrapper(subject: &Subject<'_>, version: FmiVersion, token: &str) -
 #include <stdlib.h>
 #include <string.h>
 
-#include \"{name}.h\"
+#include \"{header}\"
 
 #define MODEL_TOKEN \"{token}\"
 #define FIRST_INPUT {FIRST_INPUT}
 #define INPUTS {inputs}
 #define OUTPUT {OUTPUT}
-{half_width}
-typedef {name}_model model_type;
-#define RESET {name}_reset
-#define COMMIT {name}_commit
 
 static const double start_values[INPUTS] = {{ {start} }};
-
-/* A trial step with the inputs at a point, and its slope. */
-static double trial_of_inputs(model_type *model, const double *inputs, double time_step, double *slope)
-{{
-{unused}    return {name}_trial_tangent(model{given}, slope);
-}}
 
 ",
         file = version.source(),
         number = version.number(),
-        name = subject.name(),
         inputs = start_values(subject).len(),
-        half_width = match subject.half_width() {
-            None => String::new(),
-            Some(_) => format!(
-                "#define HALF_WIDTH {HALF_WIDTH}\n#define READ_HALF_WIDTH {}_half_width\n",
-                subject.name()
-            ),
-        },
         start = start_values(subject).iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", "),
-        unused = match subject.description().arguments.contains(&Argument::TimeStep) {
-            true => "",
-            false => "    (void)time_step;\n",
-        },
-        given = given(subject),
     );
-    head + include_str!("instance.c.txt") + functions
+    head + &unit + include_str!("instance.c.txt") + functions
 }
 
-fn given(subject: &Subject<'_>) -> String {
-    let mut next = 0;
+/// The model as `instance.c.txt` uses it.
+fn of_model(subject: &Subject<'_>) -> String {
+    let name = subject.name();
+    format!(
+        "{half_width}typedef {name}_model model_type;
+#define RESET {name}_reset
+#define COMMIT {name}_commit
+
+/* A trial step with the inputs at a point, and its slope. */
+static double trial_of_inputs(model_type *model, const double *inputs, double time_step, double *slope)
+{{
+    (void)time_step;
+    return {name}_trial_tangent(model{given}, slope);
+}}
+
+",
+        half_width = match subject.half_width() {
+            None => String::new(),
+            Some(_) =>
+                format!("#define HALF_WIDTH {HALF_WIDTH}\n#define READ_HALF_WIDTH {name}_half_width\n"),
+        },
+        given = given(&subject.description().arguments, 0),
+    )
+}
+
+/// The inverse of the model as `instance.c.txt` uses it.
+fn of_inverse(subject: &Subject<'_>, inverse: &Inverse) -> String {
+    let name = subject.name();
+    let half_width = match subject.half_width() {
+        None => String::new(),
+        Some(_) => format!(
+            "#define HALF_WIDTH {HALF_WIDTH}
+#define READ_HALF_WIDTH(unit) \\
+    {name}_half_width((unit)->has_trial ? &(unit)->trial.model : &(unit)->committed.model)
+"
+        ),
+    };
+    let (low, high) = inverse.limits;
+    let values = [
+        ("NAME", name),
+        ("@start_input@", &format!("{:?}", 0f64.clamp(low, high))),
+        ("@given@", &(", inputs[0]".to_string() + &given(&inverse.arguments, 1))),
+    ];
+    format!(
+        "#define MODEL_OUTPUT {MODEL_OUTPUT}
+#define REACH {REACH}
+{half_width}#define model_type unit_type
+#define RESET reset_unit
+#define COMMIT commit_unit
+
+"
+    ) + &filled(include_str!("inverse.c.txt"), &values)
+}
+
+/// The arguments of a step behind the model, of which the first have been given.
+fn given(arguments: &[Argument], first: usize) -> String {
+    let mut next = first;
     let one = |argument: &Argument| match argument {
         Argument::TimeStep => ", time_step".to_string(),
         Argument::Input(_) | Argument::Rate => {
@@ -72,5 +111,5 @@ fn given(subject: &Subject<'_>) -> String {
             format!(", inputs[{}]", next - 1)
         }
     };
-    subject.description().arguments.iter().map(one).collect()
+    arguments.iter().map(one).collect()
 }

@@ -1,0 +1,94 @@
+//! Test vectors of an inverse.
+
+use hysid_core::model::{Inverse, Inverted, Model};
+
+use crate::description::Argument;
+use crate::vectors::{Action, within};
+
+/// Rows of the path.
+const ROWS: usize = 200;
+
+/// The state is saved before this row, and restored after [`REPEATED`] further ones, which are then repeated.
+const SAVED: usize = 90;
+const REPEATED: usize = 20;
+
+/// What is done with an inverse: reset, step, save or restore.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct InverseVector {
+    pub action: Action,
+    /// The wanted output and the further arguments of a step; otherwise empty.
+    pub arguments: Vec<f64>,
+    /// What a step gives.
+    pub given: Option<Inverted>,
+}
+
+/// Vectors of an inverse in the initial state. `arguments` are those behind the wanted output.
+pub(super) fn vectors(model: &Model, initial: Inverse<'_>, arguments: &[Argument]) -> Vec<InverseVector> {
+    let mut now = (initial.clone(), 0.0);
+    let mut saved = now.clone();
+    let mut all = Vec::new();
+    let mut act = |action: Action, row: usize| {
+        let mut vector = InverseVector { action, arguments: Vec::new(), given: None };
+        match action {
+            Action::Step => {
+                let (inverse, time) = &mut now;
+                let row = Row::of(model, row);
+                *time += row.time_step;
+                // Bounds were checked, and rows are finite.
+                vector.given = inverse.step(row.wanted, &row.others, *time).ok();
+                vector.arguments = vec![row.wanted];
+                vector.arguments.extend(arguments.iter().map(|argument| row.value(*argument)));
+            }
+            Action::Save => saved = now.clone(),
+            Action::Restore => now = saved.clone(),
+            _ => now = (initial.clone(), 0.0),
+        }
+        all.push(vector);
+    };
+    act(Action::Reset, 0);
+    for row in 0..ROWS {
+        if row == SAVED {
+            act(Action::Save, 0);
+        }
+        if row == SAVED + REPEATED {
+            act(Action::Restore, 0);
+            (SAVED..SAVED + REPEATED).for_each(|row| act(Action::Step, row));
+        }
+        act(Action::Step, row);
+    }
+    act(Action::Reset, 0);
+    act(Action::Step, 0);
+    all
+}
+
+/// A row of a path through the trained range of the output and a little beyond.
+struct Row {
+    wanted: f64,
+    others: Vec<f64>,
+    time_step: f64,
+}
+
+impl Row {
+    fn of(model: &Model, row: usize) -> Self {
+        let ranges = model.trained_ranges();
+        let t = row as f64;
+        let wave = 1.05 * ((0.23 * t).sin() * (0.6 + 0.4 * (0.031 * t).cos()) + 0.1 * (1.9 * t).sin());
+        // Single precision has these numbers too.
+        let single = |value: f64| f64::from(value as f32);
+        let other =
+            |(input, range): (usize, &(f64, f64))| single(within(*range, (0.11 * t + input as f64).sin()));
+        Self {
+            wanted: single(within(ranges.output, wave)),
+            others: ranges.inputs.iter().enumerate().skip(1).map(other).collect(),
+            // Sums and differences of such times are exact.
+            time_step: (10 + (row * 7919) % 13) as f64 / 1024.0,
+        }
+    }
+
+    fn value(&self, argument: Argument) -> f64 {
+        match argument {
+            Argument::Input(input) => self.others[input - 1],
+            _ => self.time_step,
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The part of the self-test that runs the inverse.
+
+use crate::inverse::Inverse;
+use crate::program::Precision;
+use crate::subject::Subject;
+use crate::target::c::inverse::literal;
+use crate::target::template::filled;
+
+/// The text of its function `test_inverse`.
+pub(super) fn inverse_test(subject: &Subject<'_>, inverse: &Inverse) -> String {
+    let precision = subject.precision();
+    let number = |value: f64| literal(precision, value);
+    let count = inverse.arguments.len() + 1;
+    let upper = subject.name().to_uppercase();
+    let rows: String = inverse
+        .vectors
+        .iter()
+        .map(|vector| {
+            let mut arguments: Vec<String> = vector.arguments.iter().map(|value| number(*value)).collect();
+            arguments.resize(count, number(0.0));
+            let (input, output, reach) = vector.given.map_or((0.0, 0.0, "REACHED".into()), |given| {
+                (given.input, given.output, given.reach.word().replace('-', "_").to_uppercase())
+            });
+            format!(
+                "    {{ {}, {{ {} }}, {}, {}, {upper}_{reach} }},\n",
+                vector.action.name().to_uppercase(),
+                arguments.join(", "),
+                number(input),
+                number(output)
+            )
+        })
+        .collect();
+    let (low, high) = subject.model().trained_ranges().output;
+    // Where several inputs give an output, single precision may find another one: from there on the paths differ.
+    let agrees = match precision {
+        Precision::Double => " && reaches == 0 && largest <= 1e-9",
+        Precision::Single => "",
+    };
+    let given = |count: usize| (1..count).map(|index| format!(", a[{index}]")).collect::<String>();
+    filled(
+        include_str!("inverse_test.c.txt"),
+        &[
+            ("NAME", subject.name()),
+            ("UPPER", &upper),
+            ("@count@", &count.to_string()),
+            ("@rows@", &rows),
+            ("@given@", &given(count)),
+            ("@of_model@", &given(subject.argument_names().len())),
+            ("@scale@", &number(0.5 * (high - low))),
+            ("@agrees@", agrees),
+        ],
+    )
+}
