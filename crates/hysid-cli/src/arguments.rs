@@ -318,6 +318,12 @@ pub struct Fit {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
+    /// Exchange the first input and the output, to fit a model of the inverse
+    ///
+    /// The model then gives the input for a wanted output, by `hysid simulate`. Rows without output before the first and
+    /// behind the last one are left out. See also `hysid invert`, which inverts a model of the system itself.
+    #[arg(long, help_heading = "Columns", hide_short_help = true)]
+    pub inverse: bool,
     /// The model and its training.
     #[command(flatten)]
     pub model: ModelOptions,

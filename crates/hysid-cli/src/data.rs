@@ -67,6 +67,25 @@ impl Data {
         Ok(Self { set, roles, source })
     }
 
+    /// The data with the first input and the output exchanged. A rate that a column gives is that of the input.
+    pub fn exchanged(mut self) -> Result<Self> {
+        if self.roles.rate.is_some() {
+            return Err(Usage(
+                "--inverse: the rate would be that of the output: use a method, not a column".into(),
+            )
+            .into());
+        }
+        let exchanged = self.set.exchanged().map_err(|error| self.explain(error))?;
+        for (place, record) in self.source.places.iter_mut().zip(self.set.records()) {
+            // Rows without output at the ends are gone.
+            let rows = record.measured_rows().unwrap_or_default();
+            place.rows = place.rows.start + rows.start..place.rows.start + rows.end;
+        }
+        self.set = exchanged;
+        std::mem::swap(&mut self.roles.inputs[0], &mut self.roles.output);
+        Ok(self)
+    }
+
     /// Puts an error of the library in the user's words: file, line, column.
     pub fn explain(&self, error: hysid::Error) -> anyhow::Error {
         self.source.explain(error, &self.roles)

@@ -229,6 +229,9 @@ pub enum DataProblem {
     /// The output is blank throughout.
     #[error("is blank in every row: there is nothing to compare with")]
     NothingToScore,
+    /// An output is blank between others, where it becomes an input.
+    #[error("is blank here: the output is the input of an inverse, which needs a value in every row")]
+    BlankWithin,
     /// Too few rows with an output.
     #[error("has only {found} rows with an output: at least {needed} are needed to identify a model")]
     TooFewRows {

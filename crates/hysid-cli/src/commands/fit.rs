@@ -50,6 +50,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
     let data = Data::new(tables, roles)?;
+    let data = if arguments.inverse { data.exchanged()? } else { data };
     warn_of_ignored(chosen);
     let work = Work {
         request: &request,

@@ -4,6 +4,7 @@
 //! errors. Such rows are *not scored*; the others are *scored*.
 
 mod copies;
+mod exchanged;
 mod excitation;
 mod fingerprint;
 mod thinning;
