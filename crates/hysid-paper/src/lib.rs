@@ -30,6 +30,7 @@ mod conditions;
 mod example;
 mod experiment;
 mod fitting;
+mod inverse;
 mod nds;
 mod spread;
 mod table2;

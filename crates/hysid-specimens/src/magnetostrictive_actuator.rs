@@ -104,6 +104,23 @@ impl MagnetostrictiveActuator {
     }
 }
 
+/// The displacements in µm at times in s, from rest at the first current, where the current in A is a straight line
+/// between them.
+pub fn run(time: &[f64], current: &[f64]) -> Vec<f64> {
+    let Some(&first) = current.first() else { return Vec::new() };
+    let mut actuator = MagnetostrictiveActuator::designed(first);
+    let mut displacement = vec![actuator.displacement];
+    for (times, currents) in time.windows(2).zip(current.windows(2)) {
+        let row_time = times[1] - times[0];
+        let steps = (row_time / LONGEST_STEP).ceil().max(1.0);
+        for step in 1..=steps as usize {
+            actuator.step(currents[0] + (currents[1] - currents[0]) * step as f64 / steps, row_time / steps);
+        }
+        displacement.push(actuator.displacement);
+    }
+    displacement
+}
+
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "magnetostrictive-actuator",
     example: "example 7",

@@ -8,7 +8,8 @@
 //! `u` is the voltage in V, `y` the displacement in µm, `f` the frequency in Hz. The law is known for a
 //! steady sine only.
 //!
-//! *Published*: the form of the law (Gu and Zhu). *Designed*: all values; theirs are not published.
+//! *Published*: the form of the law (Gu and Zhu). *Designed*: all values; theirs are not published. Designed too is the
+//! response to other periodic voltages: that of the sum of its sines, each by itself ([`periodic_response`]).
 
 use std::f64::consts::{PI, TAU};
 
@@ -65,6 +66,35 @@ impl PiezoActuator {
     }
 }
 
+/// The displacements in µm at equally spaced times of one period of a voltage in V; `period` is in s. Each sine of the
+/// voltage has the response of theory.md (6.18), its amplitude and lag by themselves. Designed: the law is published for
+/// one sine.
+pub fn periodic_response(voltage: &[f64], period: f64) -> Vec<f64> {
+    let rows = voltage.len();
+    let turns: Vec<(f64, f64)> = (0..rows).map(|row| (TAU * row as f64 / rows as f64).sin_cos()).collect();
+    let mean = voltage.iter().sum::<f64>() / rows.max(1) as f64;
+    let mut displacement = vec![DISPLACEMENT + (mean - VOLTAGE) * DISPLACEMENT / VOLTAGE; rows];
+    for order in 1..=rows / 2 {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (row, voltage) in voltage.iter().enumerate() {
+            let (s, c) = turns[order * row % rows];
+            sine += voltage * s;
+            cosine += voltage * c;
+        }
+        let share = if 2 * order == rows { 1.0 } else { 2.0 } / rows as f64;
+        let actuator = PiezoActuator { frequency: order as f64 / period };
+        let gain = share * actuator.amplitude().max(0.0) / VOLTAGE;
+        let (lag_sine, lag_cosine) = actuator.lag().sin_cos();
+        for (row, displacement) in displacement.iter_mut().enumerate() {
+            let (s, c) = turns[order * row % rows];
+            let lagging_sine = s * lag_cosine - c * lag_sine;
+            let lagging_cosine = c * lag_cosine + s * lag_sine;
+            *displacement += gain * (sine * lagging_sine + cosine * lagging_cosine);
+        }
+    }
+    displacement
+}
+
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "piezo-actuator",
     example: "example 6",
@@ -89,4 +119,19 @@ fn sine(frequency: f64) -> Result<Record> {
     let mut displacement: Vec<f64> = time.iter().map(|&t| actuator.displacement(t)).collect();
     displacement[..ROWS].fill(f64::NAN);
     Record::new(format!("{frequency} Hz"), vec![voltage], displacement)?.with_time(time)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_response_to_a_sine_is_the_law() {
+        let actuator = PiezoActuator { frequency: 50.0 };
+        let time: Vec<f64> = (0..200).map(|row| 0.04 * f64::from(row) / 200.0).collect();
+        let voltage: Vec<f64> = time.iter().map(|&t| actuator.voltage(t)).collect();
+        for (found, &t) in periodic_response(&voltage, 0.04).iter().zip(&time) {
+            assert!((found - actuator.displacement(t)).abs() < 1e-10);
+        }
+    }
 }

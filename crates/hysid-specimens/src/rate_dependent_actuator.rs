@@ -67,6 +67,20 @@ impl RateDependentActuator {
     }
 }
 
+/// The displacements in µm of the virgin actuator at times in s, where the voltage in V is a straight line between them.
+pub fn run(time: &[f64], voltage: &[f64]) -> Vec<f64> {
+    let mut actuator = RateDependentActuator::designed();
+    let mut last: Option<(f64, f64)> = None;
+    let mut step = |(&t, &v): (&f64, &f64)| {
+        let (before, from) = last.replace((t, v)).unwrap_or((t - 1.0, v));
+        let rate = (v - from) / (t - before);
+        let parts = STEPS_PER_ROW as f64;
+        let on_the_way = |part: usize| from + (v - from) * (part as f64 / parts);
+        (1..=STEPS_PER_ROW).map(|part| actuator.step(on_the_way(part), rate)).last().unwrap_or(f64::NAN)
+    };
+    time.iter().zip(voltage).map(&mut step).collect()
+}
+
 pub(super) static SPECIMEN: Specimen = ACTUATOR;
 
 const ACTUATOR: Specimen = Specimen {
