@@ -8,10 +8,10 @@
 
 #define ROWS 1000
 #define STEP 0.01 /* sampling interval in s */
-/* Gains in A/um. The slope of the actuator is at most 64 um/A, and the controller has the error of the sample before:
- * the loop is stable while 64 (2 KP + KI) < 2. */
-#define KP 0.004
-#define KI 0.005
+/* Gains in A/um: of those with which the loop is stable at twice the largest slope of the actuator, 64 um/A, the best
+ * for the PI controller alone. */
+#define KP 0.002
+#define KI 0.007
 
 typedef struct {
     actuator_inverse inverse;
@@ -26,8 +26,8 @@ static void controller_reset(controller *c, int with_inverse)
     c->with_inverse = with_inverse;
 }
 
-/* The current for the next sample, called once in each sampling interval. `error` is the last reference minus the last
- * measurement. */
+/* The current for the next sample, called once in each sampling interval. `error` is the last measured
+ * one: measurement and reference of the same sample. */
 static double controller_step(controller *c, double wanted, double error)
 {
     const double sum = c->integral + KI * error;
@@ -50,14 +50,15 @@ static double track(int with_inverse)
     const double turn = 6.283185307179586;
     static actuator_model actuator;
     static controller c;
-    double error = 0.0, squares = 0.0;
+    double error = 0.0, late = 0.0, squares = 0.0;
     int k;
     actuator_reset(&actuator);
     controller_reset(&c, with_inverse);
     for (k = 0; k < ROWS; k++) {
         const double time = STEP * k;
         const double wanted = 30.0 + 19.0 * sin(turn * 0.5 * time) + 9.0 * sin(turn * 1.3 * time);
-        const double current = controller_step(&c, wanted, error);
+        const double current = controller_step(&c, wanted, late);
+        late = error; /* the measurement arrives one sample late */
         error = wanted - (actuator_step(&actuator, current) + 3.0 * (1.0 - exp(-time / 2.0)));
         squares += error * error;
     }
