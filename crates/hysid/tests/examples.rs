@@ -7,6 +7,9 @@ use std::path::Path;
 #[path = "../../../examples/classical_law.rs"]
 mod classical_law;
 #[allow(dead_code)]
+#[path = "../../../examples/closed_loop.rs"]
+mod closed_loop;
+#[allow(dead_code)]
 #[path = "../../../examples/compare.rs"]
 mod compare;
 #[allow(dead_code)]
@@ -35,6 +38,11 @@ fn assert_prints(name: &str, printed: hysid::Result<String>) {
 #[test]
 fn a_law_with_known_parameters() {
     assert_prints("classical_law", classical_law::report());
+}
+
+#[test]
+fn a_closed_loop() {
+    assert_prints("closed_loop", closed_loop::report());
 }
 
 #[test]

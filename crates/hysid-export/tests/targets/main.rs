@@ -5,6 +5,7 @@ mod models;
 
 mod c;
 mod case;
+mod closed_loop;
 mod fmu;
 mod inverse;
 mod inverse_case;
