@@ -23,6 +23,9 @@ use specimens::{ACTUATORS, Actuator, ROWS};
 /// Share of the trained output range that a wanted output covers, about its middle. Designed.
 const SHARE: f64 = 0.8;
 
+/// Epochs of the network of a quick run.
+const QUICK_EPOCHS: usize = 20;
+
 /// Folds by which the classical model is chosen.
 const FOLDS: usize = 5;
 
@@ -144,14 +147,15 @@ fn compensated(
     Ok(Compensated { actuator, classical: (name, error), range: high - low, courses })
 }
 
-/// `auto`, with less effort in a quick run.
+/// `auto`; a network of few epochs in a quick run.
 fn default_model(data: &Dataset, settings: Settings) -> FitSpec {
-    let model = "auto".parse::<ModelName>().expect("a model");
+    let name = if settings.quick { "xpnn+" } else { "auto" };
+    let model = name.parse::<ModelName>().expect("a model");
     let rate = RateChoice::Auto.method(model, data.has_time());
     match FitSpec::of(model, rate, settings.seed) {
-        FitSpec::Auto(mut options) if settings.quick => {
-            (options.starts, options.epochs) = (1, Some(2));
-            FitSpec::Auto(options)
+        FitSpec::Network(mut options) => {
+            (options.starts, options.epochs) = (1, QUICK_EPOCHS);
+            FitSpec::Network(options)
         }
         spec => spec,
     }
@@ -164,7 +168,8 @@ fn best_classical(
     observer: &dyn Observer,
 ) -> Result<(Model, String, f64)> {
     let mut best: Option<(FitSpec, f64)> = None;
-    for model in CLASSICAL {
+    let models = if settings.quick { &CLASSICAL[..2] } else { &CLASSICAL[..] };
+    for &model in models {
         let name = ModelName::Classical(model);
         let rate = RateChoice::Auto.method(name, train.has_time());
         let options = ClassicalOptions { rate, seed: settings.seed, ..ClassicalOptions::of(model) };
