@@ -71,6 +71,20 @@ struct Tracking {
     output: Vec<f64>,
 }
 
+/// The input of a wanted output.
+struct Drive {
+    input: Vec<f64>,
+    /// See [`Tracking`].
+    of_model: Option<(f64, f64)>,
+    preview: f64,
+}
+
+impl Drive {
+    fn without_search(input: Vec<f64>) -> Self {
+        Self { input, of_model: None, preview: 0.0 }
+    }
+}
+
 /// One wanted output of one actuator.
 struct Course {
     shape: &'static str,
@@ -126,11 +140,11 @@ fn compensated(
         let reference = Reference { wanted: &wanted, others: &[], time: Some(&time) };
         let limits = ours.trained_ranges().inputs[0];
         let track = |way: Way| -> Result<Tracking> {
-            let (input, of_model, preview) = match way {
-                Way::Line => (line(&train, &wanted, limits), None, 0.0),
+            let Drive { input, of_model, preview } = match way {
+                Way::Line => Drive::without_search(line(&train, &wanted, limits)),
                 Way::Classical => inverted(&classical, &reference)?,
                 Way::Inverse => inverted(&ours, &reference)?,
-                Way::Direct => (simulated(&direct, &reference, limits)?, None, 0.0),
+                Way::Direct => Drive::without_search(simulated(&direct, &reference, limits)?),
             };
             let output = (actuator.response)(&time, &input)[ROWS..].to_vec();
             Ok(Tracking { way, rms: rms(&output, &wanted[ROWS..]), of_model, preview, output })
@@ -209,14 +223,14 @@ fn line(train: &Dataset, wanted: &[f64], (low, high): (f64, f64)) -> Vec<f64> {
     wanted.iter().map(|wanted| (mean_x + (wanted - mean_y) / slope).clamp(low, high)).collect()
 }
 
-/// The inputs by the inverse of a model; its own deviation and the share of rows that it reached; the preview.
-fn inverted(model: &Model, reference: &Reference<'_>) -> Result<(Vec<f64>, Option<(f64, f64)>, f64)> {
+/// The inputs by the inverse of a model.
+fn inverted(model: &Model, reference: &Reference<'_>) -> Result<Drive> {
     let inverse = model.inverse();
     let preview = inverse.best_preview(reference)?;
     let found = inverse.preview(preview)?.run(reference)?;
     let reached = found.count(hysid::Reach::Reached) as f64 / found.input.len() as f64;
-    let of_model = (rms(&found.output[ROWS..], &reference.wanted[ROWS..]), reached);
-    Ok((found.input, Some(of_model), preview))
+    let of_model = Some((rms(&found.output[ROWS..], &reference.wanted[ROWS..]), reached));
+    Ok(Drive { input: found.input, of_model, preview })
 }
 
 /// The outputs of a model of the inverse, within the trained range of the input.
