@@ -209,8 +209,8 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
     }
     if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
         all.push(format!(
-            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: the model \
-             cannot follow this reference"
+            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: within \
+             these limits the model cannot follow this reference"
         ));
     }
     all

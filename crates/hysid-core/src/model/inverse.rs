@@ -240,7 +240,7 @@ impl<'m> Inverse<'m> {
     /// unchanged.
     pub fn step(&mut self, wanted: f64, others: &[f64], time: f64) -> Result<Inverted> {
         if !wanted.is_finite() {
-            return Err(SampleError::NotFinite(wanted).into());
+            return Err(SampleError::Wanted(wanted).into());
         }
         let elapsed = self.elapsed(time)?;
         // The first sample has no path that leads to it.
