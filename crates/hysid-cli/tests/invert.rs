@@ -158,7 +158,7 @@ fn further_inputs_are_read_from_the_reference() {
     let reached = numbers(&bench, "drive.csv", "F_kN_reached");
     let simulated = numbers(&bench, "simulated.csv", "F_kN_model");
     assert!(largest_difference(&reached, &simulated) <= 1e-9);
-    bench.put("without.csv", "F_kN\n1\n2\n");
+    bench.put("without.csv", "t_s,F_kN\n0,1\n1,2\n");
     refused(&bench, "two.json without.csv", 1, "without.csv: there is no column \"T_C\"");
 }
 
@@ -202,7 +202,7 @@ fn a_reference_in_another_unit_is_converted() {
 fn a_band_gives_the_inputs_whose_band_contains_the_wanted_output() {
     let bench = with_model();
     put_wanted(&bench);
-    refused(&bench, "stage.json wanted.csv --band 0.9", 2, "band");
+    refused(&bench, "stage.json wanted.csv --band 0.9", 1, "this model has no prediction band");
     let fit = "fit train.csv --model xpnn --members 3 --starts 3 --epochs 20 -o many.json --no-report";
     done(&bench, fit);
     done(&bench, "invert many.json wanted.csv -o drive.csv --band 0.9");
@@ -231,8 +231,8 @@ fn the_result_as_json_and_the_table_on_stdout() {
             "extrapolated",
             "not_reached",
             "previews",
-            "records",
             "reached",
+            "records",
             "report",
             "rows"
         ]
@@ -295,18 +295,20 @@ fn bad_references_are_refused_with_their_place() {
     bench.put("none.csv", "t_s,F_kN\n");
     bench.put("empty.csv", "");
     bench.put("taken.csv", "F_kN,reach\n1,far\n2,far\n");
-    bench.put("both.csv", "F_kN,x_mm,x_mm_inverse\n1,1,1\n2,2,2\n");
+    bench.put("taken_too.csv", "F_kN,x_mm,x_mm_inverse\n1,1,1\n2,2,2\n");
+    bench.put("both.csv", "F_kN,x_mm\n1,1\n2,2\n");
     for (arguments, status, text) in [
         ("stage.json blank.csv -o d.csv", 1, "blank.csv, line 3, column \"F_kN\": the cell is empty"),
         ("stage.json word.csv -o d.csv", 1, "word.csv, line 3, column \"F_kN\""),
         ("stage.json other.csv -o d.csv", 1, "other.csv: there is no column \"F_kN\", the model's output"),
         ("stage.json unsorted.csv -o d.csv --slew 1", 1, "unsorted.csv, line 4"),
+        ("stage.json both.csv -o d.csv --slew 1", 1, "both.csv: there is no column of time, which a slew limit"),
         ("stage.json none.csv -o d.csv", 1, "none.csv"),
         ("stage.json empty.csv -o d.csv", 1, "empty.csv"),
         ("stage.json missing.csv -o d.csv", 1, "missing.csv"),
         ("missing.json one.csv -o d.csv", 1, "missing.json"),
         ("stage.json taken.csv -o d.csv", 1, "taken.csv: there is already a column \"reach\""),
-        ("stage.json both.csv -o d.csv", 1, "both.csv: there is already a column \"x_mm_inverse\""),
+        ("stage.json taken_too.csv -o d.csv", 1, "taken_too.csv: there is already a column \"x_mm_inverse\""),
         ("stage.json one.csv --json", 2, "--json prints the result in the place of the table"),
         ("stage.json one.csv --limits 3:1", 2, "the low limit 3 is not below the high one"),
         ("stage.json one.csv --slew 0", 2, "a number above 0 is needed"),
