@@ -119,6 +119,7 @@ fn limits_and_a_slew_limit_bound_the_input_and_the_reason_is_given() {
     let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --slew 0.3");
     let drive = numbers(&bench, "drive.csv", "x_mm");
     assert!(drive.windows(2).all(|pair| (pair[1] - pair[0]).abs() <= 0.15 + 1e-12));
+    assert!(ran.stderr.contains("at most 0.3 mm/s\n"), "{}", ran.stderr);
     let slewing = column(&bench.text("drive.csv"), "reach", ',').iter().filter(|cell| *cell == "slew").count();
     assert!(slewing > 0 && ran.stderr.contains(&format!("slew {slewing}")), "{}", ran.stderr);
 }

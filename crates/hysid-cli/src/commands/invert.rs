@@ -171,7 +171,12 @@ fn understood(
         ),
     ];
     if let Some(slew) = arguments.slew {
-        lines.push(("slew", format!("at most {:.4} per unit of time", Significant(slew))));
+        let time = names.time.as_ref().or(roles.time.as_ref());
+        let per = match (unit::of_column(input), time.and_then(|name| unit::of_column(name))) {
+            (Some(unit), Some(time)) => format!("{}/{}", clipped(&unit), clipped(&time)),
+            _ => "per unit of time".into(),
+        };
+        lines.push(("slew", format!("at most {:.4} {per}", Significant(slew))));
     }
     if model.needs_time() || inverted.previews.iter().any(|preview| *preview > 0.0) {
         let time = names.time.as_deref().unwrap_or("time");

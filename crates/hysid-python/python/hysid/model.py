@@ -754,11 +754,17 @@ class Model:
             Times of the rows, for a model that needs them, a slew limit or a preview.
         others : array of shape (rows,) or (rows, inputs - 1), optional
             The inputs of the model after the first one.
-        limits, slew, band, of_ten
-            As of `inverse`.
+        limits : tuple of two floats, optional
+            Lowest and highest first input; by default those of the training data.
+        slew : float, optional
+            Largest change of the first input per unit of time; by default there is none.
         preview : float or "auto"
             Time by which the search looks ahead. ``"auto"`` is the time with which the model follows the wanted output
             best, as of `Inverse.best_preview`.
+        band : float, optional
+            Also give the inputs whose prediction band of this probability (0.5 to 0.99) contains the wanted output.
+        of_ten : int
+            As of `inverse`.
         same_units : bool
             As of `simulate`.
 
@@ -777,10 +783,11 @@ class Model:
         --------
         >>> import hysid
         >>> train, test = hysid.specimen("terfenol-rod").data()
-        >>> model = hysid.fit(train.x, train.y, model="modified-prandtl-ishlinskii")
-        >>> drive = model.invert(0.5 * test.y)
-        >>> again = model.simulate(drive.input)
-        >>> bool(abs(again - 0.5 * test.y)[drive.reached].max() < 1e-9 * abs(test.y).max())
+        >>> model = hysid.fit(train.x, train.y, model="prandtl-ishlinskii")
+        >>> wanted = 10 + 0.5 * train.y
+        >>> drive = model.invert(wanted)
+        >>> simulated = model.simulate(drive.input)
+        >>> bool(abs(simulated - wanted)[drive.reached].max() < 1e-9 * wanted.max())
         True
         """
         if isinstance(preview, str) and preview != "auto":
