@@ -180,11 +180,17 @@ fn understood(
     }
     if model.needs_time() || inverted.previews.iter().any(|preview| *preview > 0.0) {
         let time = names.time.as_deref().unwrap_or("time");
-        let mut all: Vec<String> =
-            inverted.previews.iter().map(|&preview| with_unit(preview, time)).collect();
+        let mut all = inverted.previews.clone();
+        all.sort_by(f64::total_cmp);
         all.dedup();
         let chosen = if arguments.preview == Preview::Auto { " (chosen; change: --preview)" } else { "" };
-        let shown = if all.len() > 4 { format!("{} to others", all[0]) } else { all.join(", ") };
+        let shown = match all[..] {
+            [least, .., largest] => {
+                let (least, largest) = (Significant(least), with_unit(largest, time));
+                format!("{least:.4} to {largest}, by record")
+            }
+            _ => all.iter().map(|&preview| with_unit(preview, time)).collect(),
+        };
         lines.push(("preview", format!("{shown}{chosen}")));
     }
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
@@ -215,7 +221,7 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
     if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
         all.push(format!(
             "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: within \
-             these limits the model cannot follow this reference"
+             these limits, and with this preview, the model does not follow the reference"
         ));
     }
     all

@@ -168,8 +168,10 @@ fn drive(panel: &Panel, label: &str, inversion: &Inversion, area: Option<Curve>)
     let line: Vec<Point> = (0..inversion.input.len()).map(place).collect();
     let line = Curve::new(thin(&line, panel.points), Colour::Input, 1.2);
     let curves = area.into_iter().chain([line, Curve::dots(dots, Colour::Error, 2.5)]).collect();
-    let description =
-        format!("{label} over time, and the rows that do not reach the wanted output, record {}", panel.record);
+    let description = format!(
+        "{label} over time, and the rows that do not reach the wanted output, record {}",
+        panel.record
+    );
     let chart = Chart::new(description, &panel.time_label, label, curves);
     Part::chart(chart.with_height(200.0).with_legend(legend))
 }
