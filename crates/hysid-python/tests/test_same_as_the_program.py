@@ -142,10 +142,10 @@ def test_the_inverse_of_a_record_is_the_program_s(program, tmp_path):
     done = program("invert", "model.json", "wanted.csv", "-o", "drive.csv", "--json", "--slew=1e4", folder=tmp_path)
     assert done.returncode == 0, done.stderr
     found = model.invert(wanted, time, slew=1e4)
-    drive = pandas.read_csv(tmp_path / "drive.csv", float_precision="round_trip")
+    drive = pandas.read_csv(tmp_path / "drive.csv", dtype=str)
     assert json.loads(done.stdout)["previews"] == [found.preview]
-    assert np.array_equal(drive[names["input"]], found.input)
-    assert np.array_equal(drive[f"{names['output']}_reached"], found.output)
+    assert np.array_equal(drive[names["input"]].astype(float), found.input)
+    assert np.array_equal(drive[f"{names['output']}_reached"].astype(float), found.output)
     assert np.array_equal(drive["reach"], found.reach)
     assert np.array_equal(drive["extrapolated"] == "yes", found.extrapolated)
 

@@ -125,11 +125,9 @@ impl Reference<'_> {
             _ => 0.0,
         };
         let shortest = longest / LONGEST / time.len().max(2) as f64;
-        let exponents = match longest > 0.0 && longest.is_finite() && shortest > 0.0 {
-            true => shortest.log2().ceil() as i32..=longest.log2().floor() as i32,
-            false => 1..=0,
-        };
-        exponents.map(|exponent| f64::from(exponent).exp2())
+        let exponents = (longest > 0.0 && longest.is_finite() && shortest > 0.0)
+            .then(|| shortest.log2().ceil() as i32..=longest.log2().floor() as i32);
+        exponents.into_iter().flatten().map(|exponent| f64::from(exponent).exp2())
     }
 }
 
