@@ -163,8 +163,8 @@ impl Inverse<'_> {
     /// As [`Inverse::step`], with the row; columns of other lengths. No row has been taken if a length or a wanted output
     /// is invalid, otherwise those before the invalid one.
     pub fn run(&mut self, reference: &Reference<'_>) -> Result<Inversion> {
-        reference.check()?;
         self.check_time(reference)?;
+        reference.check()?;
         let mut ahead = Ahead { reference: *reference, row: 0 };
         let mut inversion = Inversion::default();
         let mut others = vec![0.0; reference.others.len()];
