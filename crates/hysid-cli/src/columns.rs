@@ -170,9 +170,20 @@ impl Roles {
                 .map(|name| require(table, name, "--input").map(|()| name.clone()))
                 .collect::<Result<_>>()?
         };
-        let time = match needs_time {
-            true => Some(find(&options.time, names.time.as_deref().unwrap_or("t"), "time", "--time")?),
-            false => None,
+        let time = match (needs_time, &names.time) {
+            (false, _) => None,
+            (true, Some(trained)) => Some(find(&options.time, trained, "time", "--time")?),
+            (true, None) if options.time.is_some() => Some(find(&options.time, "t", "time", "--time")?),
+            // Trained without time: a slew limit or a preview needs it.
+            (true, None) => match table.header.iter().find(|name| unit::is_time(name)) {
+                Some(name) => Some(name.clone()),
+                None => bail!(
+                    "{}: there is no column of time, which a slew limit or a preview needs (columns: {}; name one with \
+                     --time)",
+                    table.file,
+                    listed(&table.header)
+                ),
+            },
         };
         let rate = match &names.rate {
             Some(trained) if model.rate() == Some(RateMethod::Given) => {

@@ -275,6 +275,9 @@ pub enum SampleError {
     /// NaN or infinity.
     #[error("an input or its rate is {0}, not a finite number")]
     NotFinite(f64),
+    /// A wanted output of NaN or infinity.
+    #[error("the wanted output is {0}, not a finite number")]
+    Wanted(f64),
 }
 
 /// A bound of an [`Inverse`](crate::model::Inverse) that cannot be used, or a row that it cannot take.

@@ -1,18 +1,25 @@
 //! The inverse of a model.
 
-use hysid::model;
+use hysid::model::{self, BandLevel};
+use hysid::{Reach, Reference};
 use numpy::{IntoPyArray, PyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::data::Column;
+use crate::data::{Column, NewColumn};
 use crate::failure::refused;
 
-/// Input, output, reach and trials of a sample.
-type Sample = (f64, f64, &'static str, usize);
+/// Input, output, reach, whether it is extrapolated, lowest and highest input of the band, and trials of a sample.
+type Sample = (f64, f64, &'static str, bool, Option<f64>, Option<f64>, usize);
 
-/// Inputs, outputs and reaches of rows.
-type Rows<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Vec<&'static str>);
+/// The same of rows, without trials.
+type Rows<'py> = (
+    NewColumn<'py>,
+    NewColumn<'py>,
+    Vec<&'static str>,
+    Bound<'py, PyArray1<bool>>,
+    Option<NewColumn<'py>>,
+    Option<NewColumn<'py>>,
+);
 
 /// The inverse of a model, sample by sample.
 #[pyclass(module = "hysid._hysid")]
@@ -20,18 +27,47 @@ pub struct Inverse {
     inverse: model::Inverse<'static>,
 }
 
+/// What bounds an inverse.
+pub struct Bounds {
+    /// Lowest and highest input.
+    pub limits: Option<(f64, f64)>,
+    /// Largest change of the input in a unit of time.
+    pub slew: Option<f64>,
+    /// How far the search looks ahead.
+    pub preview: f64,
+    /// Probability of the band, and data sets of ten.
+    pub band: Option<(f64, usize)>,
+}
+
 impl Inverse {
-    /// With limits and a largest rate of the input, if they are given.
-    pub fn of(model: model::Model, limits: Option<(f64, f64)>, slew: Option<f64>) -> hysid::Result<Self> {
-        let mut inverse = model.into_inverse();
-        if let Some((low, high)) = limits {
+    /// With these bounds.
+    pub fn of(model: model::Model, bounds: &Bounds) -> hysid::Result<Self> {
+        let mut inverse = model.into_inverse().preview(bounds.preview)?;
+        if let Some((low, high)) = bounds.limits {
             inverse = inverse.limits(low, high)?;
         }
-        if let Some(rate) = slew {
+        if let Some(rate) = bounds.slew {
             inverse = inverse.slew(rate)?;
+        }
+        if let Some((probability, of_ten)) = bounds.band {
+            inverse = inverse.band(BandLevel { probability, of_ten })?;
         }
         Ok(Self { inverse })
     }
+}
+
+/// Runs something over the rows of a reference, whose columns are read where they lie.
+fn along<T: Send>(
+    py: Python<'_>,
+    y: &Column<'_>,
+    time: Option<&Column<'_>>,
+    others: &[Column<'_>],
+    run: impl FnOnce(&Reference<'_>) -> hysid::Result<T> + Send,
+) -> PyResult<T> {
+    let columns = others.iter().map(|column| Ok(column.as_slice()?)).collect::<PyResult<Vec<_>>>()?;
+    let time = time.map(|time| time.as_slice()).transpose()?;
+    let reference = Reference { wanted: y.as_slice()?, others: &columns, time };
+    py.detach(|| run(&reference)).map_err(refused)
 }
 
 #[pymethods]
@@ -39,38 +75,41 @@ impl Inverse {
     /// Takes one sample.
     fn step(&mut self, y: f64, time: Option<f64>, others: Vec<f64>) -> PyResult<Sample> {
         let found = self.inverse.step(y, &others, time.unwrap_or(f64::NAN)).map_err(refused)?;
-        Ok((found.input, found.output, found.reach.word(), found.trials))
+        let (low, high) = found.band.unzip();
+        let reach = found.reach.word();
+        Ok((found.input, found.output, reach, found.is_extrapolated, low, high, found.trials))
     }
 
-    /// Takes rows; the other inputs come row by row.
+    /// Takes rows.
     fn run<'py>(
         &mut self,
         py: Python<'py>,
         y: Column<'py>,
         time: Option<Column<'py>>,
-        others: Column<'py>,
+        others: Vec<Column<'py>>,
     ) -> PyResult<Rows<'py>> {
-        let (y, others) = (y.as_slice()?, others.as_slice()?);
-        let time = time.as_ref().map(|time| time.as_slice()).transpose()?;
-        let width = others.len() / y.len().max(1);
         let inverse = &mut self.inverse;
-        let found = py.detach(|| {
-            y.iter()
-                .enumerate()
-                .map(|(row, &y)| {
-                    let others = &others[row * width..(row + 1) * width];
-                    inverse
-                        .step(y, others, time.map_or(f64::NAN, |time| time[row]))
-                        .map_err(|error| format!("row {row}: {error}"))
-                })
-                .collect::<Result<Vec<_>, String>>()
-        });
-        let found = found.map_err(PyValueError::new_err)?;
-        let column = |value: fn(&model::Inverted) -> f64| {
-            found.iter().map(value).collect::<Vec<f64>>().into_pyarray(py)
-        };
-        let reach = found.iter().map(|found| found.reach.word()).collect();
-        Ok((column(|found| found.input), column(|found| found.output), reach))
+        let found = along(py, &y, time.as_ref(), &others, |reference| inverse.run(reference))?;
+        let edge = |values: Vec<f64>| (!values.is_empty()).then(|| values.into_pyarray(py));
+        Ok((
+            found.input.into_pyarray(py),
+            found.output.into_pyarray(py),
+            found.reach.into_iter().map(Reach::word).collect(),
+            found.is_extrapolated.into_pyarray(py),
+            edge(found.low),
+            edge(found.high),
+        ))
+    }
+
+    /// The best preview for rows.
+    fn best_preview(
+        &self,
+        py: Python<'_>,
+        y: Column<'_>,
+        time: Option<Column<'_>>,
+        others: Vec<Column<'_>>,
+    ) -> PyResult<f64> {
+        along(py, &y, time.as_ref(), &others, |reference| self.inverse.best_preview(reference))
     }
 
     /// Goes back to the initial state of the model.

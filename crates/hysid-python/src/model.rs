@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use crate::data::{Column, Dataset, NewColumn};
 use crate::failure::{not_written, refused};
-use crate::inverse::Inverse;
+use crate::inverse::{Bounds, Inverse};
 
 /// A fitted model.
 #[pyclass(frozen, module = "hysid._hysid")]
@@ -201,8 +201,15 @@ impl Model {
     }
 
     /// Its inverse, from its initial state.
-    fn inverse(&self, limits: Option<(f64, f64)>, slew: Option<f64>) -> PyResult<Inverse> {
-        Inverse::of(model::Model::clone(&self.model), limits, slew).map_err(refused)
+    fn inverse(
+        &self,
+        limits: Option<(f64, f64)>,
+        slew: Option<f64>,
+        preview: f64,
+        band: Option<(f64, usize)>,
+    ) -> PyResult<Inverse> {
+        let bounds = Bounds { limits, slew, preview, band };
+        Inverse::of(model::Model::clone(&self.model), &bounds).map_err(refused)
     }
 }
 

@@ -449,5 +449,112 @@ def test_an_inverse_names_what_it_cannot_reach_and_refuses_what_is_invalid(quick
         quick_model.inverse(slew=0.0)
     with pytest.raises(ValueError, match="time"):
         inverse.run(np.zeros(3), time=np.zeros(2))
-    with pytest.raises(ValueError, match="row 1"):
+    with pytest.raises(ValueError, match="row 2: the wanted output is inf"):
         inverse.run(np.array([0.0, np.inf]))
+
+
+def test_the_inverse_of_a_record_goes_straight_into_a_simulation(quick_model, spring_and_slider):
+    wanted = 0.4 * spring_and_slider[1]
+    found = quick_model.invert(wanted)
+    assert (found.preview, found.low, found.high) == (0.0, None, None)
+    assert found.reached.mean() > 0.95 and not found.extrapolated.any()
+    simulated = quick_model.simulate(found.input)
+    assert np.abs(simulated - found.output).max() <= 1e-9 * np.ptp(wanted)
+    assert np.abs(simulated - wanted)[found.reached].max() <= 1e-9 * np.ptp(wanted)
+
+    index = pandas.Index(np.arange(len(wanted)) + 7.0, name="t_s")
+    series = quick_model.invert(pandas.Series(wanted, index=index))
+    assert series.input.index.equals(index) and series.reach.index.equals(index)
+    assert np.array_equal(series.input, found.input) and np.array_equal(series.reached, found.reached)
+
+
+def test_bounds_of_an_inverse_of_a_record_are_kept(quick_model, spring_and_slider):
+    wanted = 0.5 * spring_and_slider[1]
+    time = 0.01 * np.arange(len(wanted))
+    limited = quick_model.invert(wanted, limits=(-0.4, 0.5))
+    assert limited.input.min() == -0.4 and limited.input.max() == 0.5
+    assert {"low-limit", "high-limit", "reached"} <= set(limited.reach)
+    slow = quick_model.invert(wanted, time, slew=2.0)
+    assert np.abs(np.diff(slow.input)).max() <= 0.02 + 1e-12 and "slew" in slow.reach
+    wide = quick_model.invert(1e3 * wanted, limits=(-100.0, 100.0))
+    assert wide.extrapolated.any()
+
+
+@pytest.fixture(scope="module")
+def actuator():
+    """A model whose output lags behind its input, and wanted outputs with their times."""
+    train, test = hysid.specimen("magnetostrictive-actuator").data()
+    model = hysid.fit(train.x, train.y, train.time, records=train.records, model="rate-dependent-prandtl-ishlinskii")
+    rows = np.isfinite(test.y) & (test.records == test.records[0])
+    return model, test.y[rows], test.time[rows]
+
+
+def test_the_preview_of_a_model_that_lags_is_found(actuator):
+    model, wanted, time = actuator
+    found, without = model.invert(wanted, time), model.invert(wanted, time, preview=0)
+    assert found.preview > 0 and without.preview == 0
+    assert found.extrapolated.mean() < without.extrapolated.mean()
+    assert np.std(found.output - wanted) < 0.02 * np.std(wanted)
+    inverse = model.inverse()
+    assert inverse.best_preview(wanted, time) == found.preview and inverse.preview == 0
+    again = model.inverse(preview=found.preview).run(wanted, time)
+    assert np.array_equal(again.input, found.input) and again.preview == found.preview
+    stamps = pandas.Timestamp("2024-01-01") + pandas.to_timedelta(time, unit="s")
+    assert np.allclose(model.invert(wanted, stamps).input, found.input, atol=1e-3)
+    # Sample by sample, the wanted output is that at the end of the preview.
+    inverse = model.inverse(preview=found.preview)
+    ahead = np.interp(time + found.preview, time, wanted)
+    steps = [inverse.step(wanted[0], time[0]), *(inverse.step(ahead[row], time[row]) for row in range(1, 50))]
+    assert np.allclose([one.input for one in steps], found.input[:50], atol=1e-9)
+
+
+def test_a_band_of_an_inverse_is_one_of_the_input(quick_ensemble, spring_and_slider):
+    wanted = 0.3 * spring_and_slider[1][:200]
+    found = quick_ensemble.invert(wanted, band=0.9)
+    assert found.low.shape == found.high.shape == (200,)
+    assert (found.low <= found.high).all() and (found.low < found.high).any()
+    wide = quick_ensemble.invert(wanted, band=0.9, of_ten=9)
+    assert (wide.high - wide.low).mean() > (found.high - found.low).mean()
+    one = quick_ensemble.inverse(band=0.9).step(wanted[0])
+    assert (one.low, one.high) == (found.low[0], found.high[0])
+    assert quick_ensemble.inverse().step(wanted[0]).low is None
+
+
+def test_units_of_a_wanted_output_are_converted():
+    train, _ = hysid.specimen("terfenol-rod").data()
+    model = hysid.fit({"H_kA": train.x}, {"u_um": train.y}, model="modified-prandtl-ishlinskii", thresholds=[1.0])
+    wanted = 0.5 * train.y[:300]
+    found = model.invert(pandas.Series(wanted, name="u_um"))
+    assert found.input.name == "H_kA" and found.output.name == "u_um_reached"
+    with pytest.warns(hysid.HysidWarning, match="u_mm is converted"):
+        converted = model.invert(pandas.Series(wanted / 1000, name="u_mm"))
+    assert np.allclose(converted.input, found.input)
+    taken = model.invert(pandas.Series(wanted, name="u_mm"), same_units=True)
+    assert np.array_equal(taken.input, found.input)
+
+
+def test_an_inverse_of_a_record_refuses_what_is_invalid(actuator, quick_model):
+    model, wanted, time = actuator
+    for error, arguments, message in [
+        (ValueError, {"time": None}, "there are no time stamps"),
+        (ValueError, {"time": time[:-1]}, "time: 249 values for 250 rows of y"),
+        (ValueError, {"time": time[::-1]}, "row 2: time .* does not come after"),
+        (ValueError, {"others": wanted[:-1]}, "others: 249 rows for 250 rows of y"),
+        (ValueError, {"others": wanted}, "row 1: 2 inputs where the model has 1"),
+        (ValueError, {"y": None}, "the wanted output is needed"),
+        (ValueError, {"y": np.where(time == time[3], np.nan, wanted)}, "row 4: the wanted output is NaN"),
+        (ValueError, {"preview": "long"}, "preview 'long': 'auto' or a time is needed"),
+        (ValueError, {"preview": -1.0}, "the preview is -1"),
+        (TypeError, {"preview": None}, "preview None: a number is needed"),
+        (TypeError, {"limits": 1.0}, "limits 1.0: two numbers are needed"),
+        (ValueError, {"limits": (2, 1)}, "limits of the input are 2 and 1"),
+        (TypeError, {"slew": "fast"}, "slew 'fast': a number is needed"),
+        (ValueError, {"slew": -1}, "largest rate of the input is -1"),
+        (ValueError, {"band": 0.9}, "no prediction band"),
+        (ValueError, {"band": 0.9, "of_ten": 3}, "of_ten 3: choose 5 to 9"),
+    ]:
+        with pytest.raises(error, match=message):
+            model.invert(**{"y": wanted, "time": time, **arguments})
+    with pytest.raises(ValueError, match="y and time have different indexes"):
+        quick_model.invert(pandas.Series([1.0, 2.0]), pandas.Series([0.0, 1.0], index=[1, 2]))
+    assert quick_model.invert([]).input.shape == (0,)

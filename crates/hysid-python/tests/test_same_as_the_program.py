@@ -125,6 +125,31 @@ def test_errors_of_a_free_run_are_the_program_s(program, tmp_path):
     assert json.loads(done.stdout) == errors.as_dict()
 
 
+def test_the_inverse_of_a_record_is_the_program_s(program, tmp_path):
+    train, test = hysid.specimen("magnetostrictive-actuator").data()
+    names = train.names
+    model = hysid.fit(
+        {names["input"]: train.x},
+        {names["output"]: train.y},
+        pandas.Series(train.time, name=names["time"]),
+        records=train.records,
+        model="rate-dependent-prandtl-ishlinskii",
+    )
+    model.save(tmp_path / "model.json")
+    rows = np.isfinite(test.y) & (test.records == test.records[0])
+    wanted, time = test.y[rows], test.time[rows]
+    pandas.DataFrame({names["time"]: time, names["output"]: wanted}).to_csv(tmp_path / "wanted.csv", index=False)
+    done = program("invert", "model.json", "wanted.csv", "-o", "drive.csv", "--json", "--slew=1e4", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    found = model.invert(wanted, time, slew=1e4)
+    drive = pandas.read_csv(tmp_path / "drive.csv", dtype=str)
+    assert json.loads(done.stdout)["previews"] == [found.preview]
+    assert np.array_equal(drive[names["input"]].astype(float), found.input)
+    assert np.array_equal(drive[f"{names['output']}_reached"].astype(float), found.output)
+    assert np.array_equal(drive["reach"], found.reach)
+    assert np.array_equal(drive["extrapolated"] == "yes", found.extrapolated)
+
+
 def test_options_have_the_program_s_names(program, tmp_path):
     """One name everywhere: what the program takes for a model and its training, `fit` takes too."""
     usage = program("fit", "--help", folder=tmp_path).stdout

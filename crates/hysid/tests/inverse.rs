@@ -300,6 +300,14 @@ fn the_band_of_the_drive_is_that_of_the_output() {
         stepper.step(&[found.input], time, None).unwrap();
     }
     assert!(inside > 300, "{inside}");
+    // With a preview, they are the inputs of the row, not those at the end of the preview.
+    let mut inverse = model.inverse().band(level).unwrap().preview(0.1).unwrap();
+    for row in (0..200).map(f64::from) {
+        let wanted = 0.5 * (low + high) + 0.3 * (high - low) * (0.07 * row).sin();
+        let found = inverse.step(wanted, &[], 0.02 * row).unwrap();
+        let (from, to) = found.band.unwrap();
+        assert!(from <= found.input && found.input <= to, "{from}, {}, {to}", found.input);
+    }
     assert!(self::model("pnn").inverse().band(level).is_err());
 }
 

@@ -171,15 +171,26 @@ fn understood(
         ),
     ];
     if let Some(slew) = arguments.slew {
-        lines.push(("slew", format!("at most {:.4} per unit of time", Significant(slew))));
+        let time = names.time.as_ref().or(roles.time.as_ref());
+        let per = match (unit::of_column(input), time.and_then(|name| unit::of_column(name))) {
+            (Some(unit), Some(time)) => format!("{}/{}", clipped(&unit), clipped(&time)),
+            _ => "per unit of time".into(),
+        };
+        lines.push(("slew", format!("at most {:.4} {per}", Significant(slew))));
     }
     if model.needs_time() || inverted.previews.iter().any(|preview| *preview > 0.0) {
         let time = names.time.as_deref().unwrap_or("time");
-        let mut all: Vec<String> =
-            inverted.previews.iter().map(|&preview| with_unit(preview, time)).collect();
+        let mut all = inverted.previews.clone();
+        all.sort_by(f64::total_cmp);
         all.dedup();
         let chosen = if arguments.preview == Preview::Auto { " (chosen; change: --preview)" } else { "" };
-        let shown = if all.len() > 4 { format!("{} to others", all[0]) } else { all.join(", ") };
+        let shown = match all[..] {
+            [least, .., largest] => {
+                let (least, largest) = (Significant(least), with_unit(largest, time));
+                format!("{least:.4} to {largest}, by record")
+            }
+            _ => all.iter().map(|&preview| with_unit(preview, time)).collect(),
+        };
         lines.push(("preview", format!("{shown}{chosen}")));
     }
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
@@ -209,8 +220,8 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
     }
     if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
         all.push(format!(
-            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: the model \
-             cannot follow this reference"
+            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: within \
+             these limits, and with this preview, the model does not follow the reference"
         ));
     }
     all

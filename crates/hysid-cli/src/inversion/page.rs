@@ -137,7 +137,6 @@ fn record(
         Some(unit) => format!("deviation ({unit})"),
         None => "deviation".into(),
     };
-    let drive = (Colour::Input, "drive", 1.2, inversion.input.as_slice());
     let area = (!inversion.low.is_empty()).then(|| panel.area(&inversion.low, &inversion.high));
     vec![
         Part::Heading(heading),
@@ -150,37 +149,36 @@ fn record(
             ],
             None,
         ),
-        panel.figure(&deviation_label, 165.0, &[(Colour::Error, "model − wanted", 1.1, &deviation)], None),
-        panel.figure(&unit::label(&names.inputs[0]), 200.0, &[drive], area),
+        panel.figure(&deviation_label, 200.0, &[(Colour::Error, "model − wanted", 1.1, &deviation)], None),
+        drive(&panel, &unit::label(&names.inputs[0]), inversion, area),
     ]
-    .into_iter()
-    .chain(missed(&panel, &unit::label(&names.inputs[0]), inversion))
-    .collect()
 }
 
-/// The drive with a dot at each row that was not reached; `None` if all were.
-fn missed(panel: &Panel, label: &str, inversion: &Inversion) -> Option<Part> {
+/// The drive in front of its band, with a dot at each row that does not reach the wanted output.
+fn drive(panel: &Panel, label: &str, inversion: &Inversion, area: Option<Curve>) -> Part {
     let place = |row: usize| (panel.time[row], inversion.input[row]);
     let rows = (0..inversion.input.len()).filter(|&row| inversion.reach[row] != Reach::Reached);
     let dots: Vec<Point> = thin(&rows.map(place).collect::<Vec<_>>(), panel.points / 4);
     if dots.is_empty() {
-        return None;
+        let line = (Colour::Input, "drive", 1.2, inversion.input.as_slice());
+        return panel.figure(label, 200.0, &[line], area);
     }
+    let mut legend = vec![(Colour::Input, "drive".to_string()), (Colour::Error, "not reached".to_string())];
+    legend.extend(area.iter().map(|_| (Colour::Band, format!("{} % band", number(100.0 * panel.band, 3)))));
     let line: Vec<Point> = (0..inversion.input.len()).map(place).collect();
-    let curves = vec![
-        Curve::new(thin(&line, panel.points), Colour::Input, 1.2),
-        Curve::dots(dots, Colour::Error, 2.5),
-    ];
-    let description = format!("{label}: rows that do not reach the wanted output, record {}", panel.record);
-    let chart = Chart::new(description, &panel.time_label, label, curves)
-        .with_height(200.0)
-        .with_legend([(Colour::Input, "drive"), (Colour::Error, "not reached")]);
-    Some(Part::chart(chart))
+    let line = Curve::new(thin(&line, panel.points), Colour::Input, 1.2);
+    let curves = area.into_iter().chain([line, Curve::dots(dots, Colour::Error, 2.5)]).collect();
+    let description = format!(
+        "{label} over time, and the rows that do not reach the wanted output, record {}",
+        panel.record
+    );
+    let chart = Chart::new(description, &panel.time_label, label, curves);
+    Part::chart(chart.with_height(200.0).with_legend(legend))
 }
 
 /// How many rows have which reach, and where the first of them stands.
 fn reaches(wanted: &Wanted, inverted: &Inverted) -> Table {
-    let mut table = Table::new(["reach", "meaning", "rows", "first line"]);
+    let mut table = Table::new(["reach", "rows", "first line"]);
     for reach in Reach::ALL {
         let count: usize = inverted.records.iter().map(|record| record.count(reach)).sum();
         if count == 0 {
@@ -191,8 +189,7 @@ fn reaches(wanted: &Wanted, inverted: &Inverted) -> Table {
             Some(wanted.lines[record.rows.start + row])
         });
         table.push([
-            reach.word().into(),
-            meaning(reach).into(),
+            format!("{}: {}", reach.word(), meaning(reach)).into(),
             Cell::from(count.to_string()),
             Cell::from(first.map_or_else(String::new, |line| line.to_string())),
         ]);

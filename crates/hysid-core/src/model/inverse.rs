@@ -79,8 +79,8 @@ pub struct Inverted {
     pub reach: Reach,
     /// True if the input, or its rate for a model with a rate, is outside the range of the training data.
     pub is_extrapolated: bool,
-    /// Lowest and highest input whose prediction band contains the wanted output; `None` without
-    /// [`Inverse::band`].
+    /// Lowest and highest input whose prediction band contains the wanted output, with a preview those on the way to it;
+    /// `None` without [`Inverse::band`].
     pub band: Option<(f64, f64)>,
     /// Steps of the model that the search needed, at most [`MOST_TRIALS`] without a band.
     pub trials: usize,
@@ -240,7 +240,7 @@ impl<'m> Inverse<'m> {
     /// unchanged.
     pub fn step(&mut self, wanted: f64, others: &[f64], time: f64) -> Result<Inverted> {
         if !wanted.is_finite() {
-            return Err(SampleError::NotFinite(wanted).into());
+            return Err(SampleError::Wanted(wanted).into());
         }
         let elapsed = self.elapsed(time)?;
         // The first sample has no path that leads to it.
@@ -268,7 +268,10 @@ impl<'m> Inverse<'m> {
             trials += 2;
         }
         let band = match self.band {
-            Some(level) => Some(self.edges(all, first, level, time + ahead, &mut trials)?),
+            Some(level) => {
+                let (low, high) = self.edges(all, first, level, time + ahead, &mut trials)?;
+                Some((self.part_of_way(low, time, ahead), self.part_of_way(high, time, ahead)))
+            }
             None => None,
         };
         let before = self.last;

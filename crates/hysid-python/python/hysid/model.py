@@ -15,16 +15,16 @@ import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
-from hysid._data import Column, columns
+from hysid._data import Column, Columns, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
-from hysid._inverse import Inverse
+from hysid._inverse import Inverse, Inversion, Reference
 from hysid._warning import warn
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Columns, Values
+    from hysid._data import Values
 
 __all__ = ["Errors", "Member", "Model", "Prediction", "Stepper"]
 
@@ -677,36 +677,148 @@ class Model:
         """
         return self._native.stepper()
 
-    def inverse(self, *, limits: tuple[float, float] | None = None, slew: float | None = None) -> Inverse:
+    def inverse(
+        self,
+        limits: tuple[float, float] | None = None,
+        slew: float | None = None,
+        preview: float = 0.0,
+        band: float | None = None,
+        of_ten: int = 5,
+    ) -> Inverse:
         """Give the inverse of the model: from a wanted output, the input that gives it.
 
-        It begins in the initial state of the model and has its memory, its rate and its wear.
+        It begins in the initial state of the model and has its memory, its rate and its wear. For a whole record,
+        `invert` is simpler.
 
         Parameters
         ----------
         limits : tuple of two floats, optional
-            Least and largest first input; by default those of the training data.
+            Lowest and highest first input; by default those of the training data.
         slew : float, optional
             Largest change of the first input per unit of time; by default there is none.
+        preview : float
+            Time by which the search looks ahead, for models whose output lags behind the input.
+        band : float, optional
+            Also give the inputs whose prediction band of this probability (0.5 to 0.99) contains the wanted output.
+        of_ten : int
+            The band contains that share, or more, in so many of ten data sets (5 to 9).
 
         Returns
         -------
         Inverse
-            With the methods `step` for one sample, `run` for a record, and `reset`.
+            With the methods `step` for one sample, `run` for a record, `best_preview`, and `reset`.
 
         Raises
         ------
         ValueError
-            Limits that are not finite or not in order; a slew that is not positive.
+            Limits that are not finite or not in order; a slew that is not positive; a preview that is negative or not
+            finite; an invalid probability, or a model without a band.
 
         Examples
         --------
         ::
 
-            drive = model.inverse(limits=(0.0, 100.0)).run(wanted, time)
-            drive.input, drive.reached
+            inverse = model.inverse(limits=(0.0, 100.0))
+            voltage = inverse.step(displacement, time).input
         """
-        return Inverse(self._native.inverse(limits, slew))
+        if limits is not None:
+            limits = pair("limits", limits)
+        if slew is not None:
+            slew = real("slew", slew)
+        preview = real("preview", preview)
+        level = None if band is None else (real("band", band), whole("of_ten", of_ten, 5, 9))
+        return Inverse(self._native.inverse(limits, slew, preview, level), preview)
+
+    def invert(
+        self,
+        y: ArrayLike,
+        time: ArrayLike | None = None,
+        others: Values | None = None,
+        *,
+        limits: tuple[float, float] | None = None,
+        slew: float | None = None,
+        preview: float | str = "auto",
+        band: float | None = None,
+        of_ten: int = 5,
+        same_units: bool = False,
+    ) -> Inversion:
+        """Give the inputs that drive the model along the wanted outputs of a record, from the initial state.
+
+        The numbers are those of ``hysid invert``.
+
+        Parameters
+        ----------
+        y : array of shape (rows,)
+            The wanted output of each row, in the unit of the training.
+        time : array of shape (rows,), optional
+            Times of the rows, for a model that needs them, a slew limit or a preview.
+        others : array of shape (rows,) or (rows, inputs - 1), optional
+            The inputs of the model after the first one.
+        limits : tuple of two floats, optional
+            Lowest and highest first input; by default those of the training data.
+        slew : float, optional
+            Largest change of the first input per unit of time; by default there is none.
+        preview : float or "auto"
+            Time by which the search looks ahead. ``"auto"`` is the time with which the model follows the wanted output
+            best, as of `Inverse.best_preview`.
+        band : float, optional
+            Also give the inputs whose prediction band of this probability (0.5 to 0.99) contains the wanted output.
+        of_ten : int
+            As of `inverse`.
+        same_units : bool
+            As of `simulate`.
+
+        Returns
+        -------
+        Inversion
+            Inputs and outputs, which of them are reached, and the preview. Columns are Series with the index of `y` if
+            that is a pandas object.
+
+        Raises
+        ------
+        ValueError
+            Invalid wanted outputs, with their row, counted from 1; missing time; bounds as of `inverse`.
+
+        Examples
+        --------
+        >>> import hysid
+        >>> train, test = hysid.specimen("terfenol-rod").data()
+        >>> model = hysid.fit(train.x, train.y, model="prandtl-ishlinskii")
+        >>> wanted = 10 + 0.5 * train.y
+        >>> drive = model.invert(wanted)
+        >>> simulated = model.simulate(drive.input)
+        >>> bool(abs(simulated - wanted)[drive.reached].max() < 1e-9 * wanted.max())
+        True
+        """
+        if isinstance(preview, str) and preview != "auto":
+            raise ValueError(f"preview {preview!r}: 'auto' or a time is needed")
+        given = Reference(y, time, others)
+        # The first input is the one that is searched: its column only keeps the place.
+        first = Column(given.wanted.values, None)
+        columns = Columns([first, *given.others], given.time, None, given.wanted, [])
+        converted = self._converted(columns, same_units)
+        assert converted.output is not None
+        given.wanted, given.time, given.others = converted.output, converted.time, converted.inputs[1:]
+
+        def inverse(preview: float) -> Inverse:
+            return self.inverse(limits, slew, preview, band, of_ten)
+
+        if isinstance(preview, str):
+            preview = inverse(0.0)._best_preview(given)
+        found = inverse(preview)._run(given)
+        drive = self.inputs[0]
+        edges = {} if found.low is None else {
+            "low": _like(y, found.low, f"{drive}_low"),
+            "high": _like(y, found.high, f"{drive}_high"),
+        }
+        return replace(
+            found,
+            input=_like(y, found.input, drive),
+            output=_like(y, found.output, f"{self.output}_reached"),
+            reach=_like(y, found.reach, "reach"),
+            extrapolated=_like(y, found.extrapolated, "extrapolated"),
+            **edges,
+        )
 
     def diagnose(self) -> ModelDiagnosis:
         """Determine the properties of the hysteresis of the model.

@@ -1,6 +1,6 @@
 //! The inverse along a whole record, and the choice of its preview.
 
-use crate::error::{Error, InverseError, Result};
+use crate::error::{Error, InverseError, Result, SampleError};
 use crate::model::BandLevel;
 use crate::model::inverse::{Inverse, Inverted, Reach};
 
@@ -100,12 +100,18 @@ impl Reference<'_> {
         }
     }
 
-    /// Rejects columns of other lengths.
+    /// Rejects columns of other lengths, and wanted outputs that are not finite.
     fn check(&self) -> Result<()> {
         let rows = self.wanted.len();
         let lengths = self.others.iter().map(|column| column.len()).chain(self.time.map(<[f64]>::len));
-        match lengths.into_iter().find(|&length| length != rows) {
-            Some(length) => Err(InverseError::Length { rows, length }.into()),
+        if let Some(length) = lengths.into_iter().find(|&length| length != rows) {
+            return Err(InverseError::Length { rows, length }.into());
+        }
+        // With a preview, an earlier row would be blamed for it.
+        match self.wanted.iter().position(|wanted| !wanted.is_finite()) {
+            Some(row) => {
+                Err(InverseError::Row { row, problem: SampleError::Wanted(self.wanted[row]) }.into())
+            }
             None => Ok(()),
         }
     }
@@ -119,11 +125,9 @@ impl Reference<'_> {
             _ => 0.0,
         };
         let shortest = longest / LONGEST / time.len().max(2) as f64;
-        let (first, last) = match longest > 0.0 && longest.is_finite() && shortest > 0.0 {
-            true => (shortest.log2().ceil() as i32, longest.log2().floor() as i32),
-            false => (0, -1),
-        };
-        (first..=last).map(|exponent| f64::from(exponent).exp2())
+        let exponents = (longest > 0.0 && longest.is_finite() && shortest > 0.0)
+            .then(|| shortest.log2().ceil() as i32..=longest.log2().floor() as i32);
+        exponents.into_iter().flatten().map(|exponent| f64::from(exponent).exp2())
     }
 }
 
@@ -156,10 +160,11 @@ impl Inverse<'_> {
     /// to come.
     ///
     /// # Errors
-    /// As [`Inverse::step`], with the row; columns of other lengths. The rows before the invalid one have been taken.
+    /// As [`Inverse::step`], with the row; columns of other lengths. No row has been taken if a length or a wanted output
+    /// is invalid, otherwise those before the invalid one.
     pub fn run(&mut self, reference: &Reference<'_>) -> Result<Inversion> {
-        reference.check()?;
         self.check_time(reference)?;
+        reference.check()?;
         let mut ahead = Ahead { reference: *reference, row: 0 };
         let mut inversion = Inversion::default();
         let mut others = vec![0.0; reference.others.len()];
@@ -270,7 +275,6 @@ fn at_row(row: usize, error: Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::SampleError;
 
     #[test]
     fn wanted_outputs_ahead_lie_on_straight_lines() {
@@ -310,5 +314,8 @@ mod tests {
     fn errors_tell_the_row() {
         let error = at_row(4, SampleError::NotFinite(f64::NAN).into());
         assert!(error.to_string().starts_with("row 5: "), "{error}");
+        let reference = Reference { wanted: &[0.0, f64::NAN], others: &[], time: None };
+        let error = reference.check().unwrap_err();
+        assert_eq!(error.to_string(), "row 2: the wanted output is NaN, not a finite number");
     }
 }
