@@ -485,7 +485,7 @@ pub struct Invert {
     ///
     /// It matters for models whose output lags behind the input. `auto` finds the time with which the model follows the
     /// reference best.
-    #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true)]
+    #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, hide_short_help = true)]
     pub preview: Preview,
     /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
     ///

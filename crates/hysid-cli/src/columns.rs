@@ -178,15 +178,17 @@ impl Roles {
             (true, None) => match table.header.iter().find(|name| unit::is_time(name)) {
                 Some(name) => Some(name.clone()),
                 None => bail!(
-                    "{}: there is no column of time, which a slew limit or a preview needs (columns: {}; name one with \
+                    "{}: there is no column of time, which the rate, a slew limit or a preview needs (columns: {}; name one with \
                      --time)",
                     table.file,
                     listed(&table.header)
                 ),
             },
         };
+        // The inverse forms the rate from the inputs that it finds.
+        let is_inverse = needed.len() < names.inputs.len();
         let rate = match &names.rate {
-            Some(trained) if model.rate() == Some(RateMethod::Given) => {
+            Some(trained) if model.rate() == Some(RateMethod::Given) && !is_inverse => {
                 Some(find(&given_rate, trained, "rate", "--rate")?)
             }
             _ => None,

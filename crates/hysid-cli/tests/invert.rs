@@ -164,7 +164,7 @@ fn each_record_of_a_model_that_lags_has_its_preview() {
     let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv");
     assert!(ran.stderr.contains(" s, by record (chosen; change: --preview)"), "{}", ran.stderr);
     let ran = done(&bench, "invert stage.json wanted.csv -o drive.csv --preview 1e300");
-    assert!(ran.stderr.contains("with this preview, the model does not follow"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("the model does not follow the reference"), "{}", ran.stderr);
 }
 
 #[test]
@@ -336,7 +336,7 @@ fn bad_references_are_refused_with_their_place() {
         (
             "stage.json both.csv -o d.csv --slew 1",
             1,
-            "both.csv: there is no column of time, which a slew limit",
+            "both.csv: there is no column of time, which the rate, a slew limit",
         ),
         ("stage.json none.csv -o d.csv", 1, "none.csv"),
         ("stage.json empty.csv -o d.csv", 1, "empty.csv"),
@@ -344,7 +344,7 @@ fn bad_references_are_refused_with_their_place() {
         ("missing.json one.csv -o d.csv", 1, "missing.json"),
         ("stage.json taken.csv -o d.csv", 1, "taken.csv: there is already a column \"reach\""),
         ("stage.json taken_too.csv -o d.csv", 1, "taken_too.csv: there is already a column \"x_mm_inverse\""),
-        ("stage.json one.csv --json", 2, "--json prints the result in the place of the table"),
+        ("stage.json one.csv --json", 2, "--json prints to stdout in place of the table"),
         ("stage.json one.csv --limits 3:1", 2, "the low limit 3 is not below the high one"),
         ("stage.json one.csv --slew 0", 2, "a number above 0 is needed"),
         ("stage.json one.csv --preview soon", 2, "`auto` or a time of 0 or more is needed"),
@@ -371,4 +371,28 @@ fn a_foreign_file_is_replaced_by_force_only() {
     bench.put("drive.csv", "mine");
     done(&bench, "invert stage.json wanted.csv -o drive.csv --force");
     assert_ne!(bench.text("drive.csv"), "mine");
+}
+
+/// The rate of the drive is formed from the drive: a column with the rate of the measured input is not needed.
+#[test]
+fn a_model_with_a_measured_rate_is_inverted_with_time() {
+    let bench = Workbench::new();
+    let mut text = String::from("t,x,v,y\n");
+    for row in 0..300 {
+        let t = 0.01 * f64::from(row);
+        let (x, v) = ((6.0 * t).sin() * (1.0 + 0.2 * t), 6.0 * (6.0 * t).cos());
+        text += &format!("{t},{x},{v},{}\n", 2.0 * x + 0.01 * v);
+    }
+    bench.put("loops.csv", text);
+    let ran = bench.run(
+        "fit loops.csv --rate v --model xpnn --starts 1 --epochs 20 --stops 4 --hidden 4 -o m.json --no-report",
+    );
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    bench.put("wanted.csv", "t,y\n0,0.1\n0.01,0.2\n0.02,0.3\n");
+    let ran = bench.run("invert m.json wanted.csv -o drive.csv");
+    assert_eq!(ran.status, Some(0), "{}", ran.stderr);
+    bench.put("untimed.csv", "y\n0.1\n0.2\n");
+    let ran = bench.run("invert m.json untimed.csv -o drive2.csv");
+    assert_eq!(ran.status, Some(1), "{}", ran.stderr);
+    assert!(ran.stderr.contains("time") || ran.stderr.contains("column"), "{}", ran.stderr);
 }

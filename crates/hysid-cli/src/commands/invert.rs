@@ -35,9 +35,10 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let header = header_line(table.delimiter, table.header.iter().chain(names.all()).map(String::as_str))?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     if arguments.json && out.is_none() {
-        return Err(
-            Usage("--json prints the result in the place of the table: name a file with -o".into()).into()
-        );
+        return Err(Usage(
+            "--json prints to stdout in place of the table: name a file for the table with -o".into(),
+        )
+        .into());
     }
     let force = arguments.overwriting.force;
     let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
@@ -47,6 +48,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     check_outputs(&destinations, &[&arguments.reference, &arguments.model])?;
 
     let needs_time = model.needs_time()
+        || model.rate().is_some()
         || arguments.slew.is_some()
         || matches!(arguments.preview, Preview::Time(time) if time > 0.0);
     let roles = Roles::of_inverse(&model, needs_time, &table, &arguments.columns)?;
@@ -208,7 +210,7 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
         let counts: Vec<String> = missed.iter().map(|(word, count)| format!("{word} {count}")).collect();
         let total = rows - inverted.reached();
         all.push(format!(
-            "{total} of {rows} rows do not reach the wanted output and have the nearest input: {} (column reach)",
+            "{total} of {rows} rows do not reach the wanted output: {} (column reach)",
             counts.join(", ")
         ));
     }
@@ -220,8 +222,8 @@ fn warnings(inverted: &Inverted) -> Vec<String> {
     }
     if let Some(percent) = inverted.errors.nrmse_std_percent.filter(|percent| *percent > LARGE) {
         all.push(format!(
-            "the output of the model deviates from the wanted one by {percent:.1} % of its standard deviation: within \
-             these limits, and with this preview, the model does not follow the reference"
+            "the RMS deviation of the model output is {percent:.1} % of the standard deviation of the wanted output: \
+             within these bounds the model does not follow the reference"
         ));
     }
     all

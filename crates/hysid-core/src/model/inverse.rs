@@ -24,7 +24,7 @@ const TOLERANCE: f64 = 1e-12;
 /// A rounding beyond a trained range, as a share of it, is not outside.
 const SLACK: f64 = 1e-9;
 
-/// Largest number of model steps for a step of the inverse. A band needs as many again for each of its edges.
+/// Largest number of model steps for a step of the inverse. A band needs two more searches.
 pub const MOST_TRIALS: usize = 2 + 2 * search::MOST_VALUES + 2;
 
 /// Whether an output was reached.
@@ -166,7 +166,7 @@ impl<'m> Inverse<'m> {
         Ok(self)
     }
 
-    /// The time by which the wanted output of each sample, but the first, is that of a later time.
+    /// Sets the preview: from the second sample on, the wanted output that is given to a step is that at `time + preview`.
     ///
     /// The search then finds the straight path of the input, from the last sample on, that leads to the wanted output at
     /// the end of the preview. The sample takes the first part of this path, and the next sample searches anew. 0 stands
@@ -209,6 +209,12 @@ impl<'m> Inverse<'m> {
         self.stepper.model()
     }
 
+    /// True if samples need a time: for the memory or the rate of the model, the slew limit, or the preview.
+    pub fn needs_time(&self) -> bool {
+        let model = self.model();
+        model.needs_time() || model.rate().is_some() || self.slew.is_some() || self.preview > 0.0
+    }
+
     /// Lowest and highest input.
     pub fn input_limits(&self) -> (f64, f64) {
         self.limits
@@ -228,8 +234,8 @@ impl<'m> Inverse<'m> {
     ///
     /// Inputs that are reached at trained rates are searched first, for a model with a rate, then all others.
     ///
-    /// `others` are the further inputs of the model, in their units. `time` is that of the sample; a model without rate
-    /// ignores it, unless there is a slew limit or a preview. A rate is the backward difference of the inputs that the
+    /// `others` are the further inputs of the model, in their units. `time` is that of the sample; a model without
+    /// rate and relaxation ignores it, unless there is a slew limit or a preview. A rate is the backward difference of the inputs that the
     /// inverse gives.
     ///
     /// A step needs at most [`MOST_TRIALS`] steps of the model; in our tests, 1 to 7 on average where the model is

@@ -26,7 +26,7 @@ pub(super) fn chapter(all: &[Compensated]) -> Chapter {
         Part::Table(models(all)),
         Part::note(
             "Model deviates: RMS deviation of the output of the driven model from the wanted one, in percent of the range; \
-             what the specimen deviates more is the error of the model. The preview is how far the search looks ahead; \
+             the rest of the specimen's deviation is the error of the model. The preview is how far the search looks ahead; \
              it is chosen by the library for each wanted output.",
         ),
         Part::heading("Which way tracks better"),
@@ -57,7 +57,7 @@ const LIMITS: &str = "The records of the piezo and of the magnetostrictive actua
 
 /// What the specimens do between and beside their laws.
 const DRIVEN: &str = "The input is a straight line between rows. The response of the piezo actuator is known for one sine; \
-                      here each sine of the voltage has that response by itself (designed). The other laws hold for any \
+                      here the responses to the sines of the voltage are added (designed). The other laws hold for any \
                       input. All memories begin as in training, and the first period is not scored.";
 
 fn percent(compensated: &Compensated, rms: f64) -> f64 {
@@ -84,7 +84,14 @@ fn table(all: &[Compensated]) -> Table {
 }
 
 fn models(all: &[Compensated]) -> Table {
-    let columns = ["specimen", "wanted output", "way", "model deviates, %", "rows reached, %", "preview, ms"];
+    let columns = [
+        "specimen",
+        "wanted output",
+        "inverted model",
+        "model deviates, %",
+        "rows reached, %",
+        "preview, ms",
+    ];
     let mut table = Table::new(columns).headed(format!("{HEADING}: the models that were inverted"));
     for compensated in all {
         let (name, error) = &compensated.classical;
@@ -164,7 +171,7 @@ fn comparison(all: &[Compensated]) -> String {
     format!(
         "The inverse of a model tracks better than a model of the inverse in {better} of {total} cases. A model of the \
          inverse runs at the cost of a simulation and needs no search, and lag becomes lead in it; but its input is the \
-         measured output with its noise, it knows no limits of the input, and it does not say where the wanted output \
+         measured output with its noise, it has no limits of the input, and it does not say where the wanted output \
          cannot be reached."
     )
 }

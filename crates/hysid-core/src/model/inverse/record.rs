@@ -10,18 +10,17 @@ const ROWS_OF_A_CHOICE: usize = 20_000;
 /// The longest preview that is tried, as a share of the record.
 const LONGEST: f64 = 0.125;
 
-/// Longer previews are no longer tried after so many that were worse than the best, once no more than this counts against
-/// the best.
+/// The search of a preview ends after so many longer ones without improvement, if the lowest cost is at most [`GOOD`].
 const WORSE: usize = 4;
 const GOOD: f64 = 0.1;
 
-/// What counts against an inverse: the deviation of its output in standard deviations of the wanted output, and these
-/// multiples of the share of rows with an input or rate outside the trained range, and of those where the input turns and
-/// the wanted output does not.
+/// The cost of an inverse is the deviation of its output in standard deviations of the wanted output, and these multiples
+/// of the share of rows with an input or rate outside the trained range, and of the number of turning points of the input
+/// in excess of those of the wanted output, divided by the number of rows.
 const WEIGHT_OF_EXTRAPOLATION: f64 = 2.0;
 const WEIGHT_OF_TURNS: f64 = 0.25;
 
-/// An inverse whose rows are all reached is good enough without a preview if no more counts against it.
+/// No preview is tried if every row is reached, or at a bound, without one, and the cost is at most this.
 const LITTLE: f64 = 0.005;
 
 /// Wanted outputs of a record.
@@ -75,8 +74,8 @@ impl Inversion {
         (sum / self.output.len().max(1) as f64).sqrt()
     }
 
-    /// What counts against this inverse, for a wanted output with this standard deviation.
-    fn faults(&self, wanted: &[f64], spread: f64) -> f64 {
+    /// The cost of this inverse, for a wanted output with this standard deviation.
+    fn cost(&self, wanted: &[f64], spread: f64) -> f64 {
         let share = |count: f64| count / wanted.len().max(1) as f64;
         let extrapolated = self.is_extrapolated.iter().filter(|is_extrapolated| **is_extrapolated).count();
         let turns = |values: &[f64]| {
@@ -195,7 +194,8 @@ impl Inverse<'_> {
     /// As [`Inverse::run`].
     pub fn best_preview(&self, reference: &Reference<'_>) -> Result<f64> {
         reference.check()?;
-        if !self.model().needs_time() || reference.time.is_none() {
+        let sees_time = self.model().needs_time() || self.model().rate().is_some();
+        if !sees_time || reference.time.is_none() {
             return Ok(0.0);
         }
         let mut columns = Vec::new();
@@ -203,23 +203,23 @@ impl Inverse<'_> {
         let mut trial = self.clone();
         trial.band = None::<BandLevel>;
         let spread = standard_deviation(reference.wanted);
-        let mut faults = |preview: f64| -> Result<(f64, bool)> {
+        let mut cost = |preview: f64| -> Result<(f64, bool)> {
             trial.reset();
             trial.preview = preview;
             let inversion = trial.run(&reference)?;
             let is_at_bounds = |reach: &Reach| *reach == Reach::Reached || reach.is_at_a_bound();
             let is_exact =
                 inversion.reach.iter().all(is_at_bounds) && inversion.bounds_are_of(reference.wanted);
-            Ok((inversion.faults(reference.wanted, spread), is_exact))
+            Ok((inversion.cost(reference.wanted, spread), is_exact))
         };
-        let (mut least, is_exact) = faults(0.0)?;
+        let (mut least, is_exact) = cost(0.0)?;
         let mut best = 0.0;
         if is_exact && least <= LITTLE {
             return Ok(best);
         }
         let mut worse = 0;
         for preview in reference.previews() {
-            let (found, _) = faults(preview)?;
+            let (found, _) = cost(preview)?;
             if found < least {
                 (least, best, worse) = (found, preview, 0);
             } else if least <= GOOD {
@@ -234,9 +234,8 @@ impl Inverse<'_> {
 
     /// Rejects a record without time stamps where they are needed.
     fn check_time(&self, reference: &Reference<'_>) -> Result<()> {
-        let is_needed = self.model().needs_time() || self.slew.is_some() || self.preview > 0.0;
         match reference.time {
-            None if is_needed => Err(InverseError::NoTime.into()),
+            None if self.needs_time() => Err(InverseError::NoTime.into()),
             _ => Ok(()),
         }
     }
@@ -298,16 +297,16 @@ mod tests {
     }
 
     #[test]
-    fn an_input_that_runs_to_and_fro_has_faults() {
+    fn an_input_that_runs_to_and_fro_costs_more() {
         let wanted: Vec<f64> = (0..100).map(|row| (0.1 * f64::from(row)).sin()).collect();
-        let faults = |input: Vec<f64>| {
+        let cost = |input: Vec<f64>| {
             let is_extrapolated = vec![false; 100];
             let output = wanted.clone();
-            Inversion { input, output, is_extrapolated, ..Inversion::default() }.faults(&wanted, 0.7)
+            Inversion { input, output, is_extrapolated, ..Inversion::default() }.cost(&wanted, 0.7)
         };
-        assert_eq!(faults(wanted.clone()), 0.0);
+        assert_eq!(cost(wanted.clone()), 0.0);
         let alternating = (0..100).map(|row| if row % 2 == 0 { 0.0 } else { 1.0 }).collect();
-        assert!((0.2..0.25).contains(&faults(alternating)));
+        assert!((0.2..0.25).contains(&cost(alternating)));
     }
 
     #[test]
