@@ -157,7 +157,8 @@ def test_options_have_the_program_s_names(program, tmp_path):
     keywords = set(inspect.signature(hysid.fit).parameters)
     assert set(_hysid.option_names()) <= keywords
     # Names of columns and of files are not needed where the data are at hand.
-    files = {"record", "time", "input", "output", "out", "json", "no_report", "help", "checkpoint", "resume", "force"}
+    files = {"record", "time", "input", "output", "inverse", "out", "json", "no_report", "help", "checkpoint"}
+    files |= {"resume", "force"}
     assert offered - files == keywords - {"x", "y", "time", "records", "progress"}
 
 
