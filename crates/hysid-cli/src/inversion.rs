@@ -28,6 +28,20 @@ pub struct Bounds {
     pub band: Option<BandLevel>,
 }
 
+impl Bounds {
+    /// True if the rows of a reference for this model need a time.
+    ///
+    /// # Errors
+    /// Bounds that cannot be used.
+    pub fn need_time(&self, model: &Model) -> Result<bool> {
+        let inverse = inverse(model, self)?;
+        Ok(match self.preview {
+            Preview::Auto => inverse.needs_time(),
+            Preview::Time(time) => inverse.preview(time)?.needs_time(),
+        })
+    }
+}
+
 /// The inputs of all records.
 pub struct Inverted {
     /// One for each record of the reference.
@@ -65,21 +79,20 @@ impl Inverted {
         self.records.iter().map(|record| record.input.len()).sum()
     }
 
+    /// Number of rows with this reach.
+    pub fn count(&self, reach: Reach) -> usize {
+        self.records.iter().map(|record| record.count(reach)).sum()
+    }
+
     /// Number of rows that were reached.
     pub fn reached(&self) -> usize {
-        self.records.iter().map(|record| record.count(Reach::Reached)).sum()
+        self.count(Reach::Reached)
     }
 
     /// Number of rows by each other reach.
     pub fn not_reached(&self) -> BTreeMap<&'static str, usize> {
-        let mut counts = BTreeMap::new();
-        for reach in Reach::ALL.into_iter().filter(|reach| *reach != Reach::Reached) {
-            let count: usize = self.records.iter().map(|record| record.count(reach)).sum();
-            if count > 0 {
-                counts.insert(reach.word(), count);
-            }
-        }
-        counts
+        let others = Reach::ALL.into_iter().filter(|reach| *reach != Reach::Reached);
+        others.map(|reach| (reach.word(), self.count(reach))).filter(|(_, count)| *count > 0).collect()
     }
 
     /// Rows with an input, or a rate of it, outside the trained range.

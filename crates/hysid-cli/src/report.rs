@@ -16,7 +16,7 @@ use hysid::data::record::Dataset;
 use hysid::model::{Model, Prediction};
 use hysid_document::{Page, number, unit};
 
-pub use figures::{loops, small_loops};
+pub use figures::{loops, path_curves, small_loops};
 
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;

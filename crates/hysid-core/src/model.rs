@@ -389,6 +389,14 @@ impl Model {
         &self.preprocessing
     }
 
+    /// The range of the first input beyond which a record has been outside: that of the training data, or of the ensemble.
+    fn first_input_range(&self) -> (f64, f64) {
+        match &self.body {
+            Predictor::Ensemble(ensemble) => ensemble.range(),
+            Predictor::Network { .. } | Predictor::Law(_) => self.trained.inputs[0],
+        }
+    }
+
     /// Number of inputs of a record.
     pub(crate) fn inputs(&self) -> usize {
         match &self.body {

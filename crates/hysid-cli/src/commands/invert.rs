@@ -47,19 +47,15 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let destinations: Vec<&Destination> = drive.iter().chain(&page).collect();
     check_outputs(&destinations, &[&arguments.reference, &arguments.model])?;
 
-    let needs_time = model.needs_time()
-        || model.rate().is_some()
-        || arguments.slew.is_some()
-        || matches!(arguments.preview, Preview::Time(time) if time > 0.0);
-    let roles = Roles::of_inverse(&model, needs_time, &table, &arguments.columns)?;
-    let factors = Factors::of(&model, &roles, &table.file, true, arguments.units.same_units)?;
-    let wanted = Wanted::of(&table, &roles, &factors)?;
     let bounds = Bounds {
         limits: arguments.limits,
         slew: arguments.slew,
         preview: arguments.preview,
         band: arguments.data_sets.level(arguments.band),
     };
+    let roles = Roles::of_inverse(&model, bounds.need_time(&model)?, &table, &arguments.columns)?;
+    let factors = Factors::of(&model, &roles, &table.file, true, arguments.units.same_units)?;
+    let wanted = Wanted::of(&table, &roles, &factors)?;
     let inverted = Inverted::of(&model, &wanted, &bounds)?;
 
     let understood = understood(arguments, &model, &roles, &inverted);

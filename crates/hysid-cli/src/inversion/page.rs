@@ -2,11 +2,12 @@
 
 use hysid::Model;
 use hysid::model::{Inversion, Reach};
-use hysid_document::chart::thin::{Point, thin, thin_path};
+use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Cell, Chart, Colour, Curve, Page, Part, Piece, Table, Text, number, unit};
 
 use super::{Bounds, Inverted, Wanted, WantedRecord, meaning};
 use crate::report::histories::Panel;
+use crate::report::path_curves;
 
 /// Most records drawn; of more, those with the largest deviations.
 const MOST_RECORDS: usize = 6;
@@ -89,18 +90,11 @@ fn shown_records(wanted: &Wanted, inverted: &Inverted) -> Vec<usize> {
 /// Wanted output and that of the model over the drive.
 fn loops(model: &Model, wanted: &Wanted, inverted: &Inverted, shown: &[usize]) -> Chart {
     let most = (LOOP_POINTS / shown.len().max(1)).max(16);
-    let (mut back, mut front) = (Vec::new(), Vec::new());
-    for &index in shown {
+    let curves = shown.iter().map(|&index| {
         let (record, inversion) = (&wanted.records[index], &inverted.records[index]);
-        let drawn = thin_path(&[&inversion.input, &record.wanted, &inversion.output], most);
-        let curve = |colour: Colour, width: f64, y: &[f64]| {
-            let point =
-                |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (inversion.input[row], y[row]));
-            Curve::new(drawn.iter().map(point).collect(), colour, width)
-        };
-        back.push(curve(Colour::Measured, 2.2, &record.wanted));
-        front.push(curve(Colour::Simulated, 1.1, &inversion.output));
-    }
+        path_curves(&inversion.input, &record.wanted, &inversion.output, most)
+    });
+    let (mut back, front): (Vec<Curve>, Vec<Curve>) = curves.unzip();
     back.extend(front);
     let names = model.names();
     let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
@@ -180,7 +174,7 @@ fn drive(panel: &Panel, label: &str, inversion: &Inversion, area: Option<Curve>)
 fn reaches(wanted: &Wanted, inverted: &Inverted) -> Table {
     let mut table = Table::new(["reach", "rows", "first line"]);
     for reach in Reach::ALL {
-        let count: usize = inverted.records.iter().map(|record| record.count(reach)).sum();
+        let count = inverted.count(reach);
         if count == 0 {
             continue;
         }

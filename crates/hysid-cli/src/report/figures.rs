@@ -91,12 +91,17 @@ fn loop_curves(set: &ReportSet, index: usize, most: usize) -> (Curve, Curve) {
     let rows = scored_rows(record);
     let x = &record.inputs()[0][rows.clone()];
     let (measured, simulated) = (&record.output()[rows.clone()], &set.simulated[index][rows]);
-    let drawn = thin_path(&[x, measured, simulated], most);
+    path_curves(x, measured, simulated, most)
+}
+
+/// Two outputs over the same input, the same rows of both: the wide curve of one, and the thin one of a model before it.
+pub fn path_curves(x: &[f64], wide: &[f64], model: &[f64], most: usize) -> (Curve, Curve) {
+    let drawn = thin_path(&[x, wide, model], most);
     let curve = |colour: Colour, width: f64, y: &[f64]| {
         let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
         Curve::new(drawn.iter().map(point).collect(), colour, width)
     };
-    (curve(Colour::Measured, 2.2, measured), curve(Colour::Simulated, 1.1, simulated))
+    (curve(Colour::Measured, 2.2, wide), curve(Colour::Simulated, 1.1, model))
 }
 
 /// From the first row with an output to the last; all rows if no row has one.

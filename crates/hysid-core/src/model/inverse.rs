@@ -14,15 +14,13 @@ mod search;
 
 use crate::error::{Error, InverseError, Result, SampleError};
 use crate::model::inverse::search::{Ending, Found, Point, Wanted};
+use crate::model::ranges::with_slack;
 use crate::model::{BandLevel, Model, Stepper};
 
 pub use record::{Inversion, Reference};
 
 /// Deviation at which the search of an input ends, as a share of the trained range of the output.
 const TOLERANCE: f64 = 1e-12;
-
-/// A rounding beyond a trained range, as a share of it, is not outside.
-const SLACK: f64 = 1e-9;
 
 /// Largest number of model steps for a step of the inverse. A band needs two more searches.
 pub const MOST_TRIALS: usize = 2 + 2 * search::MOST_VALUES + 2;
@@ -211,8 +209,12 @@ impl<'m> Inverse<'m> {
 
     /// True if samples need a time: for the memory or the rate of the model, the slew limit, or the preview.
     pub fn needs_time(&self) -> bool {
-        let model = self.model();
-        model.needs_time() || model.rate().is_some() || self.slew.is_some() || self.preview > 0.0
+        self.sees_time() || self.slew.is_some() || self.preview > 0.0
+    }
+
+    /// True if the model has a rate, or a memory that depends on time.
+    fn sees_time(&self) -> bool {
+        self.model().needs_time() || self.model().rate().is_some()
     }
 
     /// Lowest and highest input.
@@ -392,9 +394,9 @@ impl<'m> Inverse<'m> {
 
     /// True for an input, or a rate of a model with one, outside the range of the training data.
     fn is_extrapolated(&self, input: f64, time: f64, before: Option<(Point, f64)>) -> bool {
-        let is_outside = |value: f64, (low, high): (f64, f64)| {
-            let slack = SLACK * (high - low);
-            value < low - slack || value > high + slack
+        let is_outside = |value: f64, range: (f64, f64)| {
+            let (low, high) = with_slack(range);
+            value < low || value > high
         };
         let ranges = self.model().trained_ranges();
         let rate = before.map_or(0.0, |(last, before)| (input - last.argument) / (time - before));

@@ -20,6 +20,15 @@ struct Reach {
     outside: usize,
 }
 
+/// A rounding beyond a range, as a share of it, is not outside it.
+const SLACK: f64 = 1e-9;
+
+/// A range with the room that roundings need.
+pub(super) fn with_slack((low, high): (f64, f64)) -> (f64, f64) {
+    let slack = SLACK * (high - low);
+    (low - slack, high + slack)
+}
+
 impl Ranges {
     pub fn of(model: &Model) -> Self {
         let inputs = model.names.inputs.iter().zip(&model.trained.inputs);
@@ -48,9 +57,7 @@ impl Reach {
     }
 
     fn take(&mut self, values: &[f64]) {
-        // A rounding beyond the range is not outside it.
-        let slack = 1e-9 * (self.trained.1 - self.trained.0);
-        let (low, high) = (self.trained.0 - slack, self.trained.1 + slack);
+        let (low, high) = with_slack(self.trained);
         self.rows += values.len();
         self.outside += values.iter().filter(|&&value| value < low || value > high).count();
         self.seen = values.iter().fold(self.seen, |(low, high), &value| (low.min(value), high.max(value)));

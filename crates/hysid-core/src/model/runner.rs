@@ -87,10 +87,7 @@ impl<'m> Runner<'m> {
     /// A run of a model, from its initial state where a record has no other.
     pub fn of_model(model: &'m Model) -> Self {
         let run = Self::of_body(&model.body, Some(&model.preprocessing), model.rate);
-        let range = match &model.body {
-            Predictor::Ensemble(ensemble) => ensemble.range(),
-            Predictor::Network { .. } | Predictor::Law(_) => model.trained.inputs[0],
-        };
+        let range = model.first_input_range();
         Self { range, excursion: Excursion::beyond(range), lead_in: &model.lead_in, ..run }
     }
 

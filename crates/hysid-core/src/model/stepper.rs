@@ -160,11 +160,7 @@ impl<'m> Stepper<'m> {
 
 /// For a model with a band: at the beginning of a record.
 fn excursion(model: &Model) -> Option<Excursion> {
-    let range = match &model.body {
-        Predictor::Ensemble(ensemble) => ensemble.range(),
-        _ => model.trained.inputs[0],
-    };
-    model.band().map(|_| Excursion::beyond(range))
+    model.band().map(|_| Excursion::beyond(model.first_input_range()))
 }
 
 impl State {

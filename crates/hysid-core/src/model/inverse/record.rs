@@ -1,7 +1,6 @@
 //! The inverse along a whole record, and the choice of its preview.
 
 use crate::error::{Error, InverseError, Result, SampleError};
-use crate::model::BandLevel;
 use crate::model::inverse::{Inverse, Inverted, Reach};
 
 /// Rows from which a preview is chosen, at most.
@@ -194,14 +193,13 @@ impl Inverse<'_> {
     /// As [`Inverse::run`].
     pub fn best_preview(&self, reference: &Reference<'_>) -> Result<f64> {
         reference.check()?;
-        let sees_time = self.model().needs_time() || self.model().rate().is_some();
-        if !sees_time || reference.time.is_none() {
+        if !self.sees_time() || reference.time.is_none() {
             return Ok(0.0);
         }
         let mut columns = Vec::new();
         let reference = reference.beginning(ROWS_OF_A_CHOICE, &mut columns);
         let mut trial = self.clone();
-        trial.band = None::<BandLevel>;
+        trial.band = None;
         let spread = standard_deviation(reference.wanted);
         let mut cost = |preview: f64| -> Result<(f64, bool)> {
             trial.reset();
