@@ -121,29 +121,36 @@ fn outputs_equal_those_of_the_library_to_the_last_bit() {
     }
 }
 
+/// Random numbers from 0 to 1, in C.
+pub const UNIT: &str = "static uint64_t bits = 7;
+static double unit(void)
+{
+    bits = bits * 6364136223846793005u + 1442695040888963407u;
+    return (double)(bits >> 11) / 9007199254740992.0;
+}
+";
+
+/// Assignments, in C, of random values to the arguments behind the first.
+pub fn random_others(kinds: &[Argument]) -> String {
+    let assignment = |(place, kind): (usize, &Argument)| match kind {
+        Argument::TimeStep => format!("a[{}] = 0.001 + 0.01 * unit();", place + 1),
+        _ => format!("a[{}] = 10.0 * unit();", place + 1),
+    };
+    kinds.iter().enumerate().map(assignment).collect()
+}
+
 /// A program of random steps of all sizes, trials and commits; it fails at a value that is not finite.
 fn soak(kinds: &[Argument]) -> String {
     let arguments = kinds.len();
     let given: String = (0..arguments).map(|index| format!(", a[{index}]")).collect();
-    let others: String = (1..arguments)
-        .map(|index| match kinds[index] {
-            Argument::TimeStep => format!("a[{index}] = 0.001 + 0.01 * unit();"),
-            _ => format!("a[{index}] = 10.0 * unit();"),
-        })
-        .collect();
+    let others = random_others(&kinds[1..]);
     format!(
         "#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include \"actuator.h\"
-static uint64_t bits = 7;
-static double unit(void)
-{{
-    bits = bits * 6364136223846793005u + 1442695040888963407u;
-    return (double)(bits >> 11) / 9007199254740992.0;
-}}
-int main(int count, char **values)
+{UNIT}int main(int count, char **values)
 {{
     static actuator_model model;
     static unsigned char saved[ACTUATOR_STATE_BYTES];

@@ -8,9 +8,8 @@ use hysid_export::{FmiVersion, Options, Target};
 use crate::case::{Case, MODELS, NAME, written};
 use crate::tools::{python, succeeds, tool};
 
-/// Simulates rows of arguments in binary as an importer does, writes outputs in binary, and tries what importers do
-/// besides.
-const DRIVER: &str = "
+/// Validates a unit, and reads rows of arguments in binary.
+pub const OPENED: &str = "
 import sys
 import fmpy, numpy as np
 from fmpy.validation import validate_fmu
@@ -23,6 +22,11 @@ inputs = rows[:, :-1] if has_time else rows
 description = fmpy.read_model_description('actuator.fmu')
 names = [v.name for v in description.modelVariables if v.causality == 'input']
 references = [v.valueReference for v in description.modelVariables if v.causality == 'input']
+";
+
+/// Simulates rows of arguments in binary as an importer does, writes outputs in binary, and tries what importers do
+/// besides.
+const DRIVER: &str = "
 output = [v.valueReference for v in description.modelVariables if v.causality == 'output']
 folder = fmpy.extract('actuator.fmu')
 
@@ -104,7 +108,8 @@ fn importers_find_nothing_wrong_and_outputs_equal_those_of_the_library() {
 
             let case = Case::of(model, ROWS);
             fs::write(folder.path().join("rows"), case.bytes()).unwrap();
-            let arguments = ["-c", DRIVER, &case.arguments.len().to_string(), &case.has_time().to_string()];
+            let driver = format!("{OPENED}{DRIVER}");
+            let arguments = ["-c", &driver, &case.arguments.len().to_string(), &case.has_time().to_string()];
             succeeds(Command::new(&python).current_dir(&folder).args(arguments));
             // The importer adds up the time steps, whose roundings reach rates.
             let difference = case.difference(name, &fs::read(folder.path().join("outputs")).unwrap());

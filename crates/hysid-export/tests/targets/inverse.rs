@@ -9,7 +9,7 @@ use hysid::model::MOST_TRIALS;
 use hysid_export::description::{Argument, RateSource};
 use hysid_export::{Error, InverseOptions, Options, Precision, Target, export};
 
-use crate::c::{STRICT, compilers};
+use crate::c::{STRICT, UNIT, compilers, random_others};
 use crate::case::{MODELS, NAME, written};
 use crate::inverse_case::{InverseCase, code, tight};
 use crate::tools::{succeeds, tool};
@@ -114,25 +114,14 @@ fn test_vectors_of_inverses_agree_in_both_precisions() {
 /// A program of random wanted outputs of all sizes; it fails where a result is not finite or not within its bounds.
 fn soak(kinds: &[Argument], (low, high): (f64, f64)) -> String {
     let given: String = (1..=kinds.len()).map(|index| format!(", a[{index}]")).collect();
-    let others: String = (1..=kinds.len())
-        .map(|index| match kinds[index - 1] {
-            Argument::TimeStep => format!("a[{index}] = 0.001 + 0.01 * unit();"),
-            _ => format!("a[{index}] = 10.0 * unit();"),
-        })
-        .collect();
+    let others = random_others(kinds);
     format!(
         "#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include \"actuator_inverse.h\"
-static uint64_t bits = 7;
-static double unit(void)
-{{
-    bits = bits * 6364136223846793005u + 1442695040888963407u;
-    return (double)(bits >> 11) / 9007199254740992.0;
-}}
-int main(int count, char **values)
+{UNIT}int main(int count, char **values)
 {{
     static actuator_inverse inverse;
     static unsigned char saved[ACTUATOR_INVERSE_STATE_BYTES];

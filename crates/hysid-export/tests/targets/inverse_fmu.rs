@@ -8,24 +8,13 @@ use hysid_export::description::Argument;
 use hysid_export::{FmiVersion, InverseOptions, Options, Target};
 
 use crate::case::{MODELS, NAME, written};
+use crate::fmu::OPENED;
 use crate::inverse_case::{InverseCase, code, tight};
 use crate::tools::{python, succeeds, tool};
 
 /// Runs rows of arguments in binary as an importer does, writes inputs, outputs and reaches in binary, and tries what
 /// importers do besides.
 const DRIVER: &str = "
-import sys
-import fmpy, numpy as np
-from fmpy.validation import validate_fmu
-
-assert validate_fmu('actuator.fmu') == [], validate_fmu('actuator.fmu')
-has_time = sys.argv[2] == 'true'
-rows = np.fromfile('rows').reshape(-1, int(sys.argv[1]))
-steps = rows[:, -1] if has_time else np.ones(len(rows))
-inputs = rows[:, :-1] if has_time else rows
-description = fmpy.read_model_description('actuator.fmu')
-names = [v.name for v in description.modelVariables if v.causality == 'input']
-references = [v.valueReference for v in description.modelVariables if v.causality == 'input']
 outputs = [v.valueReference for v in description.modelVariables if v.causality == 'output'][:3]
 folder = fmpy.extract('actuator.fmu')
 
@@ -107,7 +96,8 @@ fn importers_find_nothing_wrong_and_units_of_inverses_agree() {
             let case = InverseCase::of(model, inverse, ROWS, false);
             fs::write(folder.path().join("rows"), case.bytes()).unwrap();
             let has_time = case.arguments.last() == Some(&Argument::TimeStep);
-            let arguments = ["-c", DRIVER, &(case.arguments.len() + 1).to_string(), &has_time.to_string()];
+            let driver = format!("{OPENED}{DRIVER}");
+            let arguments = ["-c", &driver, &(case.arguments.len() + 1).to_string(), &has_time.to_string()];
             succeeds(Command::new(&python).current_dir(&folder).args(arguments));
             let bytes = fs::read(folder.path().join("outputs")).unwrap();
             let numbers: Vec<f64> =
