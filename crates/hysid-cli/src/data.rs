@@ -249,11 +249,11 @@ struct Columns {
 impl Columns {
     fn read(table: &Table, roles: &Roles) -> Result<Self> {
         let mut cells = CellReader::new(table.delimiter);
-        let mut read = |name: &String, is_output: bool| column_of(table, name, is_output, &mut cells);
-        let time = roles.time.as_ref().map(|name| read(name, false)).transpose()?;
-        let inputs = roles.inputs.iter().map(|name| read(name, false)).collect::<Result<_>>()?;
-        let rate = roles.rate.as_ref().map(|name| read(name, false)).transpose()?;
-        let output = read(&roles.output, true)?;
+        let mut read = |name: &String, kind: Kind| column_of(table, name, kind, &mut cells);
+        let time = roles.time.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
+        let inputs = roles.inputs.iter().map(|name| read(name, Kind::Given)).collect::<Result<_>>()?;
+        let rate = roles.rate.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
+        let output = read(&roles.output, Kind::Output)?;
         Ok(Self { time, inputs, rate, output })
     }
 
@@ -271,8 +271,19 @@ impl Columns {
     }
 }
 
+/// What the numbers of a column are, which decides about blank cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Time, an input or its rate.
+    Given,
+    /// A measured output, which may be blank.
+    Output,
+    /// A wanted output.
+    Wanted,
+}
+
 /// The numbers of a column; a blank output is NaN.
-pub fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellReader) -> Result<Vec<f64>> {
+pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
     let at = |line: u64, problem: &str| {
         anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
@@ -281,7 +292,7 @@ pub fn column_of(table: &Table, name: &str, is_output: bool, cells: &mut CellRea
     let number = |(row, &line): (usize, &u64)| {
         let cell = table.cell(row, place);
         thousands.take(cell, line);
-        number_in(cells, cell, line, is_output, row == 0).map_err(|problem| at(line, &problem))
+        number_in(cells, cell, line, kind, row == 0).map_err(|problem| at(line, &problem))
     };
     let numbers = table.lines.iter().enumerate().map(number).collect::<Result<_>>()?;
     thousands.problem().map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
@@ -292,19 +303,20 @@ pub fn number_in(
     cells: &mut CellReader,
     cell: &str,
     line: u64,
-    is_output: bool,
+    kind: Kind,
     is_first: bool,
 ) -> Result<f64, String> {
     if cell.trim().is_empty() {
-        return match is_output {
-            true => Ok(f64::NAN),
-            false => Err("the cell is empty (only the output may be blank)".into()),
+        return match kind {
+            Kind::Output => Ok(f64::NAN),
+            Kind::Given => Err("the cell is empty (only the output may be blank)".into()),
+            Kind::Wanted => Err("the cell is empty (every row needs a wanted output)".into()),
         };
     }
     cells.number(cell, line).map_err(|problem| {
-        let hint = match (is_output, problem.ends_with("number")) {
-            (true, true) => " (leave the cell empty to drive the model without scoring)",
-            (false, true) if is_first => " (not an input? name the inputs with --input)",
+        let hint = match (kind, problem.ends_with("number")) {
+            (Kind::Output, true) => " (leave the cell empty to drive the model without scoring)",
+            (Kind::Given, true) if is_first => " (not an input? name the inputs with --input)",
             _ => "",
         };
         problem + hint

@@ -11,7 +11,7 @@ use hysid::model::{BandLevel, Model, Prediction, Simulation};
 
 use crate::cell::{CellReader, ThousandsWatch};
 use crate::columns::Roles;
-use crate::data::{explained, number_in, place_of};
+use crate::data::{Kind, explained, number_in, place_of};
 use crate::record_names::RecordNames;
 use crate::table::{Head, Row, Rows, no_rows};
 use crate::terminal::clipped;
@@ -212,8 +212,8 @@ impl<'r, 'm> TableRun<'r, 'm> {
     fn push(&mut self, row: &Row<'_>) -> Result<()> {
         self.thousands.iter_mut().for_each(|(place, watch)| watch.take(row.cell(*place), row.line));
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
-        let mut number = |place: usize, name: &str, is_output: bool, factor: Option<f64>| {
-            let number = number_in(&mut self.numbers, row.cell(place), row.line, is_output, is_first);
+        let mut number = |place: usize, name: &str, kind: Kind, factor: Option<f64>| {
+            let number = number_in(&mut self.numbers, row.cell(place), row.line, kind, is_first);
             let number = number.map_err(|problem| {
                 anyhow!("{}, line {}, column \"{}\": {problem}", self.file, row.line, clipped(name))
             })?;
@@ -221,17 +221,17 @@ impl<'r, 'm> TableRun<'r, 'm> {
         };
         let factors = self.factors;
         if let Some((place, name)) = self.places.time.zip(self.roles.time.as_ref()) {
-            self.block.time.push(number(place, name, false, factors.time)?);
+            self.block.time.push(number(place, name, Kind::Given, factors.time)?);
         }
         let columns = self.places.inputs.iter().zip(&self.roles.inputs).zip(&factors.inputs);
         for (input, ((&place, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
-            input.push(number(place, name, false, factor)?);
+            input.push(number(place, name, Kind::Given, factor)?);
         }
         if let Some((place, name)) = self.places.rate.zip(self.roles.rate.as_ref()) {
-            self.block.rate.push(number(place, name, false, factors.rate)?);
+            self.block.rate.push(number(place, name, Kind::Given, factors.rate)?);
         }
         let output = match self.places.output {
-            Some(place) => number(place, &self.roles.output, true, factors.output)?,
+            Some(place) => number(place, &self.roles.output, Kind::Output, factors.output)?,
             None => f64::NAN,
         };
         if self.wanted.measured {

@@ -2,14 +2,13 @@
 
 use std::ops::Range;
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use hysid::Reference;
 
 use crate::cell::{CellReader, DecimalSign};
 use crate::columns::Roles;
-use crate::data::{column_of, places_of};
+use crate::data::{Kind, column_of, places_of};
 use crate::table::Table;
-use crate::terminal::clipped;
 use crate::units::Factors;
 
 /// The wanted outputs of a table, in the units of the model.
@@ -56,25 +55,18 @@ impl Wanted {
     /// A cell that is no number, a blank wanted output, with its line.
     pub fn of(table: &Table, roles: &Roles, factors: &Factors) -> Result<Self> {
         let mut cells = CellReader::new(table.delimiter);
-        let mut read = |name: &String, factor: Option<f64>, is_output: bool| -> Result<Vec<f64>> {
-            let mut numbers = column_of(table, name, is_output, &mut cells)?;
+        let mut read = |name: &String, factor: Option<f64>, kind: Kind| -> Result<Vec<f64>> {
+            let mut numbers = column_of(table, name, kind, &mut cells)?;
             if let Some(factor) = factor {
                 numbers.iter_mut().for_each(|number| *number *= factor);
             }
             Ok(numbers)
         };
-        let time = roles.time.as_ref().map(|name| read(name, factors.time, false)).transpose()?;
+        let time = roles.time.as_ref().map(|name| read(name, factors.time, Kind::Given)).transpose()?;
         let inputs = roles.inputs.iter().zip(&factors.inputs);
         let others: Vec<Vec<f64>> =
-            inputs.map(|(name, &factor)| read(name, factor, false)).collect::<Result<_>>()?;
-        let wanted = read(&roles.output, factors.output, true)?;
-        if let Some(row) = wanted.iter().position(|wanted| wanted.is_nan()) {
-            let (line, column) = (table.lines[row], clipped(&roles.output));
-            return Err(anyhow!(
-                "{}, line {line}, column \"{column}\": the cell is empty (every row needs a wanted output)",
-                table.file
-            ));
-        }
+            inputs.map(|(name, &factor)| read(name, factor, Kind::Given)).collect::<Result<_>>()?;
+        let wanted = read(&roles.output, factors.output, Kind::Wanted)?;
         let record = |place: crate::data::Place| {
             let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
             WantedRecord {
