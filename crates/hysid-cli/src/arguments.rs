@@ -321,7 +321,7 @@ pub struct Fit {
     /// Exchange the first input and the output, to fit a model of the inverse
     ///
     /// The model then gives the input for a wanted output, by `hysid simulate`. Rows without output before the first and
-    /// behind the last one are left out. See also `hysid invert`, which inverts a model of the system itself.
+    /// after the last one are left out. See also `hysid invert`, which inverts a model of the system itself.
     #[arg(long, help_heading = "Columns", hide_short_help = true)]
     pub inverse: bool,
     /// The model and its training.
@@ -478,7 +478,7 @@ pub struct Invert {
     /// Lowest and highest input, such as 0:150 or -1:1 [default: the trained range]
     #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits)]
     pub limits: Option<(f64, f64)>,
-    /// Largest change of the input in a unit of time [default: none]
+    /// Largest change of the input in a unit of time [default: unlimited]
     #[arg(long, value_name = "RATE", value_parser = limits::slew)]
     pub slew: Option<f64>,
     /// Time by which the search looks ahead in the reference, in the unit of time; 0 for not at all [default: auto]
@@ -489,7 +489,7 @@ pub struct Invert {
     pub preview: Preview,
     /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
     ///
-    /// The columns `<input>_low` and `<input>_high` are the lowest and the highest of them.
+    /// The columns with `_low` and `_high` behind the name of the drive are the lowest and the highest of them.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
     pub band: Option<f64>,
     /// In how many of ten data sets the band is to contain that share.
@@ -727,13 +727,13 @@ pub struct Export {
     /// outputs the first input of the model, the output of the model, and whether it is the wanted one.
     #[arg(long)]
     pub inverse: bool,
-    /// Lowest and highest input of the inverse [default: trained range]
+    /// Lowest and highest input that the inverse gives [default: trained range]
     #[arg(long, value_name = "LOW:HIGH", value_parser = limits::limits)]
     pub limits: Option<(f64, f64)>,
-    /// Largest change of the input of the inverse in a unit of time
+    /// Largest change in a unit of time of the input that the inverse gives [default: unlimited]
     ///
     /// The unit of time is that of the training data. The first sample is free. A step of the inverse in C then takes
-    /// the time step, also if the model does not need it.
+    /// the time step, even if the model does not need it.
     #[arg(long, value_name = "RATE", value_parser = limits::slew)]
     pub slew: Option<f64>,
     /// Which files may be replaced.

@@ -114,7 +114,7 @@ pub fn meaning(reach: Reach) -> &'static str {
         Reach::Reached => "the model has the wanted output",
         Reach::LowLimit => "the wanted output is beyond that of the lowest input",
         Reach::HighLimit => "the wanted output is beyond that of the highest input",
-        Reach::Slew => "the input cannot change so quickly",
+        Reach::Slew => "the input cannot change so quickly, and is on its way",
         Reach::NotMonotone => "no input within the limits has the output: the model is not monotone there",
         Reach::Jump => "the output of the model jumps over the wanted one",
     }

@@ -1,6 +1,6 @@
 //! The inverse of a model: from the wanted output, the input that gives it.
 //!
-//! Each step searches the input whose trial output is the wanted one, from the state that the model has reached, and
+//! Each step searches for the input whose trial output is the wanted one, from the state that the model has reached, and
 //! commits it. So the inverse has the memory of the model, its rate and its wear. Every model has such an inverse where
 //! its output depends on the next input without gap; the result says where it does not. Laws with a closed inverse
 //! propose the input, and a single trial confirms it.
@@ -232,7 +232,8 @@ impl<'m> Inverse<'m> {
         self.tolerance
     }
 
-    /// Advances to the next sample, at which the model has the output `wanted`, in its unit, if that can be.
+    /// Searches for the input of the next sample, and commits it. `wanted` is the output at `time`, or with a preview, from
+    /// the second sample on, at `time + preview`, in its unit.
     ///
     /// Inputs that are reached at trained rates are searched first, for a model with a rate, then all others.
     ///
@@ -317,7 +318,7 @@ impl<'m> Inverse<'m> {
         })
     }
 
-    /// Searches the input at which the output and what is added to it is the wanted one; also gives the input of the
+    /// Searches for the input at which the output and what is added to it is the wanted one; also gives the input of the
     /// last trial.
     fn find(
         &mut self,

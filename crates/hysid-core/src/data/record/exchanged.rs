@@ -11,7 +11,7 @@ impl Record {
         Some(first..last + 1)
     }
 
-    /// The record with its first input and its output exchanged. Rows before the first output and behind the last one are
+    /// The record with its first input and its output exchanged. Rows before the first output and after the last one are
     /// left out. Further inputs and time stay. A given rate and a lead-in belong to the input, and are left out too.
     ///
     /// # Errors
