@@ -2,6 +2,7 @@
 
 mod limits;
 mod model_options;
+mod reading;
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -22,6 +23,7 @@ use hysid_export::Target;
 use crate::reproduction::Experiment;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
+pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
@@ -76,6 +78,8 @@ pub enum Command {
     Validate(Box<Validate>),
     /// Fit all models to the same data and compare their errors on unseen data
     Compare(Compare),
+    /// Show how tables are read: columns, units, ranges, missing values
+    Look(Look),
     /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
     /// Run the paper's experiments and compare the results with the paper
@@ -132,6 +136,9 @@ pub struct ColumnOptions {
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
     #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
+    /// How the tables are read.
+    #[command(flatten)]
+    pub reading: ReadingOptions,
 }
 
 /// In how many data sets a band is to contain its share of the rows.
@@ -266,6 +273,14 @@ Examples:
   hysid compare train.csv --test test.csv
   hysid compare train.csv --test test.csv --models xpnn,preisach,bouc-wen
   hysid compare train.csv --test test.csv --time-limit 60";
+
+const LOOK_EXAMPLES: &str = "\
+Examples:
+  hysid look data.csv
+  hysid look test.xlsx --sheet 2 -o clean.csv
+  hysid look log.txt --skip 12 --decimal comma --missing -999
+
+Options for files that are not read as you expect: hysid look --help, docs/files.md";
 
 const DIAGNOSE_EXAMPLES: &str = "\
 Examples:
@@ -578,6 +593,27 @@ pub struct Compare {
     /// Write no page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
+}
+
+/// Arguments of `look`.
+#[derive(Debug, Args)]
+#[command(after_help = LOOK_EXAMPLES)]
+pub struct Look {
+    /// Tables: text, spreadsheets, MATLAB files, compressed or not; - is standard input
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Write the data as a plain CSV table that every command reads without options
+    #[arg(short, long, value_name = "CLEAN.csv")]
+    pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
 }
 
 /// Arguments of `diagnose`.

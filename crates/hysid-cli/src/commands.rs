@@ -9,6 +9,7 @@ pub mod export;
 pub mod fit;
 pub mod generate;
 pub mod invert;
+pub mod look;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

@@ -5,7 +5,6 @@
 
 mod arguments;
 mod band_coverage;
-mod cell;
 mod checkpoint;
 mod columns;
 mod commands;
@@ -19,12 +18,12 @@ mod files;
 mod identification;
 mod interrupt;
 mod inversion;
+mod looked;
 mod messages;
 mod progress;
 mod record_names;
 mod report;
 mod reproduction;
-mod table;
 mod table_run;
 mod terminal;
 mod timing;
@@ -37,13 +36,13 @@ use clap::error::{ContextValue, ErrorKind};
 
 use std::path::Path;
 
-use arguments::{Arguments, ColumnOptions, Command, RateOption};
+use arguments::{Arguments, ColumnOptions, Command, RateOption, ReadingOptions};
 use columns::Roles;
 use data::Data;
 use hysid::data::record::Dataset;
 use hysid::options::chosen::RateChoice;
+use hysid_tables::{Reading, Table};
 use messages::{StdoutClosed, Usage, note};
-use table::Table;
 
 /// How a command ended when nothing went wrong.
 enum Outcome {
@@ -67,6 +66,7 @@ pub fn run() -> ExitCode {
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
         Command::Invert(arguments) => commands::invert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
@@ -93,16 +93,17 @@ pub fn run() -> ExitCode {
 /// # Errors
 /// As for a file: one line that says what is wrong and where.
 pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
-    let table = Table::from_bytes(Path::new("text"), text)?;
+    let table = Table::from_bytes(Path::new("text"), text, &Reading::default())?;
     let by_names = ColumnOptions {
         record: None,
         time: None,
         input: Vec::new(),
         output: None,
         rate: RateOption::Choice(RateChoice::Auto),
+        reading: ReadingOptions::default(),
     };
     let roles = Roles::detect(&table, &by_names)?;
-    Ok(Data::new(vec![table], roles)?.set)
+    Ok(Data::new(vec![table], roles, None)?.set)
 }
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,

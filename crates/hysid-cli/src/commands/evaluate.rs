@@ -14,14 +14,14 @@ use crate::commands::{check_band, read_model};
 use crate::data::explained;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::messages::{json_results, results, summarised, warning};
-use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
 use crate::units::Factors;
+use hysid_tables::Rows;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
-    let mut rows = Rows::open(&arguments.data)?;
+    let mut rows = Rows::open(&arguments.data, &arguments.columns.reading.reading())?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
     let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
@@ -41,7 +41,12 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         }
         Ok(ControlFlow::Continue(()))
     };
-    let wanted = Wanted { measured: true, cells: false, band: arguments.data_sets.level(arguments.band) };
+    let wanted = Wanted {
+        measured: true,
+        cells: false,
+        band: arguments.data_sets.level(arguments.band),
+        zero: arguments.columns.reading.zero,
+    };
     let warnings = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
     // Errors of converted outputs are in the model's unit, which its name tells.
     let output = if factors.output.is_some() { &model.names().output } else { &roles.output };

@@ -32,7 +32,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let model = Destination::new(out(arguments)?, Kind::Model, force);
     let report =
         (!arguments.no_report).then(|| Destination::new(report_path(model.path()), Kind::Page, force));
-    let tables = read_tables(&arguments.train)?;
+    let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
     let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
     let checkpoint = checkpoint_destination(arguments);
     let outputs: Vec<&Destination> = std::iter::once(&model).chain(&report).chain(&checkpoint).collect();
@@ -49,7 +49,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     }
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
-    let data = Data::new(tables, roles)?;
+    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
     let data = if arguments.inverse { data.exchanged()? } else { data };
     warn_of_ignored(chosen);
     let work = Work {

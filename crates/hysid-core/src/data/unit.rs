@@ -8,11 +8,14 @@ use quantity::Quantity;
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
 const OTHER: [&str; 1] = ["degC"];
 
+/// Further units that do not end a name without brackets.
+const OTHER_ALONE: [&str; 5] = ["°C", "℃", "°F", "Celsius", "n.u."];
+
 /// Names that only time has.
 const TIME_NAMES: [&str; 2] = ["t", "time"];
 
 /// Further names of time, lower case, without blanks and underscores. The values must confirm them.
-const FURTHER_TIME_NAMES: [&str; 25] = [
+const FURTHER_TIME_NAMES: [&str; 29] = [
     "timestamp",
     "elapsed",
     "elapsedtime",
@@ -32,16 +35,23 @@ const FURTHER_TIME_NAMES: [&str; 25] = [
     "temps",
     "tiempo",
     "tempo",
+    "xvalue",
+    "relativetime",
     "tijd",
     "czas",
     "tid",
     "время",
     "时间",
+    "时刻",
     "時間",
+    "時刻",
 ];
 
 /// The usual role of a quantity with this unit in hysteresis, if it has one.
 pub(crate) fn part(unit: &str) -> Option<Part> {
+    if OTHER.contains(&unit) || OTHER_ALONE.contains(&unit) && unit != "n.u." {
+        return Some(Part::Accompanies);
+    }
     Quantity::of(unit)?.part()
 }
 
@@ -84,6 +94,11 @@ fn rounded(factor: f64) -> f64 {
 /// The unit in the name of a column, if there is one.
 pub fn of_column(name: &str) -> Option<String> {
     split(name).1
+}
+
+/// True for a text that is a known unit and nothing else, such as `kN`, `A/m` or `°C`.
+pub fn is_unit(text: &str) -> bool {
+    OTHER.contains(&text) || OTHER_ALONE.contains(&text) || Quantity::of(text).is_some()
 }
 
 /// True for `t`, `time`, and either with a unit of time.

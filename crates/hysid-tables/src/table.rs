@@ -1,19 +1,13 @@
-//! Tables in text files: CSV with a header, its delimiter found out, each row with its line.
+//! A table as a whole: all its cells, each row with its line.
 
-mod beginning;
-mod head;
-mod line_counter;
-mod rows;
-
-use std::io::Read;
 use std::ops::Deref;
 use std::path::Path;
 
 use anyhow::{Result, ensure};
 
-pub use beginning::{DELIMITERS, is_json};
-pub use head::Head;
-pub use rows::{Row, Rows};
+use crate::head::Head;
+use crate::reading::Reading;
+use crate::rows::{LeftOut, Rows};
 
 /// A table as it stands in its file.
 #[derive(Debug)]
@@ -31,6 +25,8 @@ pub struct Origin {
     head: Head,
     /// Line of each row in the file, counted from 1.
     pub lines: Vec<u64>,
+    /// Lines that are no rows.
+    pub left_out: LeftOut,
 }
 
 impl Deref for Table {
@@ -54,19 +50,19 @@ impl Table {
     ///
     /// # Errors
     /// A file that cannot be read, is no text, or is no table with a header and at least one row.
-    pub fn read(path: &Path) -> Result<Self> {
-        Self::of(Rows::open(path)?)
+    pub fn read(path: &Path, reading: &Reading) -> Result<Self> {
+        Self::of(Rows::open(path, reading)?)
     }
 
     /// The table that a file with this content holds.
     ///
     /// # Errors
     /// As of [`Table::read`].
-    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self> {
-        Self::of(Rows::new(path, bytes)?)
+    pub fn from_bytes(path: &Path, bytes: &[u8], reading: &Reading) -> Result<Self> {
+        Self::of(Rows::from_bytes(path, bytes, reading)?)
     }
 
-    fn of(mut rows: Rows<impl Read>) -> Result<Self> {
+    fn of(mut rows: Rows) -> Result<Self> {
         let (mut lines, mut all, mut all_ends) = (Vec::new(), String::new(), Vec::new());
         while let Some(row) = rows.next_row()? {
             let (text, ends) = row.parts();
@@ -74,8 +70,10 @@ impl Table {
             all_ends.extend(ends.iter().map(|end| all.len() + end));
             all.push_str(text);
         }
-        let table = Self { origin: Origin { head: rows.head, lines }, text: all, ends: all_ends };
-        ensure!(!table.lines.is_empty(), "{}", no_rows(&table.file));
+        let is_selection = !rows.head.reading.rows.is_all();
+        let origin = Origin { left_out: rows.left_out, head: rows.head, lines };
+        let table = Self { origin, text: all, ends: all_ends };
+        ensure!(!table.lines.is_empty(), "{}", no_rows(&table.file, is_selection));
         Ok(table)
     }
 
@@ -97,9 +95,12 @@ impl Table {
     }
 }
 
-/// What is said of a table without rows.
-pub fn no_rows(file: &str) -> String {
-    format!("{file}: has a header but no rows")
+/// What is said of a table without rows; `is_selection` if some may have been left out.
+pub fn no_rows(file: &str, is_selection: bool) -> String {
+    match is_selection {
+        true => format!("{file}: has no row that --rows selects"),
+        false => format!("{file}: has a header but no rows"),
+    }
 }
 
 #[cfg(test)]
@@ -107,14 +108,20 @@ mod tests {
     use super::*;
 
     fn lines(text: &str) -> Vec<u64> {
-        Table::from_bytes(Path::new("f"), text.as_bytes()).unwrap().into_origin().lines
+        Table::from_bytes(Path::new("f"), text.as_bytes(), &Reading::default()).unwrap().into_origin().lines
     }
 
     /// The last byte of one cell and the first of the next make a letter together, and nothing alone.
     #[test]
     fn a_letter_cut_in_two_by_a_delimiter_is_no_text() {
         for text in [b"x,y\n1\xc9,\xb72\n".as_slice(), b"x\xc9,\xb7y\n1,2\n"] {
-            let error = Table::from_bytes(Path::new("f"), text).unwrap_err().to_string();
+            let error = Table::from_bytes(
+                Path::new("f"),
+                text,
+                &Reading { encoding: "utf-8".parse().ok(), ..Reading::default() },
+            )
+            .unwrap_err()
+            .to_string();
             assert!(error.contains("f, line"), "{error}");
         }
     }

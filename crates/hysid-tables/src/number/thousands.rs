@@ -1,6 +1,7 @@
 //! Separators of thousands that look like decimal signs: 1.234 beside 987.
 
-use crate::terminal::clipped;
+use super::{CellReader, DecimalSign};
+use hysid_document::visible::clipped;
 
 /// Numbers of each form that make a column one of thousands.
 const FEWEST: usize = 3;
@@ -48,16 +49,23 @@ impl ThousandsWatch {
         }
     }
 
-    /// What is wrong with the column, and the line that shows it first; `None` if nothing is.
-    pub fn problem(&self) -> Option<(u64, String)> {
-        let (cell, line) = self.first.as_ref().filter(|_| !self.is_over)?;
-        let are_thousands = self.whole >= FEWEST && self.reaches_hundreds && self.separated >= FEWEST;
-        are_thousands.then(|| {
+    /// What separates thousands in the column; `None` where they are not separated, or the sign may be a decimal one.
+    pub fn separator(&self) -> Option<DecimalSign> {
+        let (cell, _) = self.first.as_ref().filter(|_| !self.is_over)?;
+        let sign = if cell.contains('.') { DecimalSign::Point } else { DecimalSign::Comma };
+        (self.whole >= FEWEST && self.reaches_hundreds && self.separated >= FEWEST).then_some(sign)
+    }
+
+    /// What is wrong with the column, and the line that shows it first; `None` if nothing is: if its thousands are not
+    /// separated by what `cells` took for the decimal sign, or the user chose that sign.
+    pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
+        let (cell, line) = self.first.as_ref()?;
+        let separator = self.separator()?;
+        (cells.sign() == Some(separator) && !cells.sign_is_chosen()).then(|| {
             let cell = clipped(cell);
             let problem = format!(
                 "\"{cell}\" seems to have a thousands separator: all numbers of this column are whole and \
-                 below 1000, or have exactly three digits after it (remove the separators; if they are \
-                 decimal signs, write the whole numbers with decimals too)"
+                 below 1000, or have exactly three digits after it (choose with --decimal point or --decimal comma)"
             );
             (*line, problem)
         })
@@ -70,12 +78,15 @@ fn is_whole(text: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::NumberFormat;
     use super::*;
 
     fn problem(cells: &[&str]) -> Option<(u64, String)> {
         let mut watch = ThousandsWatch::default();
         cells.iter().zip(2..).for_each(|(cell, line)| watch.take(cell, line));
-        watch.problem()
+        let mut reader = CellReader::new(&NumberFormat::default());
+        cells.iter().zip(2..).for_each(|(cell, line)| drop(reader.number(cell, line)));
+        watch.problem(&reader)
     }
 
     #[test]
