@@ -16,7 +16,7 @@ use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
 use crate::terminal::{clipped, listed};
 use hysid::data::unit::{self, Conversion};
-use hysid_tables::{Head, Table};
+use hysid_tables::{Head, Table, is_record};
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -237,16 +237,12 @@ impl Roles {
 /// Rows of each record of a table, where its name changes.
 fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
     let Some(place) = record.and_then(|name| table.column(name)) else {
-        return std::iter::once(0..table.len()).collect();
+        return std::iter::once(0..table.rows()).collect();
     };
     let name = |row: usize| table.cell(row, place).trim();
-    let begins = (1..table.len()).filter(|&row| name(row) != name(row - 1));
-    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.len()]).collect();
+    let begins = (1..table.rows()).filter(|&row| name(row) != name(row - 1));
+    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.rows()]).collect();
     begins.windows(2).map(|pair| pair[0]..pair[1]).collect()
-}
-
-fn is_record(name: &str) -> bool {
-    ["record", "segment"].contains(&name.to_lowercase().as_str())
 }
 
 /// The name of a column with the unit that the file gives elsewhere.

@@ -232,7 +232,7 @@ struct Naming<'n> {
 /// where time starts again.
 fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]>) -> Result<Vec<Place>> {
     let Some(column) = &roles.record else {
-        let ends = ends_by_time(time.unwrap_or_default(), table.len());
+        let ends = ends_by_time(time.unwrap_or_default(), table.rows());
         let name = |number: usize| match ends.len() {
             1 => naming.stem.to_string(),
             _ => format!("{} ({})", naming.stem, number + 1),
@@ -245,7 +245,7 @@ fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]
     let cell = place_of(table, column)?;
     let mut places: Vec<Place> = Vec::new();
     let mut names = RecordNames::default();
-    for row in 0..table.len() {
+    for row in 0..table.rows() {
         let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
         let name = table.cell(row, cell);
         if !names.begins(name, at)? {
@@ -348,7 +348,7 @@ pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) 
         anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
     };
     let mut column = ColumnReader::new(table, place);
-    let mut numbers = Vec::with_capacity(table.len());
+    let mut numbers = Vec::with_capacity(table.rows());
     for (row, &line) in table.lines.iter().enumerate() {
         let number = column.number(table, cells, table.cell(row, place), line);
         numbers.push(
@@ -364,14 +364,14 @@ pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bo
         Ok(number) if number.is_nan() => match kind {
             Kind::Output => Ok(f64::NAN),
             Kind::Given => {
-                Err(format!("{} (only the output may be missing; choose rows with --rows)", missing(cell)))
+                Err(format!("{} (only the output may be blank; choose rows with --rows)", missing(cell)))
             }
             Kind::Wanted => Err(format!("{} (every row needs a wanted output)", missing(cell))),
         },
         Ok(number) => Ok(number),
         Err(problem) => {
             let hint = match (kind, problem.ends_with("number")) {
-                (Kind::Output, true) => {
+                (Kind::Output, true) if cell.trim().len() <= LONGEST_WORD => {
                     let cell = cell.trim();
                     format!(" (if it stands for a missing value: --missing {})", shown(Path::new(cell)))
                 }
@@ -382,6 +382,9 @@ pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bo
         }
     }
 }
+
+/// Longest word that may stand for a missing value.
+const LONGEST_WORD: usize = 20;
 
 fn missing(cell: &str) -> String {
     match cell.trim() {

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::data::summary::Summary;
-use hysid::diagnosis::before_a_fit;
+use hysid::diagnosis::{DataIssueKind, before_a_fit};
 use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::{Model, Prediction, Provenance};
@@ -90,7 +90,13 @@ pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -
 pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
     // Data that cannot be looked at cannot be fitted to either: the fit says why.
     let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+    let output = format!("\"{}\" ", data.roles.output);
+    let statements = doubtful.into_iter().map(|issue| match (issue.kind, issue.value) {
+        (DataIssueKind::MissingValueMark, Some(value)) if issue.statement.starts_with(&output) => {
+            format!("{} (--missing {value})", issue.statement)
+        }
+        _ => issue.statement,
+    });
     summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }
 

@@ -68,7 +68,7 @@ impl Looked {
             lines_before: layout.preamble,
             header_lines: layout.header_lines.clone(),
             units_line: layout.units_line,
-            rows: table.len(),
+            rows: table.rows(),
             first_line: table.lines.first().copied().unwrap_or_default(),
             last_line: table.lines.last().copied().unwrap_or_default(),
             left_out: table.left_out.described(),
@@ -124,13 +124,13 @@ impl Column {
             }
         }
         if others > 0 && column.note.is_none() {
-            column.note = Some(match others == table.len() - column.missing {
+            column.note = Some(match others == table.rows() - column.missing {
                 true => "text".into(),
                 false => format!("{others} cells are no numbers"),
             });
         }
         if reader.has_stamps() {
-            column.note.get_or_insert_with(|| "seconds since the first time stamp".into());
+            column.note.get_or_insert_with(|| "from its first stamp".into());
         }
         column
     }

@@ -14,7 +14,7 @@ use crate::data::{Kind, checked, explained, offset_of, place_of, warn_of_equal_s
 use crate::record_names::RecordNames;
 use crate::terminal::clipped;
 use crate::units::Factors;
-use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, no_rows, spread_equal, starts_again};
+use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;
@@ -87,7 +87,7 @@ pub fn run(
         run.push(head, &row)?;
     }
     if !run.is_begun {
-        bail!(no_rows(&run.file, !rows.head.reading.rows.is_all()));
+        bail!(rows.head.no_rows());
     }
     run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
@@ -251,7 +251,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         self.records += 1;
         self.offsets = None;
         (self.clock.first, self.clock.step) = (self.clock.now, None);
-        self.simulation.begin(&self.record_name());
+        self.simulation.begin(self.record_name());
     }
 
     /// The name of the present record.

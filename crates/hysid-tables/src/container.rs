@@ -27,6 +27,8 @@ pub struct Text {
     pub reader: Box<dyn Read>,
     /// How it is stored, in words, such as `text, UTF-8`.
     pub stored: String,
+    /// Sheets of a spreadsheet that were not chosen.
+    pub other_sheets: Vec<String>,
 }
 
 impl Text {
@@ -62,21 +64,21 @@ impl Text {
             |what: &str, problem: String| anyhow!("{file}: is {what} that cannot be read: {problem}");
         if first.starts_with(b"PK\x03\x04") || first.starts_with(b"\xd0\xcf\x11\xe0") {
             let bytes = all(&file, reader)?;
-            let (text, sheet) = spreadsheet::text(&bytes, reading.sheet.as_deref())
+            let (text, sheet, other_sheets) = spreadsheet::text(&bytes, reading.sheet.as_deref())
                 .map_err(|problem| failed("a spreadsheet or an archive", problem))?;
             let stored = format!("spreadsheet, sheet {sheet}{packed}");
-            return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored });
+            return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets });
         }
         if matlab::is_one(&first) {
             let bytes = all(&file, reader)?;
             let (text, kind) = matlab::text(bytes, reading.sheet.as_deref())
                 .map_err(|problem| failed("a MATLAB file", problem))?;
             let stored = format!("{kind}{packed}");
-            return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored });
+            return Ok(Self { file, reader: Box::new(Cursor::new(text)), stored, other_sheets: Vec::new() });
         }
         check_kind(&first).map_err(|what| anyhow!("{file}: {what}"))?;
         let (reader, encoding) = encoding::decoded(reader, &first, reading.encoding);
-        Ok(Self { file, reader, stored: format!("text, {encoding}{packed}") })
+        Ok(Self { file, reader, stored: format!("text, {encoding}{packed}"), other_sheets: Vec::new() })
     }
 }
 

@@ -17,6 +17,8 @@ pub struct Head {
     pub file: String,
     /// How the file is stored, in words, such as `text, UTF-8`.
     pub stored: String,
+    /// Sheets of a spreadsheet that were not chosen.
+    pub other_sheets: Vec<String>,
     /// Names of the columns, without surrounding blanks.
     pub header: Vec<String>,
     /// What the table looks like.
@@ -31,7 +33,13 @@ impl Head {
     pub fn new(file: String, stored: String, layout: Layout, reading: Reading) -> Self {
         let header = layout.names.clone();
         let places = header.iter().enumerate().map(|(place, name)| (name.clone(), place)).collect();
-        Self { file, stored, header, layout, reading, places }
+        Self { file, stored, other_sheets: Vec::new(), header, layout, reading, places }
+    }
+
+    /// With the names of the sheets that were not chosen.
+    pub fn with_other_sheets(mut self, names: Vec<String>) -> Self {
+        self.other_sheets = names;
+        self
     }
 
     /// What separates the cells.
@@ -69,6 +77,20 @@ impl Head {
         }
         let [first, others @ ..] = words.as_slice() else { return String::new() };
         if others.is_empty() { first.clone() } else { format!("{first}; {}", others.join(", ")) }
+    }
+
+    /// What is said of a table without rows.
+    pub fn no_rows(&self) -> String {
+        let file = &self.file;
+        match self.other_sheets.as_slice() {
+            _ if !self.reading.rows.is_all() => format!("{file}: has no row that --rows selects"),
+            [] => format!("{file}: has a header but no rows"),
+            others => format!(
+                "{file}: has no rows of numbers in {} (choose another sheet with --sheet: {})",
+                self.stored.rsplit(", ").next().unwrap_or_default(),
+                others.iter().map(|name| clipped(name)).collect::<Vec<_>>().join(", ")
+            ),
+        }
     }
 
     /// Refuses a single column where more are needed: it is likely to be several, separated by something else.

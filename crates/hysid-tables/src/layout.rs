@@ -23,6 +23,14 @@ pub use run::is_row;
 /// Lines that a layout is found from.
 const MOST_LINES: usize = 300;
 
+/// Names of the column that tells records apart.
+const RECORDS: [&str; 2] = ["record", "segment"];
+
+/// True for the name of a column that tells records apart.
+pub fn is_record(name: &str) -> bool {
+    RECORDS.iter().any(|record| name.eq_ignore_ascii_case(record))
+}
+
 /// Rows with names that are a table, and no part of a preamble.
 const FEWEST_ROWS: usize = 3;
 
@@ -115,7 +123,7 @@ impl Layout {
     /// Of a text without a row of numbers: its first line is the header, and what follows is told where it is read.
     fn without_rows(file: &str, lines: &[Line<'_>], reading: &Reading) -> Result<Self> {
         let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
-            bail!("{file}: has only comments (expected a header line and rows of numbers)");
+            bail!("{file}: is empty (expected a header line and rows of numbers)");
         };
         let line = &lines[place];
         let most = |&delimiter: &Delimiter| cells::split(line.text, delimiter).len();
@@ -144,6 +152,11 @@ impl Layout {
     /// Adds units to names that have none: those in the cells, and the seconds that dates and clocks become.
     fn name_units(&mut self) {
         for (place, name) in self.names.iter_mut().enumerate() {
+            // Records have names, such as those of frequencies.
+            if is_record(name) {
+                self.cell_units[place] = None;
+                continue;
+            }
             let unit = match (&self.cell_units[place], self.stamps[place]) {
                 (Some(unit), _) => unit.as_str(),
                 (None, true) => "s",

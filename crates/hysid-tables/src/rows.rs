@@ -81,7 +81,7 @@ pub struct Row<'r> {
 
 impl<'r> Row<'r> {
     /// Number of cells.
-    pub fn len(&self) -> usize {
+    pub fn width(&self) -> usize {
         self.ends.len()
     }
 
@@ -93,7 +93,7 @@ impl<'r> Row<'r> {
 
     /// All cells.
     pub fn cells(self) -> impl Iterator<Item = &'r str> {
-        (0..self.len()).map(move |column| self.cell(column))
+        (0..self.width()).map(move |column| self.cell(column))
     }
 
     /// All cells one after the other, and where each ends.
@@ -102,7 +102,7 @@ impl<'r> Row<'r> {
     }
 
     fn is_blank(&self) -> bool {
-        self.len() == 1 && self.text.trim().is_empty()
+        self.width() == 1 && self.text.trim().is_empty()
     }
 }
 
@@ -125,7 +125,7 @@ impl Rows {
     }
 
     fn of(text: Text, reading: &Reading) -> Result<Self> {
-        let Text { file, mut reader, stored } = text;
+        let Text { file, mut reader, stored, other_sheets } = text;
         let (first, is_all) = beginning(&file, &mut reader)?;
         let valid = match std::str::from_utf8(&first) {
             Ok(text) => text,
@@ -143,7 +143,7 @@ impl Rows {
             Delimiter::Blanks => (Box::new(TabsForBlanks::new(rest)), b'\t'),
         };
         Ok(Self {
-            head: Head::new(file, stored, layout, reading.clone()),
+            head: Head::new(file, stored, layout, reading.clone()).with_other_sheets(other_sheets),
             reader,
             parser: csv_core::ReaderBuilder::new().delimiter(delimiter).build(),
             buffer: Vec::new(),

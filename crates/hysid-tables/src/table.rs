@@ -70,10 +70,9 @@ impl Table {
             all_ends.extend(ends.iter().map(|end| all.len() + end));
             all.push_str(text);
         }
-        let is_selection = !rows.head.reading.rows.is_all();
         let origin = Origin { left_out: rows.left_out, head: rows.head, lines };
         let table = Self { origin, text: all, ends: all_ends };
-        ensure!(!table.lines.is_empty(), "{}", no_rows(&table.file, is_selection));
+        ensure!(!table.lines.is_empty(), "{}", table.no_rows());
         Ok(table)
     }
 
@@ -83,7 +82,7 @@ impl Table {
     }
 
     /// Number of rows.
-    pub fn len(&self) -> usize {
+    pub fn rows(&self) -> usize {
         self.lines.len()
     }
 
@@ -92,14 +91,6 @@ impl Table {
         let index = row * self.header.len() + column;
         let start = if index == 0 { 0 } else { self.ends[index - 1] };
         &self.text[start..self.ends[index]]
-    }
-}
-
-/// What is said of a table without rows; `is_selection` if some may have been left out.
-pub fn no_rows(file: &str, is_selection: bool) -> String {
-    match is_selection {
-        true => format!("{file}: has no row that --rows selects"),
-        false => format!("{file}: has a header but no rows"),
     }
 }
 

@@ -13,8 +13,9 @@ use crate::columns::Roles;
 use crate::csv_text::csv_text;
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
+use crate::identification::data_warnings;
 use crate::looked::Looked;
-use crate::messages::{json_results, note, results};
+use crate::messages::{json_results, note, results, warning};
 use crate::understanding;
 
 /// Lines about the data as a whole that are shown below the tables.
@@ -26,10 +27,13 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
     let roles = Roles::detect(&tables[0], &arguments.columns);
     let looked: Vec<Looked> = tables.iter().map(|table| Looked::of(table, roles.as_ref().ok())).collect();
     let data = roles.and_then(|roles| Data::new(tables, roles, arguments.columns.reading.zero));
+    let warnings =
+        data.as_ref().map_or_else(|_| Vec::new(), |data| data_warnings(data, &Summary::of(&data.set)));
     match arguments.json {
-        true => json_results(&Printed::of(&looked, &data))?,
+        true => json_results(&Printed::of(&looked, &data, &warnings))?,
         false => results(&text(&looked, data.as_ref().ok()))?,
     }
+    warnings.iter().for_each(warning);
     let data = data?;
     if let Some(out) = &arguments.out {
         write(out, &data, arguments)?;
@@ -45,22 +49,25 @@ struct Printed<'l> {
     records: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     guessed: Option<&'static str>,
+    /// What is doubtful about the data.
+    warnings: &'l [String],
     /// Why the data cannot be used as they are.
     #[serde(skip_serializing_if = "Option::is_none")]
     problem: Option<String>,
 }
 
 impl<'l> Printed<'l> {
-    fn of(files: &'l [Looked], data: &Result<Data>) -> Self {
+    fn of(files: &'l [Looked], data: &Result<Data>, warnings: &'l [String]) -> Self {
         match data {
             Ok(data) => Self {
                 files,
                 records: Some(data.set.records().len()),
                 guessed: data.roles.guessed,
+                warnings,
                 problem: None,
             },
             Err(problem) => {
-                Self { files, records: None, guessed: None, problem: Some(format!("{problem:#}")) }
+                Self { files, records: None, guessed: None, warnings, problem: Some(format!("{problem:#}")) }
             }
         }
     }

@@ -47,6 +47,9 @@ const FURTHER_TIME_NAMES: [&str; 29] = [
     "時刻",
 ];
 
+/// Words of longer names of time, such as `Running Time`.
+const TIME_WORDS: [&str; 6] = ["time", "zeit", "temps", "tiempo", "tempo", "время"];
+
 /// The usual role of a quantity with this unit in hysteresis, if it has one.
 pub(crate) fn part(unit: &str) -> Option<Part> {
     if OTHER.contains(&unit) || OTHER_ALONE.contains(&unit) && unit != "n.u." {
@@ -109,7 +112,10 @@ pub fn is_time(name: &str) -> bool {
 /// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and
 /// for all names with a unit of time. The values must confirm it.
 pub fn may_be_time(name: &str) -> bool {
-    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_unit_of_time(split(name).1.as_deref())
+    let (quantity, unit) = split(name);
+    let has_word = || quantity.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| TIME_WORDS.contains(&word));
+    let is_in_time = is_in_unit_of_time(unit.as_deref());
+    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_time || unit.is_none() && has_word()
 }
 
 fn is_named_time(name: &str, names: &[&str]) -> bool {
@@ -138,6 +144,11 @@ pub fn split(name: &str) -> (&str, Option<String>) {
             let unit = Some(unit.trim().to_string()).filter(|unit| !unit.is_empty() && unit != "-");
             return (quantity.trim_end_matches([' ', '_']), unit);
         }
+    }
+    if let Some((quantity, unit)) = name.rsplit_once(", ")
+        && is_unit(unit.trim())
+    {
+        return (quantity.trim(), Some(unit.trim().to_string()));
     }
     if let Some((quantity, unit)) = name.rsplit_once('/')
         && is_known(unit.trim())
@@ -203,6 +214,8 @@ mod tests {
             ("v_mm_s", "mm/s"),
             ("M_kN_m", "kN m"),
             ("t_µs", "µs"),
+            ("Force, kN", "kN"),
+            ("Сила, кН", "кН"),
         ] {
             assert_eq!(of_column(name).as_deref(), Some(unit), "{name}");
         }

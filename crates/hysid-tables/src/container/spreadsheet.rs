@@ -6,11 +6,11 @@ use calamine::{Data, ExcelDateTime, Range, Reader, open_workbook_auto_from_rs};
 
 use crate::number::shortest;
 
-/// The text of a sheet and its name; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
+/// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
 ///
 /// # Errors
 /// No spreadsheet, no such sheet, in words.
-pub fn text(bytes: &[u8], chosen: Option<&str>) -> Result<(String, String), String> {
+pub fn text(bytes: &[u8], chosen: Option<&str>) -> Result<(String, String, Vec<String>), String> {
     let mut book =
         open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| "it is of an unknown kind".to_string())?;
     let names = book.sheet_names();
@@ -20,22 +20,24 @@ pub fn text(bytes: &[u8], chosen: Option<&str>) -> Result<(String, String), Stri
         let by_number = chosen.parse::<usize>().ok().and_then(|number| names.get(number.checked_sub(1)?));
         let name = names.iter().find(|name| *name == chosen).or(by_number);
         let name = name.ok_or_else(|| format!("there is no sheet \"{chosen}\" (sheets: {})", listed()))?;
-        return Ok((lines(&sheet(name)?), name.clone()));
+        return Ok((lines(&sheet(name)?), name.clone(), others(&names, name)));
     }
     for name in &names {
         let range = sheet(name)?;
         if !range.is_empty() {
-            return Ok((lines(&range), name.clone()));
+            return Ok((lines(&range), name.clone(), others(&names, name)));
         }
     }
     Err("all its sheets are empty".into())
 }
 
+fn others(names: &[String], chosen: &str) -> Vec<String> {
+    names.iter().filter(|name| *name != chosen).cloned().collect()
+}
+
 fn lines(range: &Range<Data>) -> String {
-    let (row, column) = range.start().unwrap_or_default();
+    let (row, _) = range.start().unwrap_or_default();
     let mut text = "\n".repeat(row as usize);
-    // Columns that are empty in the sheet on the left are no columns of the table.
-    let _ = column;
     for cells in range.rows() {
         for (place, cell) in cells.iter().enumerate() {
             if place > 0 {
@@ -75,12 +77,12 @@ fn push_words(text: &mut String, words: &str) {
 fn stamp(date: &ExcelDateTime) -> String {
     let days = date.as_f64();
     let seconds = (days - days.floor()) * 86_400.0;
-    // Spreadsheets store days: nanoseconds are beyond their digits.
-    let whole = (seconds * 1e6).round() / 1e6;
+    // Spreadsheets store days with fifteen digits: microseconds are beyond them.
+    let whole = (seconds * 1e5).round() / 1e5;
     let clock = |hours: f64| {
         let minutes = (whole / 60.0).floor();
         let within_hour = minutes - 60.0 * (minutes / 60.0).floor();
-        format!("{:.0}:{within_hour:02.0}:{:09.6}", hours + (minutes / 60.0).floor(), whole - 60.0 * minutes)
+        format!("{:.0}:{within_hour:02.0}:{:08.5}", hours + (minutes / 60.0).floor(), whole - 60.0 * minutes)
     };
     if date.is_duration() || days < 1.0 {
         return clock(24.0 * days.floor());

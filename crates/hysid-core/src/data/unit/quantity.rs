@@ -107,7 +107,7 @@ fn symbol(text: &str) -> Option<Quantity> {
 /// Names, factor to base units and dimension. A name is exact: `MN` is not `mN`.
 #[rustfmt::skip]
 const SYMBOLS: &[(&str, f64, Dimension)] = &[
-    ("s sec secs second seconds с сек 秒", 1.0, TIME), ("ms msec мс 毫秒 ミリ秒", 1e-3, TIME), ("us µs μs usec", 1e-6, TIME), ("ns", 1e-9, TIME),
+    ("s sec Sec secs second seconds с сек 秒", 1.0, TIME), ("ms msec мс 毫秒 ミリ秒", 1e-3, TIME), ("us µs μs usec", 1e-6, TIME), ("ns", 1e-9, TIME),
     ("min minutes", 60.0, TIME), ("h hours", 3600.0, TIME), ("d", 86400.0, TIME),
     ("m м 米", 1.0, LENGTH), ("mm мм 毫米", 1e-3, LENGTH), ("cm см 厘米", 1e-2, LENGTH), ("um µm μm мкм 微米", 1e-6, LENGTH), ("nm", 1e-9, LENGTH),
     ("km", 1e3, LENGTH), ("inch in \"", 0.0254, LENGTH), ("ft '", 0.3048, LENGTH),
