@@ -179,6 +179,15 @@ impl Candidate {
         near
     }
 
+    /// The same searched from as many starts and in as many epochs as by itself.
+    pub fn thorough(&self) -> Self {
+        let mut thorough = self.clone();
+        if let FitSpec::Classical(options) = &mut thorough.request {
+            (options.starts, options.epochs) = (None, None);
+        }
+        thorough
+    }
+
     /// The rows that it is fitted to: all, or some of many. The memory runs through all.
     pub fn rows_of<'d>(&self, data: &'d Dataset) -> Cow<'d, Dataset> {
         if self.is_searched() && data.scored() > ROWS_OF_A_SEARCH {

@@ -29,6 +29,10 @@ const FEW_FOLDS: usize = 3;
 /// error of the best candidate so far on what was held out.
 const WORTH_A_TRIAL: f64 = 2.0;
 
+/// For data without noise, a law is tried on the folds if its error in haste, as a share of the standard deviation, is at
+/// most this: a thorough search may end at a fraction of it.
+const NEARLY_EXACT: f64 = 0.03;
+
 /// A law fitted in haste is given up if, up to an epoch, its error is more than so many times what it may be in the
 /// end.
 const PROMISING: [(usize, f64); 3] = [(3, f64::INFINITY), (6, 3.0), (10, 1.7)];
@@ -181,22 +185,31 @@ impl Stages<'_, '_, '_> {
         let all: Vec<usize> = (0..self.bench.folds.len()).collect();
         let Some(best) = self.best(&all) else { return laws };
         let few = self.bench.data.thinned(ROWS_IN_HASTE);
+        let is_without_noise = best.inside < WITHOUT_NOISE.ln();
+        let least = if is_without_noise { NEARLY_EXACT } else { 0.0 };
         let most_percent = |law: &Candidate| {
-            100.0 * (best.inside + WORTH_A_TRIAL.ln() - self.evidence.prior(law.asked())).exp()
+            let worth = (best.inside + WORTH_A_TRIAL.ln() - self.evidence.prior(law.asked())).exp();
+            100.0 * worth.max(least)
         };
         let fit = |law: Candidate| {
             let most = most_percent(&law);
             let is_promising = |progress: &Progress| {
                 let allowed = PROMISING.iter().find(|(epoch, _)| progress.epoch <= *epoch);
                 let allowed = allowed.map_or(1.0, |(_, times)| *times);
-                progress.train_nrmse_percent.is_nan() || progress.train_nrmse_percent <= allowed * most
+                is_without_noise
+                    || progress.train_nrmse_percent.is_nan()
+                    || progress.train_nrmse_percent <= allowed * most
             };
             let fitted = self.bench.work.fit_while(&law.in_haste(), &few, 0, is_promising).ok().flatten();
             let error = fitted
                 .as_ref()
                 .and_then(|fitted| fitted.model.provenance().trained_error().nrmse_std_percent);
             let is_worth = error.is_some_and(|error| error <= most);
-            (law.near(fitted.map_or_else(Vec::new, |fitted| fitted.searched)), is_worth)
+            let next = match is_without_noise {
+                true => law.thorough(),
+                false => law.near(fitted.map_or_else(Vec::new, |fitted| fitted.searched)),
+            };
+            (next, is_worth)
         };
         let tried: Vec<(Candidate, bool)> = laws.into_par_iter().map(fit).collect();
         let is_worth = |(_, is_worth): &(Candidate, bool)| *is_worth;
