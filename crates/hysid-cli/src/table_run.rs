@@ -25,6 +25,8 @@ const BLOCK: usize = 4096;
 pub struct Wanted {
     /// The measured outputs.
     pub measured: bool,
+    /// Time, inputs and rate.
+    pub drive: bool,
     /// The cells as they are.
     pub cells: bool,
     /// A band of this level.
@@ -47,9 +49,40 @@ pub struct Simulated<'r> {
 }
 
 impl<'r> Simulated<'r> {
+    /// Their time, inputs and rate, if these are wanted.
+    pub fn drive(&self) -> &'r Drive {
+        &self.waiting.drive
+    }
+
     /// The cells of a row, if these are wanted.
     pub fn cells(&self, row: usize) -> impl Iterator<Item = &'r str> {
         self.waiting.cells(row)
+    }
+}
+
+/// Time, inputs and rate of rows, column by column, of which the first are those that are simulated.
+#[derive(Default)]
+pub struct Drive {
+    /// Time; empty if there is none.
+    pub time: Vec<f64>,
+    /// Inputs.
+    pub inputs: Vec<Vec<f64>>,
+    /// Rate of the first input; empty if no column has it.
+    pub rate: Vec<f64>,
+}
+
+impl Drive {
+    /// Adds the last row of a block.
+    fn push_last(&mut self, block: &Block) {
+        self.inputs.resize(block.inputs.len(), Vec::new());
+        self.time.extend(block.time.last());
+        self.rate.extend(block.rate.last());
+        self.inputs.iter_mut().zip(&block.inputs).for_each(|(input, from)| input.extend(from.last()));
+    }
+
+    fn drop_first(&mut self, rows: usize) {
+        let columns = self.inputs.iter_mut().chain([&mut self.time, &mut self.rate]);
+        columns.for_each(|column| drop(column.drain(..rows.min(column.len()))));
     }
 }
 
@@ -138,6 +171,7 @@ struct Block {
 struct Waiting {
     lines: Vec<u64>,
     measured: Vec<f64>,
+    drive: Drive,
     width: usize,
     text: String,
     ends: Vec<usize>,
@@ -241,6 +275,9 @@ impl<'r, 'm> TableRun<'r, 'm> {
         self.block.output.push(output);
         self.block.rows += 1;
         self.waiting.push(row, self.wanted, output);
+        if self.wanted.drive {
+            self.waiting.drive.push_last(&self.block);
+        }
         Ok(())
     }
 
@@ -348,6 +385,7 @@ impl Waiting {
     fn drop_first(&mut self, rows: usize) {
         self.lines.drain(..rows);
         self.measured.drain(..rows.min(self.measured.len()));
+        self.drive.drop_first(rows);
         let cells = (rows * self.width).min(self.ends.len());
         if cells > 0 {
             let end = self.ends[cells - 1];

@@ -55,7 +55,12 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, roles: &roles, delimiter: rows.head.delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter: rows.head.delimiter, text: header };
-    let wanted = Wanted { cells: true, measured: false, band: arguments.data_sets.level(arguments.band) };
+    let wanted = Wanted {
+        drive: false,
+        cells: true,
+        measured: false,
+        band: arguments.data_sets.level(arguments.band),
+    };
     let mut take = |simulated: &Simulated<'_>| {
         output.add(simulated)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
