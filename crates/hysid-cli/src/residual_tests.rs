@@ -93,10 +93,11 @@ pub fn text(residuals: &Residuals) -> String {
         true => format!("{} rows", residuals.rows),
         false => format!("{} of {} rows, in evenly spaced stretches", residuals.rows, residuals.scored),
     };
-    text + &format!(
-        "(residual: measured minus simulated output, {tested}; p: probability of as much\nwithout structure, corrected for \
-         the number of tests)\n"
-    )
+    let words = format!(
+        "(residual: measured minus simulated output, {tested}; p: probability of as much without structure, corrected for \
+         the number of tests)"
+    );
+    text + &indented(&words, 0)
 }
 
 /// Columns with their text at the left.

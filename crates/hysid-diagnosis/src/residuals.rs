@@ -16,10 +16,10 @@
 //! use hysid_core::data::record::Dataset;
 //! use hysid_diagnosis::residuals::{Residuals, ResidualOptions, ResidualTest};
 //! // The measured output has a viscous part, the simulated one does not.
-//! let x: Vec<f64> = (0..4000).map(|k| (0.01 * k as f64).sin() * (1.0 + 0.3 * (0.0007 * k as f64).sin())).collect();
+//! let x: Vec<f64> = (0..4000).map(|k| (0.1 * k as f64).sin() * (1.0 + 0.3 * (0.007 * k as f64).sin())).collect();
 //! let rate = |k: usize| if k == 0 { 0.0 } else { x[k] - x[k - 1] };
 //! let noise = |k: usize| 0.1 * (7.3 * (k * k) as f64).sin();
-//! let y: Vec<f64> = x.iter().enumerate().map(|(k, x)| x + 20.0 * rate(k) + noise(k)).collect();
+//! let y: Vec<f64> = x.iter().enumerate().map(|(k, x)| x + 2.0 * rate(k) + noise(k)).collect();
 //! let residuals = Residuals::of(&Dataset::from_slices(&x, &y)?, &[x.clone()], &ResidualOptions::default())?;
 //! assert!(residuals.is_found(ResidualTest::Rate));
 //! # Ok::<(), hysid_core::Error>(())

@@ -38,7 +38,7 @@ def test_structure_is_found_with_what_helps(law):
     x, y = noisy(3)
     residuals = law.residuals(x, y + 2.0 * np.gradient(x))
     rate = residuals["rate"]
-    assert rate.verdict == "found" and rate.adjusted_p_value < 0.001
+    assert rate.verdict == "found" and rate.adjusted_p_value < 0.05
     assert "option rate" in rate.advice
 
 
