@@ -254,6 +254,7 @@ const EVALUATE_EXAMPLES: &str = "\
 Examples:
   hysid evaluate model.json test.csv
   hysid evaluate model.json test.csv --band 0.9
+  hysid evaluate model.json test.csv --residuals
   hysid evaluate model.json test.csv --json";
 
 const INVERT_EXAMPLES: &str = "\
@@ -540,6 +541,11 @@ pub struct Evaluate {
     /// In how many of ten data sets the band is to contain that share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
+    /// Test the residual for structure: whiteness, correlation with the input, size and bias by place
+    ///
+    /// Says for each test what was found and what helps (docs/residuals.md). The rows are kept in memory.
+    #[arg(long)]
+    pub residuals: bool,
     /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,

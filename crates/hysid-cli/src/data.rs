@@ -138,6 +138,7 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid::Error, roles: &Rol
         (DataProblem::TooFewRows { found, needed }, ..) => {
             anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
         }
+        (problem @ DataProblem::TooFewForTests { .. }, ..) => anyhow!("{file}: {problem}"),
         (
             DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
             _,

@@ -24,6 +24,7 @@ mod progress;
 mod record_names;
 mod report;
 mod reproduction;
+mod residual_tests;
 mod table_run;
 mod terminal;
 mod timing;

@@ -27,6 +27,8 @@ const MOST_EQUAL: usize = 16;
 pub struct Wanted {
     /// The measured outputs.
     pub measured: bool,
+    /// Time, inputs and rate.
+    pub drive: bool,
     /// The cells as they are.
     pub cells: bool,
     /// A band of this level.
@@ -51,9 +53,40 @@ pub struct Simulated<'r> {
 }
 
 impl<'r> Simulated<'r> {
+    /// Their time, inputs and rate, if these are wanted.
+    pub fn drive(&self) -> &'r Drive {
+        &self.waiting.drive
+    }
+
     /// The cells of a row, if these are wanted.
     pub fn cells(&self, row: usize) -> impl Iterator<Item = &'r str> {
         self.waiting.cells(row)
+    }
+}
+
+/// Time, inputs and rate of rows, column by column, of which the first are those that are simulated.
+#[derive(Default)]
+pub struct Drive {
+    /// Time; empty if there is none.
+    pub time: Vec<f64>,
+    /// Inputs.
+    pub inputs: Vec<Vec<f64>>,
+    /// Rate of the first input; empty if no column has it.
+    pub rate: Vec<f64>,
+}
+
+impl Drive {
+    /// Adds the rows of a block.
+    fn push(&mut self, block: &Block) {
+        self.inputs.resize(block.inputs.len(), Vec::new());
+        self.time.extend(&block.time);
+        self.rate.extend(&block.rate);
+        self.inputs.iter_mut().zip(&block.inputs).for_each(|(input, from)| input.extend(from));
+    }
+
+    fn drop_first(&mut self, rows: usize) {
+        let columns = self.inputs.iter_mut().chain([&mut self.time, &mut self.rate]);
+        columns.for_each(|column| drop(column.drain(..rows.min(column.len()))));
     }
 }
 
@@ -161,6 +194,7 @@ struct Block {
 struct Waiting {
     lines: Vec<u64>,
     measured: Vec<f64>,
+    drive: Drive,
     width: usize,
     text: String,
     ends: Vec<usize>,
@@ -312,6 +346,9 @@ impl<'r, 'm> TableRun<'r, 'm> {
                 self.fingerprint.add(self.block.inputs.iter().map(|input| input[row]), output);
             }
         }
+        if self.wanted.drive {
+            self.waiting.drive.push(&self.block);
+        }
     }
 
     /// Simulates the block, and the rest of the record if it ends.
@@ -435,6 +472,7 @@ impl Waiting {
     fn drop_first(&mut self, rows: usize) {
         self.lines.drain(..rows);
         self.measured.drain(..rows.min(self.measured.len()));
+        self.drive.drop_first(rows);
         let cells = (rows * self.width).min(self.ends.len());
         if cells > 0 {
             let end = self.ends[cells - 1];

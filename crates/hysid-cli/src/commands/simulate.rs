@@ -57,6 +57,7 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter, text: header };
     let wanted = Wanted {
+        drive: false,
         cells: true,
         measured: false,
         band: arguments.data_sets.level(arguments.band),

@@ -17,6 +17,7 @@ from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import Progress, fit
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
+from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
 from hysid.model import Errors, Member, Model, Prediction, Stepper
@@ -48,9 +49,12 @@ __all__ = [
     "Minimum",
     "Model",
     "ModelDiagnosis",
+    "ParameterInterval",
     "Prediction",
     "Progress",
     "Records",
+    "ResidualFinding",
+    "Residuals",
     "Specimen",
     "Stepper",
     "Validation",

@@ -19,6 +19,7 @@ from hysid._data import Column, Columns, columns
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
 from hysid._inverse import Inverse, Inversion, Reference
+from hysid._residuals import ParameterInterval, Residuals, intervals_of
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -589,6 +590,75 @@ class Model:
         return self._evaluated(
             arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
         )
+
+    def residuals(
+        self,
+        x: Values,
+        y: Values,
+        time: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        records: ArrayLike | None = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+    ) -> Residuals:
+        """Test the residual of a free run for structure: whiteness, correlation with the input, size and bias by place.
+
+        Parameters
+        ----------
+        x, y, time, rate, records : array
+            As of `evaluate`.
+        initial_state : str, optional
+            As of `simulate`.
+        same_units : bool
+            As of `simulate`.
+
+        Returns
+        -------
+        Residuals
+            A finding for each test, with its p-value and what helps.
+
+        Raises
+        ------
+        ValueError
+            Invalid inputs, or fewer than 50 rows with a measured output.
+        """
+        state = name_of("initial_state", initial_state)
+        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        data = arranged.dataset()
+        content = json.loads(self._native.residuals(data, state))
+        if arranged.output is not None and arranged.output.name is None:
+            content["output"] = self.output
+        warn(self._native.range_warnings(data))
+        return Residuals(content)
+
+    def parameter_intervals(
+        self,
+        x: Values,
+        y: Values,
+        time: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        records: ArrayLike | None = None,
+    ) -> list[ParameterInterval] | None:
+        """Compute 95 % confidence intervals of the parameters of a classical law from its training data.
+
+        Parameters
+        ----------
+        x, y, time, rate, records : array
+            The data that the model was fitted to, as of `fit`. The model file does not contain the intervals.
+
+        Returns
+        -------
+        list of ParameterInterval or None
+            One for each parameter of the law. None for networks, ensembles, and laws without intervals.
+
+        Raises
+        ------
+        ValueError
+            Data that the model was not fitted to.
+        """
+        printed = self._native.parameter_intervals(columns(x, y, time, rate, records).dataset())
+        return None if printed is None else intervals_of(printed)
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
         """Columns in the units of the training, converted where names contain units; warns of conversions."""
