@@ -31,6 +31,7 @@ mod noise;
 mod odd_symmetry;
 mod orientation;
 mod rate_dependence;
+pub mod reversal_curves;
 mod saturation;
 mod significance;
 mod smoothing;
@@ -42,13 +43,14 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-pub use cycles::Cycle;
+pub use cycles::{Cycle, CycleOptions, CycleTable};
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 pub use hysid_core::property::Property;
 pub use model::ModelDiagnosis;
 pub use rate_dependence::delay::{self, Delay};
+pub use reversal_curves::{ReversalCurveOptions, ReversalCurves};
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;

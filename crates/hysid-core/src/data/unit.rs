@@ -1,8 +1,10 @@
 //! Units in the names of columns: `force [kN]`, `Time (s)`, `x / mm`, `H_A_per_m`.
 
+mod derived;
 mod quantity;
 
 use crate::data::column::Part;
+pub use derived::{energy, power, quotient};
 use quantity::Quantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
