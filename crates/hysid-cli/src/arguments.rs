@@ -1,5 +1,6 @@
 //! The command line.
 
+mod cycles;
 mod limits;
 mod model_options;
 
@@ -20,6 +21,7 @@ use hysid::specimens::Specimen;
 use hysid_export::Target;
 
 use crate::reproduction::Experiment;
+pub use cycles::Cycles;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
 
@@ -78,6 +80,8 @@ pub enum Command {
     Compare(Compare),
     /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
+    /// Table of cycles: energy, damping, stiffness, coercive field, losses, width, creep
+    Cycles(Cycles),
     /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),
     /// Write training and test data of a synthetic specimen

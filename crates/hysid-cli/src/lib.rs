@@ -11,6 +11,7 @@ mod columns;
 mod commands;
 mod comparison;
 mod csv_text;
+mod cycles;
 mod data;
 mod date;
 mod diagnosis;
@@ -21,6 +22,7 @@ mod interrupt;
 mod inversion;
 mod messages;
 mod progress;
+mod quantities;
 mod record_names;
 mod report;
 mod reproduction;
@@ -68,6 +70,7 @@ pub fn run() -> ExitCode {
         Command::Invert(arguments) => commands::invert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
+        Command::Cycles(arguments) => commands::cycles::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),

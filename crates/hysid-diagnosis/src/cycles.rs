@@ -96,6 +96,15 @@ impl Cycle {
     }
 }
 
+/// The backbones of all records, from where each began.
+pub(crate) fn backbones(survey: &BranchSet) -> Vec<BackbonePoint> {
+    let of_record = |record: usize| {
+        let begin = survey.of_record(record).first().map_or(0.0, |branch| branch.from);
+        backbone::backbone(survey, record, begin)
+    };
+    (0..survey.data.records().len()).flat_map(of_record).collect()
+}
+
 /// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
 pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
     let mut found = Vec::new();

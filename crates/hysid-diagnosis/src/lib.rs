@@ -43,7 +43,7 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-pub use cycles::{Cycle, CycleOptions, CycleTable};
+pub use cycles::{BackbonePoint, Cycle, CycleOptions, CycleTable};
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
@@ -202,6 +202,9 @@ pub struct Diagnosis {
     /// Reversals of the first input below this are none, in its unit.
     #[serde(skip)]
     pub smallest_reversal: f64,
+    /// The backbone of each record.
+    #[serde(skip)]
+    pub backbone: Vec<BackbonePoint>,
     /// Cycles of the first input with an output, in the order of the data.
     pub cycles: Vec<Cycle>,
     /// What in the data would mislead a fit, warnings first.
@@ -265,6 +268,7 @@ impl Diagnosis {
             output_noise: survey.output_noise.deviation(),
             input_noise: survey.input_noise.deviation(),
             turning_points: turning_rows.iter().map(Vec::len).sum(),
+            backbone: cycles::backbones(survey),
             turning_rows,
             smallest_reversal: survey.smallest_reversal,
             cycles,

@@ -32,6 +32,19 @@ pub(super) struct Path {
     turns: (usize, usize),
 }
 
+/// What of a path is its loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Closure {
+    /// All of it.
+    Whole,
+    /// The input went beyond where it began: the loop ends where it comes back, which closes a loop of a material with
+    /// return-point memory.
+    EndCut,
+    /// The input did not come back to where it began: the loop begins where it first had the input of the end. The outputs
+    /// there differ.
+    BeginningCut,
+}
+
 impl Path {
     /// The part between two places, which are rows and shares of the step to the next row. `turns` are the rows where its
     /// first branch ends and its last one begins.
@@ -53,27 +66,48 @@ impl Path {
         self.y.iter().filter(|y| y.is_nan()).count()
     }
 
-    /// The part over which the input comes back to where it was: from where the first branch passes the input of the end, or
-    /// up to where the last branch passes the input of the beginning. The path as it is, if they do not.
-    pub fn closed(self) -> Self {
-        let (Some(&first), Some(&last)) = (self.x.first(), self.x.last()) else { return self };
-        if first == last {
+    /// The path without rows at its ends that have no output, as far as the input hardly moves there: by a share of its swing.
+    pub fn without_blank_ends(mut self, share: f64) -> Self {
+        let (low, high) = range(&self.x);
+        let is_measured = |y: &f64| !y.is_nan();
+        let (Some(first), Some(last)) =
+            (self.y.iter().position(is_measured), self.y.iter().rposition(is_measured))
+        else {
             return self;
+        };
+        let end = self.x.len() - 1;
+        let moves = (self.x[first] - self.x[0]).abs().max((self.x[end] - self.x[last]).abs());
+        if moves <= share * (high - low) && last > first {
+            self.x = self.x[first..=last].to_vec();
+            self.y = self.y[first..=last].to_vec();
+            let place = |row: usize| row.saturating_sub(first).min(last - first);
+            self.turns = (place(self.turns.0), place(self.turns.1));
+        }
+        self
+    }
+
+    /// The part over which the input comes back to where it was, and how that was reached.
+    pub fn closed(self) -> (Self, Closure) {
+        let (Some(&first), Some(&last)) = (self.x.first(), self.x.last()) else {
+            return (self, Closure::Whole);
+        };
+        if first == last {
+            return (self, Closure::Whole);
         }
         let passes = |level: f64| move |pair: &[f64]| (pair[0] - level) * (pair[1] - level) <= 0.0;
         let (ends, begins) = self.turns;
         let early = self.x[..=ends].windows(2).position(passes(last));
         if let Some(row) = early {
             let share = share(&self.x, row, last);
-            return self.from((row, share));
+            return (self.from((row, share)), Closure::BeginningCut);
         }
         let late = self.x[begins..].windows(2).rposition(passes(first));
         match late.map(|row| begins + row) {
             Some(row) => {
                 let share = share(&self.x, row, first);
-                self.up_to((row, share))
+                (self.up_to((row, share)), Closure::EndCut)
             }
-            None => self,
+            None => (self, Closure::Whole),
         }
     }
 
@@ -135,16 +169,29 @@ mod tests {
             Path::between(&Record::new("r", vec![x.to_vec()], y).unwrap(), (0.0, (x.len() - 1) as f64), turns)
         };
         // It ends above its beginning: from where it first had the input of its end.
-        assert_eq!(path(&[0.0, 2.0, 4.0, 1.0], (2, 2)).closed().x, [1.0, 2.0, 4.0, 1.0]);
+        assert_eq!(path(&[0.0, 2.0, 4.0, 1.0], (2, 2)).closed().0.x, [1.0, 2.0, 4.0, 1.0]);
         // It ends below: up to where it last had the input of its beginning.
-        let below = path(&[0.0, 4.0, 2.0, -2.0], (1, 1)).closed();
+        let below = path(&[0.0, 4.0, 2.0, -2.0], (1, 1)).closed().0;
         assert_eq!((below.x, below.y), (vec![0.0, 4.0, 2.0, 0.0], vec![0.0, 8.0, 4.0, 0.0]));
-        assert_eq!(path(&[0.0, 1.0, 0.0], (1, 1)).closed().x, [0.0, 1.0, 0.0]);
+        assert_eq!(path(&[0.0, 1.0, 0.0], (1, 1)).closed().0.x, [0.0, 1.0, 0.0]);
         // From one passing upwards to the next: what passes downwards between them cuts nothing.
         let rounded = [0.0, 2.0, -2.0, -1.0, 1e-16];
-        assert_eq!(path(&rounded, (1, 2)).closed().x.len(), 5);
+        assert_eq!(path(&rounded, (1, 2)).closed().0.x.len(), 5);
         let short = [0.1, 2.0, -2.0, -1.0, 0.0];
-        assert_eq!(path(&short, (1, 2)).closed().x, short, "it ends before it comes back");
+        assert_eq!(path(&short, (1, 2)).closed().0.x, short, "it ends before it comes back");
+    }
+
+    #[test]
+    fn blank_rows_at_the_ends_are_left_out_where_the_input_hardly_moves() {
+        let path = |blank: usize| {
+            let x = vec![0.0, 0.1, 5.0, 10.0, 5.0, 0.1];
+            let mut y = x.clone();
+            y[..blank].fill(f64::NAN);
+            let path = Path::between(&Record::new("r", vec![x], y).unwrap(), (0.0, 5.0), (3, 3));
+            path.without_blank_ends(0.02)
+        };
+        assert_eq!((path(1).blanks(), path(1).x.len()), (0, 5));
+        assert_eq!((path(2).blanks(), path(2).x.len()), (2, 6), "half of the swing");
     }
 
     #[test]

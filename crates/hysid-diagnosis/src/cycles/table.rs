@@ -12,14 +12,17 @@ use super::creep::{Hold, holds};
 use super::division::{Division, Span, SpanPart, choose, divide, level};
 use super::field::Field;
 use super::losses::{LossAtFrequency, losses};
-use super::path::{Path, area, at, range, weights};
+use super::path::{Closure, Path, area, at, range, weights};
 use super::reading::{apart_along_output, crossing, output_at_end, secant, widest};
 use super::row::CycleRow;
 use crate::branch::{Branch, BranchSet};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
 
-/// A loop over less than this share of a cycle's swing is smaller than the cycle, which is said.
+/// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
 const COMES_BACK: f64 = 0.9;
+
+/// Share of a swing that is rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Deviations of the noise below which a figure is not told from noise.
 const SURE: f64 = 3.0;
@@ -46,7 +49,7 @@ impl Default for CycleOptions {
 
 impl CycleOptions {
     /// How the branches are found.
-    pub(crate) fn of_branches(&self) -> DiagnosisOptions {
+    pub fn branches(&self) -> DiagnosisOptions {
         DiagnosisOptions { smallest_reversal: self.smallest_reversal, smoothing: self.smoothing }
     }
 }
@@ -92,7 +95,7 @@ impl CycleTable {
     /// Data without loops: a constant input or output, hardly any rows.
     pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let survey = BranchSet::new(data, &options.of_branches());
+        let survey = BranchSet::new(data, &options.branches());
         let field = options.field.unwrap_or_else(|| Field::of(data.names()));
         let division = options.division.unwrap_or_else(|| choose(&survey, field));
         let (mut cycles, mut points) = (Vec::new(), Vec::new());
@@ -216,32 +219,44 @@ impl Reader<'_> {
     /// Everything that needs the whole loop.
     fn read_loop(&self, row: &mut CycleRow, path: Path, tips: &Tips) {
         let (lowest, highest) = range(&path.x);
-        let path = path.closed();
+        let (path, closure) = path.without_blank_ends(CLOSED).closed();
         let (low, high) = range(&path.x);
-        if high - low < COMES_BACK * (highest - lowest) {
-            let percent = 100.0 * (high - low) / (highest - lowest);
-            row.notes.push(format!(
-                "the input comes back over {percent:.0} % of its swing: the loop is that part"
-            ));
-        }
         row.amplitude = Some(0.5 * (high - low));
-        row.mean_input = Some(0.5 * (high + low));
+        // Ends that differ in sign only by rounding have the mean 0.
+        row.mean_input = Some(0.5 * (high + low))
+            .map(|mean| if mean.abs() < ROUNDING * (high - low) { 0.0 } else { mean });
+        match path.blanks() {
+            0 => {}
+            1 => row.notes.push("1 row of the cycle has no output".into()),
+            blanks => row.notes.push(format!("{blanks} rows of the cycle have no output")),
+        }
+        let branches = tips.falling(self.branches).zip(tips.rising(self.branches));
+        if let Some((falling, rising)) = branches
+            && self.field != Field::Actuator
+        {
+            self.read_zero_output(row, falling, rising);
+        }
+        if high - low < COMES_BACK * (highest - lowest) {
+            row.notes.push(match closure {
+                Closure::BeginningCut => {
+                    "no loop: the input does not come back to where the cycle began".into()
+                }
+                _ => "the input goes beyond where the cycle began: the loop is the part before".into(),
+            });
+            if closure == Closure::BeginningCut {
+                row.coercive_input = None;
+                return;
+            }
+        }
         let valley = row.valley_input.zip(row.valley_output);
         let peak = row.peak_input.zip(row.peak_output);
         if let (true, Some((valley, peak))) = (self.field.has_structures(), valley.zip(peak)) {
             row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
         }
-        if self.field != Field::Actuator {
-            match path.blanks() {
-                0 => self.read_area(row, &path, high - low),
-                blanks => row.notes.push(format!("no energy: {blanks} rows of the cycle have no output")),
-            }
+        if self.field != Field::Actuator && path.blanks() == 0 {
+            self.read_area(row, &path, high - low);
         }
-        let branches = tips.falling(self.branches).zip(tips.rising(self.branches));
         if let Some((falling, rising)) = branches {
-            if self.field != Field::Actuator {
-                self.read_zero_output(row, falling, rising);
-            }
             if self.field.has_magnets() {
                 read_zero_input(row, falling, rising);
             }
@@ -416,13 +431,13 @@ fn notes(data: &Dataset, cycles: &[CycleRow], field: Field) -> Vec<String> {
         );
     }
     if !data.has_time() {
-        let more = match field {
-            Field::Structure => "",
-            Field::Magnet => " and loss per time",
-            Field::Actuator => " and creep",
-            Field::General => ", loss per time and creep",
+        let missing = match field {
+            Field::Structure => "period and frequency",
+            Field::Magnet => "period, frequency and loss per time",
+            Field::Actuator => "period, frequency and creep",
+            Field::General => "period, frequency, loss per time and creep",
         };
-        notes.push(format!("no time: no period, frequency{more}"));
+        notes.push(format!("no time: no {missing}"));
     } else if field == Field::Actuator && cycles.iter().all(|row| row.creep.is_none()) {
         notes.push("no creep: the input rests nowhere long enough".into());
     }

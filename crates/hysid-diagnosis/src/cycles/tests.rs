@@ -286,7 +286,22 @@ fn a_growing_cycle_from_tip_to_tip_is_the_loop_that_closes() {
         epsilon = 1e-9
     );
     assert_eq!(row.input_max, Some(4.0));
-    assert!(row.notes.iter().any(|note| note.contains("67 %")), "{:?}", row.notes);
+    assert!(row.notes.iter().any(|note| note.contains("the part before")), "{:?}", row.notes);
+}
+
+/// From 4 down to -1 and back to 1: the way down through 1 and the way up to 1 have different outputs there.
+#[test]
+fn a_shrinking_cycle_that_does_not_close_has_no_loop() {
+    let options = CycleOptions {
+        field: Some(Field::General),
+        division: Some(Division::Reversals),
+        ..CycleOptions::default()
+    };
+    let table = CycleTable::of(&stop(&[0.0, 4.0, -1.0, 1.0, -3.0, 0.5]), &options).unwrap();
+    let row = &table.cycles[1];
+    assert!(row.complete && row.notes.iter().any(|note| note.starts_with("no loop")), "{:?}", row.notes);
+    assert_eq!((row.energy, row.damping_percent, row.width, row.coercive_input), (None, None, None, None));
+    assert_relative_eq!(row.residual_after_peak.unwrap(), 3.0, epsilon = 1e-9);
 }
 
 #[test]
