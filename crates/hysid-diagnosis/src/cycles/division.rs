@@ -67,6 +67,12 @@ impl FromStr for Division {
 /// A half cycle passes a level if it goes on to both sides by this share of its way.
 const BEYOND: f64 = 0.1;
 
+/// A record of whole cycles may end up to a step before the level is passed again.
+pub(super) const LAST_STEP: f64 = 1.1;
+
+/// Such a step is at most this share of the way since the last turning point.
+const LARGEST_STEP: f64 = 0.5;
+
 /// Share of the half cycles that pass the level of a division.
 const MOST: f64 = 0.5;
 
@@ -201,10 +207,15 @@ pub(super) fn divide(survey: &BranchSet, record: usize, division: Division) -> V
 fn passings(survey: &BranchSet, record: usize, level: f64) -> Vec<f64> {
     let branches = survey.of_record(record);
     let x = &survey.data.records()[record].inputs()[0];
+    let (last, end) = (branches.len() - 1, x.len() - 1);
     let is_near = |branch: &Branch, x: f64| (x - level).abs() <= tolerance(survey, branch.travel());
-    let last = branches.len() - 1;
+    let is_a_step_away = || {
+        let (step, missing) = (x[end] - x[end - 1], level - x[end]);
+        (0.0..=LAST_STEP).contains(&(missing / step))
+            && missing.abs() <= LARGEST_STEP * branches[last].travel()
+    };
     let begins_there = is_near(&branches[0], branches[0].from);
-    let ends_there = is_near(&branches[last], branches[last].to);
+    let ends_there = is_near(&branches[last], branches[last].to) || is_a_step_away();
     let mut places = Vec::new();
     if begins_there {
         places.push(branches[0].rows.start as f64);

@@ -55,12 +55,11 @@ pub(super) struct Widest {
     pub deviation: f64,
 }
 
-/// Where two branches are furthest apart, at the inputs of the points of both.
-pub(super) fn widest(one: &Branch, other: &Branch) -> Option<Widest> {
-    let (a, b) = (one.curve.range(), other.curve.range());
-    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
+/// Where two branches are furthest apart within a range of inputs, at the inputs of the points of both and at the ends of
+/// the range.
+pub(super) fn widest(one: &Branch, other: &Branch, (low, high): (f64, f64)) -> Option<Widest> {
     let points = one.curve.points().chain(other.curve.points());
-    let inputs = points.map(|(x, _)| x).filter(|x| (low..=high).contains(x));
+    let inputs = points.map(|(x, _)| x).chain([low, high]).filter(|x| (low..=high).contains(x));
     let apart = |x: f64| {
         let (p, q) = (one.curve.at(x)?, other.curve.at(x)?);
         Some(Widest { apart: (p.y - q.y).abs(), x, deviation: p.deviation.hypot(q.deviation) })

@@ -66,7 +66,7 @@ pub struct CycleRow {
     pub remanent_output: Option<f64>,
     /// Largest difference of the outputs of both branches at equal input.
     pub width: Option<f64>,
-    /// The same in percent of the cycle's range of the output.
+    /// The same in percent of the loop's range of the output.
     pub width_percent: Option<f64>,
     /// The input where it is.
     pub width_at_input: Option<f64>,

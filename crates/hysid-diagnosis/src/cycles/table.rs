@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::CLOSED;
 use super::backbone::{BackbonePoint, Direction, backbone};
 use super::creep::{Hold, holds};
-use super::division::{Division, Span, SpanPart, choose, divide, level};
+use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level};
 use super::field::Field;
 use super::losses::{LossAtFrequency, losses};
 use super::path::{Closure, Path, area, at, range, weights};
-use super::reading::{apart_along_output, crossing, output_at_end, secant, widest};
+use super::reading::{Widest, apart_along_output, crossing, output_at_end, secant, widest};
 use super::row::CycleRow;
 use crate::branch::{Branch, BranchSet};
 use crate::{DiagnosisOptions, FEWEST_ROWS};
@@ -194,7 +194,7 @@ impl Reader<'_> {
             rows: (from.ceil() as usize, to.floor() as usize),
             complete,
             start_time: time.map(|(start, _)| start),
-            period: time.filter(|_| complete).map(|(start, end)| end - start),
+            period: time.filter(|_| complete).map(|(start, end)| end - start + self.missing_time()),
             input_min: Some(low),
             input_max: Some(high),
             output_min: measured.map(|range| range.0),
@@ -214,6 +214,16 @@ impl Reader<'_> {
             SpanPart::All => row.notes.push("incomplete: the record has no whole cycle".into()),
         }
         row
+    }
+
+    /// The time that a cycle lacks because its record ends a part of a step before the level is passed.
+    fn missing_time(&self) -> f64 {
+        let (x, last) = (&self.record.inputs()[0], self.record.len() - 1);
+        let ends_there = self.span.to == last as f64 && self.division != Division::Reversals;
+        let Some(time) = self.record.time().filter(|_| ends_there) else { return 0.0 };
+        let (step, duration) = (x[last] - x[last - 1], time[last] - time[last - 1]);
+        let missing = (at(x, self.span.from) - x[last]) / step;
+        if (0.0..=LAST_STEP).contains(&missing) { missing * duration } else { 0.0 }
     }
 
     /// Everything that needs the whole loop.
@@ -260,9 +270,9 @@ impl Reader<'_> {
             if self.field.has_magnets() {
                 read_zero_input(row, falling, rising);
             }
-            if self.field.has_actuators() {
-                read_width(row, falling, rising);
-            }
+        }
+        if self.field.has_actuators() {
+            self.read_width(row, &path, high - low);
         }
     }
 
@@ -305,6 +315,48 @@ impl Reader<'_> {
         if self.field.has_magnets() {
             row.coercive_input = after_peak.zip(after_valley).map(|(down, up)| 0.5 * (up - down).abs());
         }
+    }
+
+    /// The largest distance of the rising and the falling parts of the cycle, if they have outputs over its swing.
+    fn read_width(&self, row: &mut CycleRow, path: &Path, swing: f64) {
+        let numbers = self.span.branches.clone();
+        let (rising, falling): (Vec<usize>, Vec<usize>) =
+            numbers.partition(|&number| self.branches[number].rises());
+        let (mut covered, mut widest_of_all): (f64, Option<Widest>) = (0.0, None);
+        for (&up, &down) in rising.iter().flat_map(|up| falling.iter().map(move |down| (up, down))) {
+            let (a, b) = (self.inputs_within(up), self.inputs_within(down));
+            let common = (a.0.max(b.0), a.1.min(b.1));
+            if common.1 > common.0
+                && let Some(found) = widest(&self.branches[up], &self.branches[down], common)
+            {
+                covered += common.1 - common.0;
+                if widest_of_all.is_none_or(|known| found.apart > known.apart) {
+                    widest_of_all = Some(found);
+                }
+            }
+        }
+        let Some(widest) = widest_of_all.filter(|_| covered >= COMES_BACK * swing) else {
+            row.notes.push("no width: both branches have outputs over a part of the swing only".into());
+            return;
+        };
+        if widest.apart < SURE * widest.deviation {
+            row.notes.push("no width: it is within three deviations of the noise".into());
+            return;
+        }
+        row.width = Some(widest.apart);
+        row.width_at_input = Some(widest.x);
+        let (low, high) = range(&path.y);
+        row.width_percent = Some(100.0 * widest.apart / (high - low)).filter(|percent| percent.is_finite());
+    }
+
+    /// Smallest and largest input of the part of a branch that belongs to the cycle and has outputs.
+    fn inputs_within(&self, number: usize) -> (f64, f64) {
+        let branch = &self.branches[number];
+        let x = &self.record.inputs()[0];
+        let begin = at(x, self.span.from.max(branch.rows.start as f64));
+        let end = at(x, self.span.to.min((branch.rows.end - 1) as f64));
+        let (low, high) = branch.curve.range();
+        (begin.min(end).max(low), begin.max(end).min(high))
     }
 
     /// Peak and valley, and the branches that begin there.
@@ -359,19 +411,6 @@ fn read_zero_input(row: &mut CycleRow, falling: &Branch, rising: &Branch) {
     } else {
         row.notes.push("a branch does not pass the input 0: no remanence".into());
     }
-}
-
-/// The largest distance of the branches.
-fn read_width(row: &mut CycleRow, falling: &Branch, rising: &Branch) {
-    let Some(widest) = widest(falling, rising) else { return };
-    if widest.apart < SURE * widest.deviation {
-        row.notes.push("no width: it is within three deviations of the noise".into());
-        return;
-    }
-    row.width = Some(widest.apart);
-    row.width_at_input = Some(widest.x);
-    let height = row.output_max.zip(row.output_min).map(|(high, low)| high - low);
-    row.width_percent = height.filter(|height| *height > 0.0).map(|height| 100.0 * widest.apart / height);
 }
 
 /// A turning point of a cycle.

@@ -193,6 +193,47 @@ fn a_play_has_its_exact_width_and_its_loop_is_passed_anticlockwise() {
     assert!(row.notes.iter().any(|note| note.contains("anticlockwise")), "{:?}", row.notes);
 }
 
+/// Twenty rows a period, and the record ends a row before the third one is complete.
+#[test]
+fn a_record_of_whole_periods_has_whole_cycles_and_the_true_period() {
+    let time: Vec<f64> = (0..60).map(|row| 0.1 * f64::from(row)).collect();
+    let x = time.iter().map(|t| 5.0 + (PI * t).sin()).collect();
+    let y = time.iter().map(|t| (PI * t - 0.3).sin()).collect();
+    let table = table_of(&timed(time, x, y), Field::General);
+    assert_eq!((table.division, table.cycles.len()), (Division::Mean, 3));
+    for row in &table.cycles {
+        assert!(row.complete);
+        assert_relative_eq!(row.period.unwrap(), 2.0, max_relative = 2e-3);
+        // The polygon of twenty corners in the ellipse.
+        let share = (TAU / 20.0).sin() / (TAU / 20.0);
+        assert_relative_eq!(row.energy.unwrap(), -PI * 0.3f64.sin() * share, max_relative = 1e-2);
+    }
+}
+
+/// The play from 2 up to 4, down to 0 and back to 2, and no further: its width is read from all three parts; without outputs
+/// in the first of them there is none.
+#[test]
+fn a_width_needs_both_branches_over_the_whole_swing() {
+    let x = path(&[2.0, 4.0, 0.0, 2.0], 0.05);
+    let y = Play::new(0.5).unwrap().run(&x);
+    let options = CycleOptions {
+        field: Some(Field::Actuator),
+        division: Some(Division::Mean),
+        ..CycleOptions::default()
+    };
+    let table = CycleTable::of(&data(x.clone(), y.clone()), &options).unwrap();
+    assert_relative_eq!(table.cycles[0].width.unwrap(), 1.0, epsilon = 1e-9);
+    let mut blank = y;
+    blank[..36].fill(f64::NAN);
+    let table = CycleTable::of(&data(x, blank), &options).unwrap();
+    assert_eq!((table.cycles[0].complete, table.cycles[0].width), (true, None));
+    assert!(
+        table.cycles[0].notes.iter().any(|note| note.starts_with("no width")),
+        "{:?}",
+        table.cycles[0].notes
+    );
+}
+
 /// After a step to 1 the output creeps by 0.3 in a decade of time.
 #[test]
 fn logarithmic_creep_has_its_exact_slope_where_the_hold_is_long_enough() {

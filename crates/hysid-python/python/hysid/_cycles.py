@@ -14,7 +14,6 @@ from hysid._arguments import name_of, real, truth, whole
 from hysid._data import columns
 
 if TYPE_CHECKING:
-    import pandas
     from numpy.typing import ArrayLike
 
     from hysid._data import Values
@@ -100,7 +99,7 @@ class Cycles(Mapping[str, np.ndarray]):
         curves = ", with first-order reversal curves" if self.reversal_curves else ""
         return f"<{complete} cycles and {parts} incomplete parts, {self.field}, from {self.division}{curves}>"
 
-    def to_frame(self) -> pandas.DataFrame:
+    def to_frame(self) -> Any:
         """Give the cycles as a pandas table.
 
         Returns
