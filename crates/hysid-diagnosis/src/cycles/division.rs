@@ -67,8 +67,8 @@ impl FromStr for Division {
 /// A half cycle passes a level if it goes on to both sides by this share of its way.
 const BEYOND: f64 = 0.1;
 
-/// A record of whole cycles may end up to a step before the level is passed again.
-pub(super) const LAST_STEP: f64 = 1.1;
+/// A record of whole cycles may end a step before the level is passed again; next to a turning point steps are shorter.
+pub(super) const LAST_STEP: f64 = 1.25;
 
 /// Such a step is at most this share of the way since the last turning point.
 const LARGEST_STEP: f64 = 0.5;

@@ -216,14 +216,15 @@ impl Reader<'_> {
         row
     }
 
-    /// The time that a cycle lacks because its record ends a part of a step before the level is passed.
+    /// The time that a cycle lacks because its record ends a step before the level is passed: at the speed with which it was
+    /// passed at the beginning.
     fn missing_time(&self) -> f64 {
         let (x, last) = (&self.record.inputs()[0], self.record.len() - 1);
         let ends_there = self.span.to == last as f64 && self.division != Division::Reversals;
         let Some(time) = self.record.time().filter(|_| ends_there) else { return 0.0 };
-        let (step, duration) = (x[last] - x[last - 1], time[last] - time[last - 1]);
-        let missing = (at(x, self.span.from) - x[last]) / step;
-        if (0.0..=LAST_STEP).contains(&missing) { missing * duration } else { 0.0 }
+        let first = self.span.from.floor() as usize;
+        let steps = (at(x, self.span.from) - x[last]) / (x[first + 1] - x[first]);
+        if (0.0..=LAST_STEP).contains(&steps) { steps * (time[first + 1] - time[first]) } else { 0.0 }
     }
 
     /// Everything that needs the whole loop.
@@ -266,10 +267,10 @@ impl Reader<'_> {
         if self.field != Field::Actuator && path.blanks() == 0 {
             self.read_area(row, &path, high - low);
         }
-        if let Some((falling, rising)) = branches {
-            if self.field.has_magnets() {
-                read_zero_input(row, falling, rising);
-            }
+        if let Some((falling, rising)) = branches
+            && self.field.has_magnets()
+        {
+            read_zero_input(row, falling, rising);
         }
         if self.field.has_actuators() {
             self.read_width(row, &path, high - low);
