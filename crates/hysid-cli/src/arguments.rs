@@ -80,7 +80,7 @@ pub enum Command {
     Compare(Compare),
     /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
-    /// Table of cycles: energy, damping, stiffness, coercive field, losses, width, creep
+    /// Tables of cycles: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
     /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),

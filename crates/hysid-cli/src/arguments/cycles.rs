@@ -45,13 +45,13 @@ pub struct Cycles {
     #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
     pub divide: Option<Division>,
     /// Ignore reversals of the input below this share of its range
-    #[arg(long, value_name = "FRACTION", default_value_t = CycleOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_default_value = true)]
+    #[arg(long, value_name = "FRACTION", default_value_t = CycleOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: f64,
     /// Smooth branches before outputs are read from them
     #[arg(long, value_name = "BOOL", default_value_t = CycleOptions::default().smoothing, action = ArgAction::Set, help_heading = "Method", hide_short_help = true)]
     pub smoothing: bool,
     /// Smoothing factor of first-order reversal curves, 1 to 10 [default: chosen by the noise]
-    #[arg(long, value_name = "N", value_parser = smoothing_factor, help_heading = "Method")]
+    #[arg(long, value_name = "N", value_parser = smoothing_factor, help_heading = "Method", hide_short_help = true)]
     pub smoothing_factor: Option<usize>,
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
