@@ -21,6 +21,9 @@ use crate::{DiagnosisOptions, FEWEST_ROWS};
 /// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
 const COMES_BACK: f64 = 0.9;
 
+/// Rows further apart than this share of a swing do not show what the output does between them.
+const FAR_APART: f64 = 0.1;
+
 /// Share of a swing that is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -241,6 +244,14 @@ impl Reader<'_> {
             1 => row.notes.push("1 row of the cycle has no output".into()),
             blanks => row.notes.push(format!("{blanks} rows of the cycle have no output")),
         }
+        let longest = path.x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        let is_coarse = longest > FAR_APART * (high - low);
+        if is_coarse {
+            let percent = 100.0 * longest / (high - low);
+            row.notes.push(format!(
+                "rows are up to {percent:.0} % of the swing apart: what lies between is interpolated"
+            ));
+        }
         let branches = tips.falling(self.branches).zip(tips.rising(self.branches));
         if let Some((falling, rising)) = branches
             && self.field != Field::Actuator
@@ -272,7 +283,9 @@ impl Reader<'_> {
         {
             read_zero_input(row, falling, rising);
         }
-        if self.field.has_actuators() {
+        if self.field.has_actuators() && is_coarse {
+            row.notes.push("no width: the rows are too far apart".into());
+        } else if self.field.has_actuators() {
             self.read_width(row, &path, high - low);
         }
     }

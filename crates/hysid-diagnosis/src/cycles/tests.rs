@@ -234,6 +234,18 @@ fn a_width_needs_both_branches_over_the_whole_swing() {
     );
 }
 
+#[test]
+fn steps_of_the_input_give_no_width() {
+    let x: Vec<f64> = [0.0, 1.0, 2.0, 0.0].repeat(4).into_iter().flat_map(|level| vec![level; 20]).collect();
+    let y = x.iter().enumerate().map(|(row, x)| 2.0 * x + 0.01 * (row % 20) as f64).collect();
+    let table = table_of(&data(x, y), Field::Actuator);
+    for row in table.complete() {
+        assert_eq!(row.width, None);
+        assert!(row.notes.iter().any(|note| note.contains("too far apart")), "{:?}", row.notes);
+    }
+    assert!(table.complete().count() > 1);
+}
+
 /// After a step to 1 the output creeps by 0.3 in a decade of time.
 #[test]
 fn logarithmic_creep_has_its_exact_slope_where_the_hold_is_long_enough() {
