@@ -10,6 +10,7 @@ mod columns;
 mod commands;
 mod comparison;
 mod csv_text;
+mod cycles;
 mod data;
 mod date;
 mod diagnosis;
@@ -21,6 +22,7 @@ mod inversion;
 mod looked;
 mod messages;
 mod progress;
+mod quantities;
 mod record_names;
 mod report;
 mod reproduction;
@@ -69,6 +71,7 @@ pub fn run() -> ExitCode {
         Command::Compare(arguments) => commands::compare::run(&arguments),
         Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
+        Command::Cycles(arguments) => commands::cycles::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),

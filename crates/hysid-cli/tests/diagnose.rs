@@ -69,7 +69,7 @@ fn text_tells_every_property_and_fits_a_terminal() {
     }
     assert!(ran.stdout.contains("\ndeterioration      yes "), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nexperiments for what could not be tested\n"), "{}", ran.stdout);
-    assert!(ran.stdout.contains("\nenergy, kN mm "), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nenergy, J "), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nsecant stiffness, kN/mm "), "{}", ran.stdout);
     assert!(ran.stderr.starts_with("file     joint.csv\nread as  text, UTF-8; "), "{}", ran.stderr);
     assert_eq!(ran.last_line(), "page    joint.diagnosis.html");
@@ -103,8 +103,8 @@ fn loops_of_a_plastic_stop_have_the_numbers_of_their_geometry() {
     assert_eq!(verdict(&diagnosis, "deterioration"), "no");
     assert_eq!(verdict(&diagnosis, "rate-dependence"), "not testable");
     let text = succeeds(&bench, "diagnose stop.csv --no-report").stdout;
-    let energies = text.lines().find(|line| line.starts_with("energy, kN mm")).unwrap();
-    assert_eq!(energies.split_whitespace().skip(3).collect::<Vec<_>>(), ["8", "8", "8"]);
+    let energies = text.lines().find(|line| line.starts_with("energy, J")).unwrap();
+    assert_eq!(energies.split_whitespace().skip(2).collect::<Vec<_>>(), ["8", "8", "8"]);
 }
 
 #[test]

@@ -219,6 +219,18 @@ impl Model {
         serde_json::to_string(&diagnosis).map_err(refused)
     }
 
+    /// Its cycles and first-order reversal curves, as JSON.
+    #[pyo3(signature = (division, field, smoothing_factor))]
+    fn cycles(
+        &self,
+        py: Python<'_>,
+        division: Option<&str>,
+        field: Option<&str>,
+        smoothing_factor: Option<usize>,
+    ) -> PyResult<String> {
+        py.detach(|| crate::cycles::of_model(&self.model, division, field, smoothing_factor))
+    }
+
     /// Runs it sample by sample, from its initial state.
     fn stepper(&self) -> Stepper {
         Stepper { stepper: model::Model::clone(&self.model).into_stepper() }

@@ -1,8 +1,10 @@
 //! Units in the names of columns: `force [kN]`, `Time (s)`, `x / mm`, `H_A_per_m`.
 
+mod derived;
 mod quantity;
 
 use crate::data::column::Part;
+pub use derived::{energy, power, quotient};
 use quantity::Quantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
@@ -113,7 +115,9 @@ pub fn is_time(name: &str) -> bool {
 /// for all names with a unit of time. The values must confirm it.
 pub fn may_be_time(name: &str) -> bool {
     let (quantity, unit) = split(name);
-    let has_word = || quantity.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| TIME_WORDS.contains(&word));
+    let has_word = || {
+        quantity.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| TIME_WORDS.contains(&word))
+    };
     let is_in_time = is_in_unit_of_time(unit.as_deref());
     is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_time || unit.is_none() && has_word()
 }

@@ -11,8 +11,10 @@ __all__ = [
     "Inverse",
     "Stepper",
     "__version__",
+    "cycles",
     "deteriorating_stop",
     "diagnose",
+    "figure_names",
     "identify",
     "law",
     "minimise",
@@ -101,6 +103,7 @@ class Model:
     def residuals(self, data: Dataset, initial_state: str | None) -> str: ...
     def parameter_intervals(self, data: Dataset) -> str | None: ...
     def diagnose(self) -> str: ...
+    def cycles(self, division: str | None, field: str | None, smoothing_factor: int | None) -> str: ...
     def stepper(self) -> Stepper: ...
     def inverse(
         self,
@@ -136,6 +139,15 @@ class Stepper:
     def revert(self) -> None: ...
     def reset(self, initial_state: str | None = None) -> None: ...
 
+def cycles(
+    data: Dataset,
+    smallest_reversal: float,
+    smoothing: bool,
+    division: str | None,
+    field: str | None,
+    smoothing_factor: int | None,
+) -> str: ...
+def figure_names() -> list[str]: ...
 def diagnose(data: Dataset, smallest_reversal: float, smoothing: bool) -> str: ...
 def identify(
     data: Dataset,

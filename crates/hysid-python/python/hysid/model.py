@@ -16,6 +16,7 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._data import Column, Columns, columns
+from hysid._cycles import Cycles, named_options
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
 from hysid._inverse import Inverse, Inversion, Reference
@@ -899,6 +900,28 @@ class Model:
             Properties found by probing the model, and from its equations and weights.
         """
         return ModelDiagnosis(json.loads(self._native.diagnose()))
+
+    def cycles(
+        self, *, division: str | None = None, field: str | None = None, smoothing_factor: int | None = None
+    ) -> Cycles:
+        """Drive the model through cycles and first-order reversal curves over its trained range and read their figures.
+
+        Parameters
+        ----------
+        division : str, optional
+            Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``; as suits the data by default.
+        field : str, optional
+            What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``; by default as the names and
+            units of the columns indicate.
+        smoothing_factor : int, optional
+            Smoothing factor of the density of the reversal curves, 1 to 10; chosen by default.
+
+        Returns
+        -------
+        Cycles
+            The figures of the model's cycles, not of measured data.
+        """
+        return Cycles._of(self._native.cycles(*named_options(division, field, smoothing_factor)))
 
     # Comparison and display
 
