@@ -344,3 +344,15 @@ fn a_number_that_stands_for_a_missing_value_is_told_with_the_option_that_names_i
     check(&bench, &ran, "missing-999.csv", &["t", "x", "y"], [1.0, 1.0, 1.0]);
     assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
 }
+
+#[test]
+fn the_page_lists_every_file() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("../../docs/files.md")).unwrap();
+    let files = fs::read_dir(root.join("tests/files")).unwrap();
+    let names: Vec<String> = files.map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+    assert!(names.len() >= 60, "{}", names.len());
+    for name in names {
+        assert!(page.contains(&format!("`{name}`")), "docs/files.md lacks {name}");
+    }
+}
