@@ -531,7 +531,7 @@ pub struct Look {
     /// Tables: text, spreadsheets, MATLAB files, compressed or not; - is standard input
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
-    /// Write the data as a plain CSV table that every command reads without options
+    /// Write the columns that are used as a plain CSV table; - is standard output
     #[arg(short, long, value_name = "CLEAN.csv")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.

@@ -126,7 +126,8 @@ impl Column {
         if others > 0 && column.note.is_none() {
             column.note = Some(match others == table.rows() - column.missing {
                 true => "text".into(),
-                false => format!("{others} cells are no numbers"),
+                false if others == 1 => "1 cell is not a number".into(),
+                false => format!("{others} cells are not numbers"),
             });
         }
         if reader.has_stamps() {

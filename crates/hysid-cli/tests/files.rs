@@ -237,7 +237,7 @@ fn a_look_tells_what_each_column_is() {
 
     let ran = bench.run(&format!("look {}", path("labview.lvm")));
     for line in [
-        "read as  text, UTF-8; columns separated by tabs, decimal point, 20 lines before\n         the table, names in line 22",
+        "read as  text, UTF-8; columns separated by tabs, decimal point, 21 lines before\n         the table, names in line 22",
         "rows     48, in lines 23 to 70",
         "Displacement   input",
     ] {
@@ -346,6 +346,18 @@ fn a_number_that_stands_for_a_missing_value_is_told_with_the_option_that_names_i
 }
 
 #[test]
+fn a_clean_table_can_go_to_standard_output_and_come_from_standard_input() {
+    let bench = Workbench::new();
+    let piped = bench.shell(&format!("hysid look {} -o - | hysid look - --json", path("utf16-little.txt")));
+    let told: serde_json::Value = serde_json::from_str(&piped.stdout).unwrap();
+    assert_eq!(told["files"][0]["file"], "standard input");
+    assert_eq!(told["files"][0]["rows"], 48);
+    assert_eq!(told["files"][0]["columns"][2]["name"], "Kraft [kN]");
+    let refused = bench.run(&format!("look {} -o - --json", path("plain.csv")));
+    assert_eq!(refused.status, Some(2), "{}", refused.stderr);
+}
+
+#[test]
 fn the_page_lists_every_file() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(root.join("../../docs/files.md")).unwrap();
@@ -354,5 +366,39 @@ fn the_page_lists_every_file() {
     assert!(names.len() >= 60, "{}", names.len());
     for name in names {
         assert!(page.contains(&format!("`{name}`")), "docs/files.md lacks {name}");
+    }
+}
+
+/// Errors about how a file is read, and the option that each names.
+#[test]
+fn hints_about_reading_work_when_they_are_followed() {
+    let bench = Workbench::new();
+    let rows = |row: &dyn Fn(usize) -> String, count: usize| (0..count).map(row).collect::<String>();
+    let x = |k: usize| format!("{:.2}", (0.3 * k as f64).sin());
+    let too_many_names = format!("t,x,y,z\n{}", rows(&|k| format!("{k}.5,{},{}\n", x(k), x(k + 1)), 20));
+    let forces = ["850", "920", "990", "1.012", "1.234", "-1.100", "870", "1.250"];
+    let thousands = format!("x;F\n{}", rows(&|k| format!("{};{}\n", x(k), forces[k % 8]), 24));
+    let mut late = format!("t,x,y,note\n{}", rows(&|k| format!("{k}.5,{},{},ok\n", x(k), x(k + 1)), 30_000))
+        .into_bytes();
+    late.extend(b"30000.5,0.1,0.2,20\xb0\n");
+    for (content, hint, options) in [
+        (too_many_names.into_bytes(), "(skip the header with --skip 1 --no-header)", "--skip 1 --no-header"),
+        (
+            thousands.clone().into_bytes(),
+            "(choose with --decimal point or --decimal comma)",
+            "--decimal point",
+        ),
+        (
+            late,
+            "(name the encoding with --encoding, such as windows-1252, or save",
+            "--encoding windows-1252",
+        ),
+    ] {
+        bench.put("data.csv", content);
+        let refused = bench.run("look data.csv");
+        assert_eq!(refused.status, Some(1), "{hint}: {}", refused.stdout);
+        assert!(refused.last_line().contains(hint), "{}", refused.last_line());
+        let ran = bench.run(&format!("look data.csv {options}"));
+        assert_eq!(ran.status, Some(0), "{options}: {}", ran.stderr);
     }
 }

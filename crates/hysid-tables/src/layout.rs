@@ -56,7 +56,7 @@ pub struct Layout {
     pub header_lines: Vec<u64>,
     /// The line with the units, if there is one.
     pub units_line: Option<u64>,
-    /// Lines with text before the header.
+    /// Lines before the header.
     pub preamble: usize,
     /// The unit that stands behind the numbers of each column.
     pub cell_units: Vec<Option<String>>,
@@ -104,10 +104,7 @@ impl Layout {
                 run.delimiter
             },
             numbers: numbers::format(&lines, &run, reading),
-            preamble: lines[..run.lines.start]
-                .iter()
-                .filter(|line| !line.is_blank() && !header.has(line.number))
-                .count(),
+            preamble: (header.lines.first().copied().unwrap_or(first.number) - 1) as usize,
             cell_units: run.units(),
             stamps: run.stamps(),
             names: header.names,
@@ -254,7 +251,7 @@ mod tests {
         let text = "Instrument: X-12\nDate;2024-03-01\nRate;1000;Hz\n\nTime;Displacement;Force\ns;mm;kN\n0;1,5;2\n1;2,5;3\n2;3;4\n";
         let found = layout(text);
         assert_eq!(found.names, ["Time [s]", "Displacement [mm]", "Force [kN]"]);
-        assert_eq!((found.preamble, found.line), (3, 7));
+        assert_eq!((found.preamble, found.line), (4, 7));
         assert_eq!((found.header_lines, found.units_line), (vec![5], Some(6)));
         assert_eq!(&text[found.start..found.start + 5], "0;1,5");
     }

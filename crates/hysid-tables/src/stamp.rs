@@ -126,6 +126,15 @@ pub struct StampReader {
     day: i64,
     date: Option<Date>,
     seconds: f64,
+    /// Day and month stand in this order, once two dates have told it.
+    order: Option<DateOrder>,
+}
+
+/// The order of day and month in dates such as 3/4/2024.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum DateOrder {
+    MonthFirst,
+    DayFirst,
 }
 
 impl StampReader {
@@ -133,13 +142,34 @@ impl StampReader {
     pub fn seconds(&mut self, stamp: Stamp) -> f64 {
         let day = match stamp.date {
             Some(date) if self.date == Some(date) => self.day,
-            Some(date) => self.date.map_or(date.days().0, |before| self.day + days_between(before, date)),
+            Some(date) => match self.date {
+                Some(before) => self.day + self.days_between(before, date),
+                None => date.days().0,
+            },
             None if self.first.is_some() && stamp.seconds < self.seconds - 0.5 * DAY => self.day + 1,
             None => self.day,
         };
         (self.day, self.date, self.seconds) = (day, stamp.date, stamp.seconds);
         let (first_day, first_seconds) = *self.first.get_or_insert((day, stamp.seconds));
         (day - first_day) as f64 * DAY + (stamp.seconds - first_seconds)
+    }
+
+    /// Days from one date to another. The first two dates between which both orders of day and month give different
+    /// numbers of days decide for that with fewer.
+    fn days_between(&mut self, before: Date, now: Date) -> i64 {
+        let (before, now) = (before.days(), now.days());
+        let (month_first, day_first) = (now.0 - before.0, now.1 - before.1);
+        if month_first == day_first {
+            return month_first;
+        }
+        let order = *self.order.get_or_insert(match month_first.abs() < day_first.abs() {
+            true => DateOrder::MonthFirst,
+            false => DateOrder::DayFirst,
+        });
+        match order {
+            DateOrder::MonthFirst => month_first,
+            DateOrder::DayFirst => day_first,
+        }
     }
 }
 
@@ -153,13 +183,6 @@ impl Date {
             }
         }
     }
-}
-
-/// Days from one date to another; where the order of day and month is open, in the order that gives fewer.
-fn days_between(before: Date, now: Date) -> i64 {
-    let (before, now) = (before.days(), now.days());
-    let (month_first, day_first) = (now.0 - before.0, now.1 - before.1);
-    if month_first.abs() <= day_first.abs() { month_first } else { day_first }
 }
 
 #[cfg(test)]
@@ -193,6 +216,9 @@ mod tests {
         // Either order of day and month: the next day, and no month later.
         assert_eq!(seconds(&["3/4/2024 00:00:00", "3/5/2024 00:00:00", "3/6/2024 00:00:00"])[2], 2.0 * DAY);
         assert_eq!(seconds(&["12/4/2024 00:00:00", "13/4/2024 00:00:00"])[1], DAY);
+        // The order that was found holds for later dates.
+        let days = ["1/8/2024 00:00:00", "1/9/2024 00:00:00", "1/1/2024 00:00:00", "2/3/2024 00:00:00"];
+        assert_eq!(seconds(&days)[3], 26.0 * DAY);
         assert_eq!(seconds(&["3/4/2024 00:00:00", "4/4/2024 00:00:00", "5/4/2024 00:00:00"])[2], 2.0 * DAY);
     }
 

@@ -15,7 +15,7 @@ use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
 use crate::identification::data_warnings;
 use crate::looked::Looked;
-use crate::messages::{json_results, note, results, warning};
+use crate::messages::{Usage, json_results, note, raw_results, results, warning};
 use crate::understanding;
 
 /// Lines about the data as a whole that are shown below the tables.
@@ -29,14 +29,23 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
     let data = roles.and_then(|roles| Data::new(tables, roles, arguments.columns.reading.zero));
     let warnings =
         data.as_ref().map_or_else(|_| Vec::new(), |data| data_warnings(data, &Summary::of(&data.set)));
-    match arguments.json {
-        true => json_results(&Printed::of(&looked, &data, &warnings))?,
-        false => results(&text(&looked, data.as_ref().ok()))?,
+    let to_stdout = arguments.out.as_deref() == Some(Path::new("-"));
+    match (arguments.json, to_stdout) {
+        (true, true) => {
+            return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
+        }
+        (true, false) => json_results(&Printed::of(&looked, &data, &warnings))?,
+        (false, true) => {
+            text(&looked, data.as_ref().ok()).lines().for_each(|line| note(format_args!("{line}")))
+        }
+        (false, false) => results(&text(&looked, data.as_ref().ok()))?,
     }
     warnings.iter().for_each(warning);
     let data = data?;
-    if let Some(out) = &arguments.out {
-        write(out, &data, arguments)?;
+    match &arguments.out {
+        Some(_) if to_stdout => raw_results(&csv_text(&data.set)?)?,
+        Some(out) => write(out, &data, arguments)?,
+        None => {}
     }
     Ok(Outcome::Done)
 }

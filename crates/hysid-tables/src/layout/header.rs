@@ -47,11 +47,6 @@ impl Header {
         }
     }
 
-    /// True for a line with names or units.
-    pub fn has(&self, line: u64) -> bool {
-        self.lines.contains(&line) || self.units_line == Some(line)
-    }
-
     /// The names and units above a run of rows.
     ///
     /// # Errors
