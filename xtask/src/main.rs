@@ -1,4 +1,5 @@
-//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | verdicts |
+//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | generate-files |
+//! verdicts |
 //! verdict-battery | fuzz | soak | same-models | tidy`.
 
 mod arguments;
@@ -9,6 +10,7 @@ mod dependencies;
 mod files;
 mod fuzz;
 mod generate_cases;
+mod generate_files;
 mod program;
 mod proofs;
 mod python;
@@ -52,6 +54,9 @@ Commands:
                  writes folders with train.csv and test.csv for `cases`: laws with parameters of their own, driven as
                  engineers measure, with noise. The same seed (1) gives the same cases; the first 36 all differ in
                  kind. With --one-loop, one loop to train on and smaller loops inside it to test
+  generate-files DIR
+                 writes small files with one record as instruments and tools write it, for the tests of `hysid look`
+                 (DIR is crates/hysid-cli/tests/files)
   verdicts DIR [--case-limit SECONDS] [--out FILE.md] [--program HYSID] [-- ARG..]
                  `hysid diagnose` on every subfolder of DIR that has train.csv, as a table of verdicts; otherwise as
                  `cases`
@@ -109,6 +114,7 @@ fn main() -> ExitCode {
         ["generate-cases", rest @ ..] => {
             generate_cases::Request::parse(rest).and_then(|request| generate_cases::run(&request))
         }
+        ["generate-files", folder] => generate_files::run(&PathBuf::from(folder)),
         ["verdicts", rest @ ..] => {
             cases::Request::parse(rest, &verdicts::OPTIONS).and_then(|request| verdicts::run(&request))
         }

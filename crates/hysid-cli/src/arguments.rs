@@ -1,7 +1,10 @@
 //! The command line.
 
+mod cycles;
+mod examples;
 mod limits;
 mod model_options;
+mod reading;
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -20,8 +23,11 @@ use hysid::specimens::Specimen;
 use hysid_export::Target;
 
 use crate::reproduction::Experiment;
+pub use cycles::Cycles;
+use examples::*;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
+pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
@@ -76,8 +82,12 @@ pub enum Command {
     Validate(Box<Validate>),
     /// Fit all models to the same data and compare their errors on unseen data
     Compare(Compare),
+    /// Show how tables are read: columns, units, ranges, missing values
+    Look(Look),
     /// Determine properties of hysteresis, from measured data or of a model
     Diagnose(Diagnose),
+    /// Tables of cycles: energy, damping, coercive field, losses, width, creep
+    Cycles(Cycles),
     /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),
     /// Write training and test data of a synthetic specimen
@@ -132,6 +142,9 @@ pub struct ColumnOptions {
     /// Rate of the first input: auto, none, central, backward, savitzky-golay or a column with the rate
     #[arg(long, value_name = "METHOD|COLUMN", default_value = "auto", value_parser = rate, hide_short_help = true)]
     pub rate: RateOption,
+    /// How the tables are read.
+    #[command(flatten)]
+    pub reading: ReadingOptions,
 }
 
 /// In how many data sets a band is to contain its share of the rows.
@@ -222,80 +235,6 @@ fn rate(text: &str) -> Result<RateOption, String> {
         column => RateOption::Column(column.into()),
     })
 }
-
-const FIT_EXAMPLES: &str = "\
-Examples:
-  hysid fit data.csv                     model data.json, report data.html
-  hysid fit data.csv --members 1         one small model instead of an ensemble
-  hysid fit data.csv --model bouc-wen    one named model
-  hysid fit a.csv b.csv --input i --output flux -o core.json
-
-All options: hysid fit --help; their ranges: docs/options.md";
-
-const DEMO_EXAMPLES: &str = "\
-Examples:
-  hysid demo                     writes into the folder hysid-demo
-  hysid demo -o DIR              writes into another folder";
-
-const SIMULATE_EXAMPLES: &str = "\
-Examples:
-  hysid simulate model.json data.csv -o simulated.csv
-  hysid simulate model.json data.csv --band 0.9 -o simulated.csv
-  hysid simulate model.json data.csv > simulated.csv";
-
-const EVALUATE_EXAMPLES: &str = "\
-Examples:
-  hysid evaluate model.json test.csv
-  hysid evaluate model.json test.csv --band 0.9
-  hysid evaluate model.json test.csv --json";
-
-const INVERT_EXAMPLES: &str = "\
-Examples:
-  hysid invert model.json reference.csv -o drive.csv    report drive.html
-  hysid invert model.json reference.csv --limits 0:150 --slew 2000 -o drive.csv
-  hysid simulate model.json drive.csv -o check.csv      the output of that input";
-
-const VALIDATE_EXAMPLES: &str = "\
-Examples:
-  hysid validate data.csv --model xpnn+
-  hysid validate a.csv b.csv c.csv --model preisach --folds 3
-  hysid validate data.csv                the default model, auto";
-
-const COMPARE_EXAMPLES: &str = "\
-Examples:
-  hysid compare train.csv --test test.csv
-  hysid compare train.csv --test test.csv --models xpnn,preisach,bouc-wen
-  hysid compare train.csv --test test.csv --time-limit 60";
-
-const DIAGNOSE_EXAMPLES: &str = "\
-Examples:
-  hysid diagnose data.csv
-  hysid diagnose data.csv --time t --input x --output f
-  hysid diagnose model.json";
-
-const REPRODUCE_EXAMPLES: &str = "\
-Examples:
-  hysid reproduce --quick nds example1   two experiments, with less effort
-  hysid reproduce                        all experiments
-  hysid reproduce example5 -o DIR        one experiment, into another folder";
-
-const GENERATE_EXAMPLES: &str = "\
-Examples:
-  hysid generate --list
-  hysid generate terfenol-rod -o train.csv --test test.csv
-  hysid generate ferromagnet -o train.csv --noise 1 --seed 2";
-
-const EXPORT_EXAMPLES: &str = "\
-Examples:
-  hysid export model.json --to c                      the folder model_c
-  hysid export model.json --to c --name piezo -o src/piezo --precision f32
-  hysid export model.json --to fmu --fmi 2            for tools that read FMI 2.0
-  hysid export model.json --to c --inverse --limits 0:150 --slew 2000";
-
-const BENCH_EXAMPLES: &str = "\
-Examples:
-  hysid bench                    a table
-  hysid bench --json             one JSON object, for scripts";
 
 /// The heading of options of a run, which do not change the model.
 const RUN: &str = "Run";
@@ -525,6 +464,11 @@ pub struct Evaluate {
     /// In how many of ten data sets the band is to contain that share.
     #[command(flatten)]
     pub data_sets: DataSetsOptions,
+    /// Test the residual for structure: whiteness, correlation with the input, size and bias by place
+    ///
+    /// Says for each test what was found and what helps (docs/residuals.md). The rows are kept in memory.
+    #[arg(long)]
+    pub residuals: bool,
     /// Where the memory begins.
     #[command(flatten)]
     pub beginning: BeginningOptions,
@@ -578,6 +522,27 @@ pub struct Compare {
     /// Write no page
     #[arg(long, help_heading = RUN)]
     pub no_report: bool,
+}
+
+/// Arguments of `look`.
+#[derive(Debug, Args)]
+#[command(after_help = LOOK_EXAMPLES)]
+pub struct Look {
+    /// Tables: text, spreadsheets, MATLAB files, compressed or not; - is standard input
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Write the columns that are used as a plain CSV table; - is standard output
+    #[arg(short, long, value_name = "CLEAN.csv")]
+    pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
 }
 
 /// Arguments of `diagnose`.

@@ -14,9 +14,9 @@ use hysid::options::chosen::RateChoice;
 use self::guess::Guess;
 use crate::arguments::{ColumnOptions, RateOption};
 use crate::messages::Usage;
-use crate::table::{Head, Table};
 use crate::terminal::{clipped, listed};
 use hysid::data::unit::{self, Conversion};
+use hysid_tables::{Head, Table, is_record};
 
 /// The columns of each role, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +41,7 @@ impl Roles {
     /// Finds the roles in a table from options and names.
     pub fn detect(table: &Table, options: &ColumnOptions) -> Result<Self> {
         table.require_columns()?;
+        let options = &with_full_names(options, table);
         let rate = match &options.rate {
             RateOption::Column(name) => Some(name.clone()),
             _ => None,
@@ -134,8 +135,8 @@ impl Roles {
     ) -> Result<Self> {
         let names = model.names();
         let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
-            Some(name) => require(table, name, option).map(|()| name.clone()),
-            None if table.column(trained).is_some() => Ok(trained.to_string()),
+            Some(name) => require(table, name, option).map(|()| full_name(table, name)),
+            None if table.column(trained).is_some() => Ok(full_name(table, trained)),
             None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
             None => {
                 table.require_columns()?;
@@ -167,7 +168,7 @@ impl Roles {
             options
                 .input
                 .iter()
-                .map(|name| require(table, name, "--input").map(|()| name.clone()))
+                .map(|name| require(table, name, "--input").map(|()| full_name(table, name)))
                 .collect::<Result<_>>()?
         };
         let time = match (needs_time, &names.time) {
@@ -200,7 +201,7 @@ impl Roles {
         let used =
             |name: &str| inputs.iter().chain(&time).chain(&rate).any(|used| used == name) || output == name;
         let record = match &options.record {
-            Some(name) => require(table, name, "--record").map(|()| Some(name.clone()))?,
+            Some(name) => require(table, name, "--record").map(|()| Some(full_name(table, name)))?,
             None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
         };
         Ok(Self { record, time, inputs, rate, output, guessed: None, set_aside: Vec::new() })
@@ -236,16 +237,32 @@ impl Roles {
 /// Rows of each record of a table, where its name changes.
 fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
     let Some(place) = record.and_then(|name| table.column(name)) else {
-        return std::iter::once(0..table.len()).collect();
+        return std::iter::once(0..table.rows()).collect();
     };
     let name = |row: usize| table.cell(row, place).trim();
-    let begins = (1..table.len()).filter(|&row| name(row) != name(row - 1));
-    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.len()]).collect();
+    let begins = (1..table.rows()).filter(|&row| name(row) != name(row - 1));
+    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.rows()]).collect();
     begins.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
-fn is_record(name: &str) -> bool {
-    ["record", "segment"].contains(&name.to_lowercase().as_str())
+/// The name of a column with the unit that the file gives elsewhere.
+fn full_name(table: &Head, name: &str) -> String {
+    table.full_name(name).unwrap_or(name).to_string()
+}
+
+fn with_full_names(options: &ColumnOptions, table: &Head) -> ColumnOptions {
+    let full = |name: &Option<String>| name.as_ref().map(|name| full_name(table, name));
+    ColumnOptions {
+        record: full(&options.record),
+        time: full(&options.time),
+        input: options.input.iter().map(|name| full_name(table, name)).collect(),
+        output: full(&options.output),
+        rate: match &options.rate {
+            RateOption::Column(name) => RateOption::Column(full_name(table, name)),
+            other => other.clone(),
+        },
+        reading: options.reading.clone(),
+    }
 }
 
 fn require(table: &Head, name: &str, option: &str) -> Result<()> {
@@ -263,7 +280,8 @@ fn require(table: &Head, name: &str, option: &str) -> Result<()> {
 fn in_another_unit<'t>(table: &'t Head, trained: &str) -> Option<&'t String> {
     let suits = |name: &&String| {
         unit::split(name).0 == unit::split(trained).0
-            && matches!(Conversion::between(name, trained), Conversion::Factor(_))
+            && unit::of_column(name).is_some()
+            && matches!(Conversion::between(name, trained), Conversion::Factor(_) | Conversion::Same)
     };
     let mut suitable = table.header.iter().filter(suits);
     suitable.next().filter(|_| suitable.next().is_none())

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod compare;
+pub mod cycles;
 pub mod demo;
 pub mod diagnose;
 pub mod evaluate;
@@ -9,6 +10,7 @@ pub mod export;
 pub mod fit;
 pub mod generate;
 pub mod invert;
+pub mod look;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

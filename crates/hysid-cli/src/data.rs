@@ -9,11 +9,13 @@ use anyhow::{Result, anyhow};
 use hysid::data::record::{Dataset, Record};
 use hysid::error::{Channel, DataError, DataProblem};
 
-use crate::cell::{CellReader, ThousandsWatch};
+use hysid_tables::{CellReader, ColumnReader, Head, Origin, Table, spread_equal, starts_again};
+
+use crate::arguments::ReadingOptions;
 use crate::columns::Roles;
-use crate::messages::Usage;
+use crate::files::shown;
+use crate::messages::{Usage, warning};
 use crate::record_names::RecordNames;
-use crate::table::{Head, Origin, Table};
 use crate::terminal::clipped;
 
 /// Measured data and the tables they come from.
@@ -43,8 +45,9 @@ pub struct Place {
 }
 
 impl Data {
-    /// Takes records from tables.
-    pub fn new(tables: Vec<Table>, roles: Roles) -> Result<Self> {
+    /// Takes records from tables. `zero` is over how many rows at the beginning of each record the first input and the
+    /// output are to be zero in the mean.
+    pub fn new(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Self> {
         for table in &tables[1..] {
             roles.check_against(table, &tables[0])?;
         }
@@ -53,13 +56,18 @@ impl Data {
         let mut of_tables = Vec::new();
         for (index, (table, stem)) in tables.into_iter().zip(&stems).enumerate() {
             let first = source.places.len();
-            source.places.extend(places(&table, index, &roles, stem, stems.len() > 1)?);
-            of_tables.push((Columns::read(&table, &roles)?, first..source.places.len()));
+            let columns = Columns::read(&table, &roles)?;
+            let naming = Naming { table: index, stem, has_others: stems.len() > 1 };
+            source.places.extend(places(&table, &roles, &naming, columns.time.as_deref())?);
+            of_tables.push((columns, first..source.places.len()));
             source.tables.push(table.into_origin());
         }
         let mut records = Vec::new();
-        for (columns, places) in of_tables {
-            for place in &source.places[places] {
+        for (mut columns, places) in of_tables {
+            let places = &source.places[places];
+            columns.spread_equal_stamps(places, &source);
+            zero.iter().for_each(|&rows| columns.remove_offsets(places, rows));
+            for place in places {
                 records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
             }
         }
@@ -130,6 +138,7 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid::Error, roles: &Rol
         (DataProblem::TooFewRows { found, needed }, ..) => {
             anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
         }
+        (problem @ DataProblem::TooFewForTests { .. }, ..) => anyhow!("{file}: {problem}"),
         (
             DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
             _,
@@ -205,21 +214,39 @@ fn stems(tables: &[Table]) -> Vec<String> {
     all.iter().zip(tables).map(name).map(numbered).collect()
 }
 
-/// The records of one table.
-pub fn places_of(table: &Table, roles: &Roles) -> Result<Vec<Place>> {
+/// The records of one table, by its time stamps if it has any.
+pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<Vec<Place>> {
     let stems = stems(std::slice::from_ref(table));
-    places(table, 0, roles, &stems[0], false)
+    places(table, roles, &Naming { table: 0, stem: &stems[0], has_others: false }, time)
 }
 
-/// The records of a table: runs of rows with the same name in the record column.
-fn places(table: &Table, index: usize, roles: &Roles, stem: &str, several: bool) -> Result<Vec<Place>> {
+/// What the records of a table are named after.
+struct Naming<'n> {
+    /// Place of the table among all.
+    table: usize,
+    stem: &'n str,
+    /// There are other tables.
+    has_others: bool,
+}
+
+/// The records of a table: runs of rows with the same name in the record column; without such a column, a record begins
+/// where time starts again.
+fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]>) -> Result<Vec<Place>> {
     let Some(column) = &roles.record else {
-        return Ok(vec![Place { record: stem.into(), table: index, rows: 0..table.len() }]);
+        let ends = ends_by_time(time.unwrap_or_default(), table.rows());
+        let name = |number: usize| match ends.len() {
+            1 => naming.stem.to_string(),
+            _ => format!("{} ({})", naming.stem, number + 1),
+        };
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let rows = starts.zip(&ends).map(|(start, &end)| start..end);
+        let place = |(number, rows)| Place { record: name(number), table: naming.table, rows };
+        return Ok(rows.enumerate().map(place).collect());
     };
     let cell = place_of(table, column)?;
     let mut places: Vec<Place> = Vec::new();
     let mut names = RecordNames::default();
-    for row in 0..table.len() {
+    for row in 0..table.rows() {
         let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
         let name = table.cell(row, cell);
         if !names.begins(name, at)? {
@@ -227,10 +254,24 @@ fn places(table: &Table, index: usize, roles: &Roles, stem: &str, several: bool)
             continue;
         }
         let name = name.trim();
-        let record = if several { format!("{stem}/{name}") } else { name.to_string() };
-        places.push(Place { record, table: index, rows: row..row + 1 });
+        let record = if naming.has_others { format!("{}/{name}", naming.stem) } else { name.to_string() };
+        places.push(Place { record, table: naming.table, rows: row..row + 1 });
     }
     Ok(places)
+}
+
+/// Where records end that time tells apart.
+fn ends_by_time(time: &[f64], rows: usize) -> Vec<usize> {
+    let mut first = 0;
+    let mut ends = Vec::new();
+    for row in 1..time.len() {
+        if starts_again(time[first], time[row - 1], time[row]) {
+            ends.push(row);
+            first = row;
+        }
+    }
+    ends.push(rows);
+    ends
 }
 
 /// Place of a column.
@@ -248,13 +289,32 @@ struct Columns {
 
 impl Columns {
     fn read(table: &Table, roles: &Roles) -> Result<Self> {
-        let mut cells = CellReader::new(table.delimiter);
+        let mut cells = CellReader::new(table.numbers());
         let mut read = |name: &String, kind: Kind| column_of(table, name, kind, &mut cells);
         let time = roles.time.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
         let inputs = roles.inputs.iter().map(|name| read(name, Kind::Given)).collect::<Result<_>>()?;
         let rate = roles.rate.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
         let output = read(&roles.output, Kind::Output)?;
         Ok(Self { time, inputs, rate, output })
+    }
+
+    /// Spreads equal time stamps, and says so.
+    fn spread_equal_stamps(&mut self, places: &[Place], source: &Source) {
+        let Some(time) = &mut self.time else { return };
+        let spread: usize =
+            places.iter().map(|place| spread_equal(&mut time[place.rows.clone()], None, &mut None)).sum();
+        if spread > 0 {
+            warn_of_equal_stamps(&source.tables[places[0].table].file, spread);
+        }
+    }
+
+    /// Subtracts from the first input and from the output their means over the first rows of each record.
+    fn remove_offsets(&mut self, places: &[Place], rows: usize) {
+        for place in places {
+            for column in [&mut self.inputs[0], &mut self.output] {
+                remove_offset(&mut column[place.rows.clone()], rows);
+            }
+        }
     }
 
     fn record(&self, place: &Place) -> hysid::Result<Record> {
@@ -288,42 +348,77 @@ pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) 
     let at = |line: u64, problem: &str| {
         anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
     };
-    let mut thousands = ThousandsWatch::default();
-    let number = |(row, &line): (usize, &u64)| {
-        let cell = table.cell(row, place);
-        thousands.take(cell, line);
-        number_in(cells, cell, line, kind, row == 0).map_err(|problem| at(line, &problem))
-    };
-    let numbers = table.lines.iter().enumerate().map(number).collect::<Result<_>>()?;
-    thousands.problem().map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
+    let mut column = ColumnReader::new(table, place);
+    let mut numbers = Vec::with_capacity(table.rows());
+    for (row, &line) in table.lines.iter().enumerate() {
+        let number = column.number(table, cells, table.cell(row, place), line);
+        numbers.push(
+            checked(number, table.cell(row, place), kind, row == 0).map_err(|problem| at(line, &problem))?,
+        );
+    }
+    column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
 }
 
-/// The number in a cell, NaN for a blank output; or what is wrong with it and what helps.
-pub fn number_in(
-    cells: &mut CellReader,
-    cell: &str,
-    line: u64,
-    kind: Kind,
-    is_first: bool,
-) -> Result<f64, String> {
-    if cell.trim().is_empty() {
-        return match kind {
+/// The number of a cell, NaN for a missing output; or what is wrong with it and what helps.
+pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bool) -> Result<f64, String> {
+    match number {
+        Ok(number) if number.is_nan() => match kind {
             Kind::Output => Ok(f64::NAN),
-            Kind::Given => Err("the cell is empty (only the output may be blank)".into()),
-            Kind::Wanted => Err("the cell is empty (every row needs a wanted output)".into()),
-        };
+            Kind::Given => {
+                Err(format!("{} (only the output may be blank; choose rows with --rows)", missing(cell)))
+            }
+            Kind::Wanted => Err(format!("{} (every row needs a wanted output)", missing(cell))),
+        },
+        Ok(number) => Ok(number),
+        Err(problem) => {
+            let hint = match (kind, problem.ends_with("number")) {
+                (Kind::Output, true) if cell.trim().len() <= LONGEST_WORD => {
+                    let cell = cell.trim();
+                    format!(" (if it stands for a missing value: --missing {})", shown(Path::new(cell)))
+                }
+                (Kind::Given, true) if is_first => " (not an input? name the inputs with --input)".into(),
+                _ => String::new(),
+            };
+            Err(problem + &hint)
+        }
     }
-    cells.number(cell, line).map_err(|problem| {
-        let hint = match (kind, problem.ends_with("number")) {
-            (Kind::Output, true) => " (leave the cell empty to drive the model without scoring)",
-            (Kind::Given, true) if is_first => " (not an input? name the inputs with --input)",
-            _ => "",
-        };
-        problem + hint
-    })
+}
+
+/// Longest word that may stand for a missing value.
+const LONGEST_WORD: usize = 20;
+
+fn missing(cell: &str) -> String {
+    match cell.trim() {
+        "" => "the cell is empty".into(),
+        cell => format!("\"{}\" is a missing value", clipped(cell)),
+    }
+}
+
+/// Says that equal time stamps were spread.
+pub fn warn_of_equal_stamps(file: &str, rows: usize) {
+    let rows = if rows == 1 { "1 row has".to_string() } else { format!("{rows} rows have") };
+    warning(format_args!(
+        "{file}: {rows} the time stamp of the row before: equal time stamps were spread evenly up to the next one"
+    ));
+}
+
+/// Subtracts from a record's values their mean over the first rows; those that are missing do not count.
+fn remove_offset(values: &mut [f64], rows: usize) {
+    let offset = offset_of(values, rows);
+    values.iter_mut().for_each(|value| *value -= offset);
+}
+
+/// The mean over the first rows, 0 if all are missing.
+pub fn offset_of(values: &[f64], rows: usize) -> f64 {
+    let first = || values.iter().take(rows).filter(|value| value.is_finite());
+    match first().count() {
+        0 => 0.0,
+        count => first().sum::<f64>() / count as f64,
+    }
 }
 
 /// Reads tables.
-pub fn read_tables(paths: &[PathBuf]) -> Result<Vec<Table>> {
-    paths.iter().map(|path| Table::read(path)).collect()
+pub fn read_tables(paths: &[PathBuf], options: &ReadingOptions) -> Result<Vec<Table>> {
+    let reading = options.reading();
+    paths.iter().map(|path| Table::read(path, &reading)).collect()
 }

@@ -8,7 +8,6 @@ mod invertibility;
 mod loops;
 mod model;
 mod overview;
-mod quantities;
 
 pub use data::DataDiagnosis;
 use hysid_document::plain::{WIDTH, wrapped};

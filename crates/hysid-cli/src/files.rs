@@ -22,10 +22,14 @@ pub fn open(path: &Path) -> Result<File> {
     }
 }
 
-/// The content of a file.
+/// The content of a file, or of standard input for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     let mut content = Vec::new();
-    match open(path)?.read_to_end(&mut content) {
+    let read = match path == Path::new("-") {
+        true => std::io::stdin().read_to_end(&mut content),
+        false => open(path)?.read_to_end(&mut content),
+    };
+    match read {
         Ok(_) => Ok(content),
         Err(error) => bail!("{}: cannot be read: {}", path.display(), reason(&error)),
     }

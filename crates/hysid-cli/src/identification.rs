@@ -7,7 +7,10 @@ use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
 use hysid::data::summary::Summary;
-use hysid::diagnosis::before_a_fit;
+use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
+use hysid::diagnosis::{DataIssueKind, before_a_fit};
+use hysid::fit::HeldOutRows;
+use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
 use hysid::model::{Model, Prediction, Provenance};
@@ -31,6 +34,8 @@ pub struct Identified {
     pub model: Model,
     /// Evaluations of the objective.
     pub evaluations: usize,
+    /// Rows that were held out in turn, and what was predicted for them.
+    held_out: Option<HeldOutRows>,
     /// Seconds of training.
     pub seconds: f64,
     said: Said,
@@ -90,7 +95,13 @@ pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -
 pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
     // Data that cannot be looked at cannot be fitted to either: the fit says why.
     let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let statements = doubtful.into_iter().map(|complaint| complaint.statement);
+    let output = format!("\"{}\" ", data.roles.output);
+    let statements = doubtful.into_iter().map(|issue| match (issue.kind, issue.value) {
+        (DataIssueKind::MissingValueMark, Some(value)) if issue.statement.starts_with(&output) => {
+            format!("{} (--missing {value})", issue.statement)
+        }
+        _ => issue.statement,
+    });
     summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
 }
 
@@ -119,7 +130,8 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     });
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
-    Ok(Identified { model: fitted.model, evaluations: fitted.evaluations, seconds, said })
+    let (model, evaluations, held_out) = (fitted.model, fitted.evaluations, fitted.held_out);
+    Ok(Identified { model, evaluations, held_out, seconds, said })
 }
 
 impl Identified {
@@ -135,12 +147,57 @@ impl Identified {
             .context("the model was written, but not its report")
     }
 
+    /// Tests of the residual on the data that the model was fitted to (as it was trained on them), and on rows that were
+    /// held out from other models made in the same way.
+    pub fn residuals(&self, trained: &Dataset) -> Result<Vec<(String, Residuals)>> {
+        let mut all = Vec::new();
+        all.extend(self.residuals_of("training", trained)?);
+        let options =
+            ResidualOptions { uses_rate: self.model.rate().is_some(), ..ResidualOptions::default() };
+        if let Some(HeldOutRows { data, simulated }) = &self.held_out
+            && data.scored() >= FEWEST_ROWS
+        {
+            all.push(("held-out".into(), Residuals::of(data, simulated, &options)?));
+        }
+        Ok(all)
+    }
+
+    /// Tests of the residual on some data; `None` for too few rows.
+    fn residuals_of(&self, name: &str, data: &Dataset) -> Result<Option<(String, Residuals)>> {
+        let is_training = name == "training";
+        // The rows of a warm-up were not trained on.
+        let data = data.clone().warmed_up(if is_training { self.model.warm_up() } else { 0 });
+        if data.scored() < FEWEST_ROWS {
+            return Ok(None);
+        }
+        let options = ResidualOptions { is_training, ..ResidualOptions::default() };
+        Ok(Some((name.into(), Residuals::of_model(&self.model, &data, &options)?)))
+    }
+
+    /// Confidence intervals of the parameters, for a law that has them.
+    pub fn intervals(&self, trained: &Dataset) -> Result<Option<ParameterIntervals>> {
+        Ok(ParameterIntervals::of(&self.model, trained)?)
+    }
+
     fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
+        let mut residuals = Vec::new();
+        let mut intervals = None;
+        for &(name, data) in sets {
+            match name {
+                "training" => {
+                    residuals.extend(self.residuals(data)?);
+                    intervals = self.intervals(data)?;
+                }
+                _ => residuals.extend(self.residuals_of(name, data)?),
+            }
+        }
         let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Ok(report::page(&Report {
             title,
             model: &self.model,
             sets: sets.iter().map(|(name, data)| self.set(name, data)).collect::<Result<_>>()?,
+            residuals: &residuals,
+            intervals: intervals.as_ref(),
             warnings: &self.said.warnings,
             understood: &self.said.understood,
             model_file: path.display().to_string(),

@@ -5,12 +5,12 @@
 
 mod arguments;
 mod band_coverage;
-mod cell;
 mod checkpoint;
 mod columns;
 mod commands;
 mod comparison;
 mod csv_text;
+mod cycles;
 mod data;
 mod date;
 mod diagnosis;
@@ -19,12 +19,14 @@ mod files;
 mod identification;
 mod interrupt;
 mod inversion;
+mod looked;
 mod messages;
 mod progress;
+mod quantities;
 mod record_names;
 mod report;
 mod reproduction;
-mod table;
+mod residual_tests;
 mod table_run;
 mod terminal;
 mod timing;
@@ -37,13 +39,13 @@ use clap::error::{ContextValue, ErrorKind};
 
 use std::path::Path;
 
-use arguments::{Arguments, ColumnOptions, Command, RateOption};
+use arguments::{Arguments, ColumnOptions, Command, RateOption, ReadingOptions};
 use columns::Roles;
 use data::Data;
 use hysid::data::record::Dataset;
 use hysid::options::chosen::RateChoice;
+use hysid_tables::{Reading, Table};
 use messages::{StdoutClosed, Usage, note};
-use table::Table;
 
 /// How a command ended when nothing went wrong.
 enum Outcome {
@@ -67,7 +69,9 @@ pub fn run() -> ExitCode {
         Command::Evaluate(arguments) => commands::evaluate::run(&arguments),
         Command::Invert(arguments) => commands::invert::run(&arguments),
         Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
+        Command::Cycles(arguments) => commands::cycles::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),
@@ -93,16 +97,17 @@ pub fn run() -> ExitCode {
 /// # Errors
 /// As for a file: one line that says what is wrong and where.
 pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
-    let table = Table::from_bytes(Path::new("text"), text)?;
+    let table = Table::from_bytes(Path::new("text"), text, &Reading::default())?;
     let by_names = ColumnOptions {
         record: None,
         time: None,
         input: Vec::new(),
         output: None,
         rate: RateOption::Choice(RateChoice::Auto),
+        reading: ReadingOptions::default(),
     };
     let roles = Roles::detect(&table, &by_names)?;
-    Ok(Data::new(vec![table], roles)?.set)
+    Ok(Data::new(vec![table], roles, None)?.set)
 }
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,

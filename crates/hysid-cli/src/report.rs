@@ -8,11 +8,14 @@ pub mod histories;
 mod neurons;
 mod parameters;
 mod provenance;
+mod residuals;
 mod usage;
 
 use hysid::data::initial_state::in_words;
 use hysid::data::metrics::Errors;
 use hysid::data::record::Dataset;
+use hysid::diagnosis::residuals::Residuals;
+use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
 use hysid_document::{Page, number, unit};
 
@@ -29,6 +32,10 @@ pub struct Report<'a> {
     pub model: &'a Model,
     /// Data that it was run on, the training data first.
     pub sets: Vec<ReportSet<'a>>,
+    /// Tests of the residual, with the name of the data.
+    pub residuals: &'a [(String, Residuals)],
+    /// Confidence intervals of the parameters, for a law that has them.
+    pub intervals: Option<&'a ParameterIntervals>,
     /// What to be aware of.
     pub warnings: &'a [String],
     /// What was understood of the data: a question and its answer.
@@ -61,6 +68,7 @@ pub fn page(report: &Report) -> Page {
     parts.extend(band::section(report));
     parts.extend(report.sets.iter().map(figures::loops_section));
     parts.extend(report.sets.iter().map(histories::section));
+    parts.extend(residuals::section(report));
     parts.extend(figures::convergence_section(report.model));
     parts.extend(neurons::section(report));
     parts.extend(parameters::section(report));

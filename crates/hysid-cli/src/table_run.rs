@@ -1,6 +1,5 @@
 //! A model run over a table row by row: memory does not grow with the table.
 
-use std::io::Read;
 use std::mem;
 use std::ops::ControlFlow;
 
@@ -9,26 +8,33 @@ use hysid::data::record::{Fingerprint, Likeness, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
 
-use crate::cell::{CellReader, ThousandsWatch};
+use crate::arguments::MOST_ROWS_OF_ZERO;
 use crate::columns::Roles;
-use crate::data::{Kind, explained, number_in, place_of};
+use crate::data::{Kind, checked, explained, offset_of, place_of, warn_of_equal_stamps};
 use crate::record_names::RecordNames;
-use crate::table::{Head, Row, Rows, no_rows};
 use crate::terminal::clipped;
 use crate::units::Factors;
+use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 /// Rows that are simulated together.
-const BLOCK: usize = 4096;
+const BLOCK: usize = MOST_ROWS_OF_ZERO;
+
+/// Blocks that rows with one time stamp may fill.
+const MOST_EQUAL: usize = 16;
 
 /// What is wanted of the rows beside the outputs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted {
     /// The measured outputs.
     pub measured: bool,
+    /// Time, inputs and rate.
+    pub drive: bool,
     /// The cells as they are.
     pub cells: bool,
     /// A band of this level.
     pub band: Option<BandLevel>,
+    /// Over how many rows at the beginning of each record the first input and the output are to be zero in the mean.
+    pub zero: Option<usize>,
 }
 
 /// Rows that are simulated, in the order of the table.
@@ -47,9 +53,40 @@ pub struct Simulated<'r> {
 }
 
 impl<'r> Simulated<'r> {
+    /// Their time, inputs and rate, if these are wanted.
+    pub fn drive(&self) -> &'r Drive {
+        &self.waiting.drive
+    }
+
     /// The cells of a row, if these are wanted.
     pub fn cells(&self, row: usize) -> impl Iterator<Item = &'r str> {
         self.waiting.cells(row)
+    }
+}
+
+/// Time, inputs and rate of rows, column by column, of which the first are those that are simulated.
+#[derive(Default)]
+pub struct Drive {
+    /// Time; empty if there is none.
+    pub time: Vec<f64>,
+    /// Inputs.
+    pub inputs: Vec<Vec<f64>>,
+    /// Rate of the first input; empty if no column has it.
+    pub rate: Vec<f64>,
+}
+
+impl Drive {
+    /// Adds the rows of a block.
+    fn push(&mut self, block: &Block) {
+        self.inputs.resize(block.inputs.len(), Vec::new());
+        self.time.extend(&block.time);
+        self.rate.extend(&block.rate);
+        self.inputs.iter_mut().zip(&block.inputs).for_each(|(input, from)| input.extend(from));
+    }
+
+    fn drop_first(&mut self, rows: usize) {
+        let columns = self.inputs.iter_mut().chain([&mut self.time, &mut self.rate]);
+        columns.for_each(|column| drop(column.drain(..rows.min(column.len()))));
     }
 }
 
@@ -62,16 +99,16 @@ pub type Take<'t> = dyn FnMut(&Simulated<'_>) -> Result<ControlFlow<()>> + 't;
 /// A row that cannot be read or simulated, with its line.
 pub fn run(
     model: &Model,
-    rows: &mut Rows<impl Read>,
+    rows: &mut Rows,
     roles: &Roles,
     factors: &Factors,
     wanted: Wanted,
     take: &mut Take<'_>,
 ) -> Result<Option<Vec<Warning>>> {
     let mut run = TableRun::new(model, &rows.head, roles, factors, wanted)?;
-    while let Some(row) = rows.next_row()? {
-        let begins = run.begins_record(&row)?;
-        if begins || run.block.rows == BLOCK {
+    while let Some((head, row)) = rows.next_row_of()? {
+        let begins = run.begins_record(head, &row)?;
+        if begins || run.is_full() {
             let ends_record = begins && run.is_begun;
             if run.simulate(ends_record, take)?.is_break() {
                 return Ok(None);
@@ -80,13 +117,16 @@ pub fn run(
         if begins {
             run.begin();
         }
-        run.push(&row)?;
+        run.push(head, &row)?;
     }
     if !run.is_begun {
-        bail!(no_rows(&run.file));
+        bail!(rows.head.no_rows());
     }
     run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
+    if run.spread > 0 {
+        warn_of_equal_stamps(&run.file, run.spread);
+    }
     Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
 }
 
@@ -96,11 +136,16 @@ struct TableRun<'r, 'm> {
     roles: &'r Roles,
     factors: &'r Factors,
     wanted: Wanted,
-    places: Places,
+    columns: Columns,
     names: RecordNames,
     numbers: CellReader,
-    /// One for each column that is read: time, rate, output, inputs.
-    thousands: Vec<(usize, ThousandsWatch)>,
+    clock: Clock,
+    /// Rows so far whose time stamp was that of the row before.
+    spread: usize,
+    /// What is subtracted from the first input and the output of the present record, once it is known.
+    offsets: Option<(f64, f64)>,
+    /// Records so far.
+    records: usize,
     model: &'m Model,
     simulation: Simulation<'m>,
     /// Of the rows of the present record.
@@ -114,13 +159,24 @@ struct TableRun<'r, 'm> {
     waiting: Waiting,
 }
 
-/// Where the columns of each role stand.
-struct Places {
+/// The columns of each role.
+struct Columns {
     record: Option<usize>,
-    time: Option<usize>,
-    inputs: Vec<usize>,
-    rate: Option<usize>,
-    output: Option<usize>,
+    time: Option<ColumnReader>,
+    inputs: Vec<ColumnReader>,
+    rate: Option<ColumnReader>,
+    output: Option<ColumnReader>,
+}
+
+/// Time stamps of the present record.
+#[derive(Default)]
+struct Clock {
+    first: f64,
+    previous: f64,
+    /// That of the present row.
+    now: f64,
+    /// The last step between different stamps.
+    step: Option<f64>,
 }
 
 /// Rows of the present record that the simulation has not taken yet.
@@ -138,6 +194,7 @@ struct Block {
 struct Waiting {
     lines: Vec<u64>,
     measured: Vec<f64>,
+    drive: Drive,
     width: usize,
     text: String,
     ends: Vec<usize>,
@@ -155,25 +212,27 @@ impl<'r, 'm> TableRun<'r, 'm> {
             Some(level) => model.simulation_with_band(level)?,
             None => model.simulation(),
         };
-        let place = |name: &String| place_of(head, name);
-        let places = Places {
-            record: roles.record.as_ref().map(place).transpose()?,
-            time: roles.time.as_ref().map(place).transpose()?,
-            inputs: roles.inputs.iter().map(place).collect::<Result<_>>()?,
-            rate: roles.rate.as_ref().map(place).transpose()?,
-            output: wanted.measured.then(|| place(&roles.output)).transpose()?,
+        let reader = |name: &String| Ok(ColumnReader::new(head, place_of(head, name)?));
+        let columns = Columns {
+            record: roles.record.as_ref().map(|name| place_of(head, name)).transpose()?,
+            time: roles.time.as_ref().map(reader).transpose()?,
+            inputs: roles.inputs.iter().map(reader).collect::<Result<_>>()?,
+            rate: roles.rate.as_ref().map(reader).transpose()?,
+            output: wanted.measured.then(|| reader(&roles.output)).transpose()?,
         };
-        let read = places.time.iter().chain(&places.rate).chain(&places.output).chain(&places.inputs);
         Ok(Self {
-            thousands: read.map(|&place| (place, ThousandsWatch::default())).collect(),
             file: head.file.clone(),
             roles,
             factors,
             wanted,
-            block: Block::new(places.inputs.len()),
-            places,
+            block: Block::new(columns.inputs.len()),
+            columns,
             names: RecordNames::default(),
-            numbers: CellReader::new(head.delimiter),
+            numbers: CellReader::new(head.numbers()),
+            clock: Clock::default(),
+            spread: 0,
+            offsets: None,
+            records: 0,
             model,
             simulation,
             fingerprint: Fingerprint::default(),
@@ -183,19 +242,37 @@ impl<'r, 'm> TableRun<'r, 'm> {
             waiting: Waiting { width: head.header.len(), ..Waiting::default() },
         })
     }
-    /// True if another record begins with the row.
-    fn begins_record(&mut self, row: &Row<'_>) -> Result<bool> {
-        let Some((place, column)) = self.places.record.zip(self.roles.record.as_ref()) else {
-            return Ok(!self.is_begun);
+
+    /// True if another record begins with the row: another name, or, without names, time that starts again.
+    fn begins_record(&mut self, head: &Head, row: &Row<'_>) -> Result<bool> {
+        let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
+        if let Some((column, name)) = self.columns.time.as_mut().zip(self.roles.time.as_ref()) {
+            let now = read(column, &mut self.numbers, head, row, (name, Kind::Given, is_first))?;
+            self.clock.previous = self.clock.now;
+            self.clock.now = self.factors.time.map_or(now, |factor| factor * now);
+        }
+        let Some((place, column)) = self.columns.record.zip(self.roles.record.as_ref()) else {
+            let Clock { first, previous, now, .. } = self.clock;
+            return Ok(!self.is_begun || self.columns.time.is_some() && starts_again(first, previous, now));
         };
         let at = || format!("{}, line {}, column \"{}\"", self.file, row.line, clipped(column));
         self.names.begins(row.cell(place), at)
     }
 
+    /// True if the block is to be simulated before the present row: rows with one time stamp stay together, so that
+    /// they can be spread.
+    fn is_full(&self) -> bool {
+        let rows = self.block.rows;
+        let goes_on = self.columns.time.is_some() && self.clock.now == self.clock.previous;
+        rows >= BLOCK && (!goes_on || rows >= MOST_EQUAL * BLOCK)
+    }
+
     fn check_thousands(&self, head: &Head) -> Result<()> {
-        match self.thousands.iter().find_map(|(place, watch)| Some((place, watch.problem()?))) {
+        let columns = &self.columns;
+        let mut all = columns.time.iter().chain(&columns.rate).chain(&columns.output).chain(&columns.inputs);
+        match all.find_map(|column| Some((column.place(), column.problem(&self.numbers)?))) {
             None => Ok(()),
-            Some((&place, (line, problem))) => {
+            Some((place, (line, problem))) => {
                 let name = clipped(&head.header[place]);
                 bail!("{}, line {line}, column \"{name}\": {problem}", self.file)
             }
@@ -205,50 +282,81 @@ impl<'r, 'm> TableRun<'r, 'm> {
     fn begin(&mut self) {
         self.is_begun = true;
         self.simulated = 0;
-        self.simulation.begin(self.names.present().unwrap_or(&self.file));
+        self.records += 1;
+        self.offsets = None;
+        (self.clock.first, self.clock.step) = (self.clock.now, None);
+        self.simulation.begin(self.record_name());
+    }
+
+    /// The name of the present record.
+    fn record_name(&self) -> String {
+        match self.names.present() {
+            Some(name) => name.to_string(),
+            None if self.records > 1 => format!("{} ({})", self.file, self.records),
+            None => self.file.clone(),
+        }
     }
 
     /// Takes the numbers of a row.
-    fn push(&mut self, row: &Row<'_>) -> Result<()> {
-        self.thousands.iter_mut().for_each(|(place, watch)| watch.take(row.cell(*place), row.line));
+    fn push(&mut self, head: &Head, row: &Row<'_>) -> Result<()> {
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
-        let mut number = |place: usize, name: &str, kind: Kind, factor: Option<f64>| {
-            let number = number_in(&mut self.numbers, row.cell(place), row.line, kind, is_first);
-            let number = number.map_err(|problem| {
-                anyhow!("{}, line {}, column \"{}\": {problem}", self.file, row.line, clipped(name))
-            })?;
+        let mut number = |column: &mut ColumnReader, name: &str, kind: Kind, factor: Option<f64>| {
+            let number = read(column, &mut self.numbers, head, row, (name, kind, is_first))?;
             anyhow::Ok(factor.map_or(number, |factor| factor * number))
         };
         let factors = self.factors;
-        if let Some((place, name)) = self.places.time.zip(self.roles.time.as_ref()) {
-            self.block.time.push(number(place, name, Kind::Given, factors.time)?);
+        if self.columns.time.is_some() {
+            self.block.time.push(self.clock.now);
         }
-        let columns = self.places.inputs.iter().zip(&self.roles.inputs).zip(&factors.inputs);
-        for (input, ((&place, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
-            input.push(number(place, name, Kind::Given, factor)?);
+        let columns = self.columns.inputs.iter_mut().zip(&self.roles.inputs).zip(&factors.inputs);
+        for (input, ((column, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
+            input.push(number(column, name, Kind::Given, factor)?);
         }
-        if let Some((place, name)) = self.places.rate.zip(self.roles.rate.as_ref()) {
-            self.block.rate.push(number(place, name, Kind::Given, factors.rate)?);
+        if let Some((column, name)) = self.columns.rate.as_mut().zip(self.roles.rate.as_ref()) {
+            self.block.rate.push(number(column, name, Kind::Given, factors.rate)?);
         }
-        let output = match self.places.output {
-            Some(place) => number(place, &self.roles.output, Kind::Output, factors.output)?,
+        let output = match &mut self.columns.output {
+            Some(column) => number(column, &self.roles.output, Kind::Output, factors.output)?,
             None => f64::NAN,
         };
-        if self.wanted.measured {
-            let inputs = self.block.inputs.iter().filter_map(|input| input.last().copied());
-            self.fingerprint.add(inputs, output);
-        }
         self.block.output.push(output);
         self.block.rows += 1;
         self.waiting.push(row, self.wanted, output);
         Ok(())
     }
 
+    /// Spreads equal time stamps of the block, and removes offsets.
+    fn prepare_block(&mut self, ends_record: bool) {
+        if self.columns.time.is_some() {
+            let next = (!ends_record && self.clock.now > self.clock.previous).then_some(self.clock.now);
+            self.spread += spread_equal(&mut self.block.time, next, &mut self.clock.step);
+        }
+        if let Some(rows) = self.wanted.zero {
+            let block = &mut self.block;
+            let (x, y) = *self
+                .offsets
+                .get_or_insert_with(|| (offset_of(&block.inputs[0], rows), offset_of(&block.output, rows)));
+            block.inputs[0].iter_mut().for_each(|value| *value -= x);
+            block.output.iter_mut().for_each(|value| *value -= y);
+            let measured = self.waiting.measured.len().saturating_sub(block.rows);
+            self.waiting.measured[measured..].iter_mut().for_each(|value| *value -= y);
+        }
+        if self.wanted.measured {
+            for (row, &output) in self.block.output.iter().enumerate() {
+                self.fingerprint.add(self.block.inputs.iter().map(|input| input[row]), output);
+            }
+        }
+        if self.wanted.drive {
+            self.waiting.drive.push(&self.block);
+        }
+    }
+
     /// Simulates the block, and the rest of the record if it ends.
     fn simulate(&mut self, ends_record: bool, take: &mut Take<'_>) -> Result<ControlFlow<()>> {
         if self.block.rows > 0 {
+            self.prepare_block(ends_record);
             let first = self.waiting.lines.len() - self.block.rows;
-            let record = self.block.record(&self.places, self.names.present().unwrap_or(&self.file));
+            let record = self.block.record(&self.columns, &self.record_name());
             let record = record.map_err(|error| self.explain(error, first))?;
             let prediction = self.simulation.take(&record.excitation());
             if self.hand_on(prediction, false, take)?.is_break() {
@@ -257,7 +365,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         }
         if ends_record {
             if self.model.was_trained_on(&mem::take(&mut self.fingerprint)) {
-                let record = self.names.present().unwrap_or(&self.file).to_string();
+                let record = self.record_name();
                 self.known.push(Warning::TrainedOn { record, likeness: Likeness::Equal });
             }
             let prediction = self.simulation.finish();
@@ -306,19 +414,35 @@ impl<'r, 'm> TableRun<'r, 'm> {
     }
 }
 
+/// The number of a column in a row; `what` is its name, its kind, and whether the row is the first of its record.
+fn read(
+    column: &mut ColumnReader,
+    numbers: &mut CellReader,
+    head: &Head,
+    row: &Row<'_>,
+    what: (&str, Kind, bool),
+) -> Result<f64> {
+    let (name, kind, is_first) = what;
+    let cell = row.cell(column.place());
+    let number = column.number(head, numbers, cell, row.line);
+    checked(number, cell, kind, is_first).map_err(|problem| {
+        anyhow!("{}, line {}, column \"{}\": {problem}", head.file, row.line, clipped(name))
+    })
+}
+
 impl Block {
     fn new(inputs: usize) -> Self {
         Self { inputs: vec![Vec::new(); inputs], ..Self::default() }
     }
 
     /// The rows as a record, which is checked; the block is empty after it.
-    fn record(&mut self, places: &Places, name: &str) -> hysid::Result<Record> {
+    fn record(&mut self, columns: &Columns, name: &str) -> hysid::Result<Record> {
         let Self { time, inputs, rate, output, .. } = mem::replace(self, Self::new(self.inputs.len()));
         let mut record = Record::new(name, inputs, output)?;
-        if places.time.is_some() {
+        if columns.time.is_some() {
             record = record.with_time(time)?;
         }
-        if places.rate.is_some() {
+        if columns.rate.is_some() {
             record = record.with_given_rate(rate)?;
         }
         Ok(record)
@@ -348,6 +472,7 @@ impl Waiting {
     fn drop_first(&mut self, rows: usize) {
         self.lines.drain(..rows);
         self.measured.drain(..rows.min(self.measured.len()));
+        self.drive.drop_first(rows);
         let cells = (rows * self.width).min(self.ends.len());
         if cells > 0 {
             let end = self.ends[cells - 1];

@@ -12,6 +12,7 @@ use crate::messages::note;
 use crate::terminal::{clipped, listed, listed_paths};
 use hysid::data::unit;
 use hysid_document::plain::{WIDTH, wrapped};
+use hysid_tables::Origin;
 
 /// Room for a label and the blank behind it.
 const LABEL: usize = 9;
@@ -40,6 +41,17 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
     let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
     say(if files.len() == 1 { "file" } else { "files" }, listed_paths(&files));
+    for (text, count) in as_read(&data.source.tables) {
+        let others =
+            if count < files.len() { format!(" ({count} of {} files)", files.len()) } else { String::new() };
+        say("read as", text + &others);
+    }
+    for table in &data.source.tables {
+        if let Some(text) = table.left_out.described() {
+            let file = if files.len() == 1 { String::new() } else { format!("{}: ", clipped(&table.file)) };
+            say("left out", file + &text);
+        }
+    }
     say("samples", samples(summary));
     if let Some(time) = &data.roles.time {
         say(
@@ -58,7 +70,11 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     if let Some(more) = inputs.len().checked_sub(MOST_INPUTS).filter(|&more| more > 0) {
         say("", format!("and {more} more"));
     }
-    say("output", ranged(&data.roles.output, summary.output));
+    let missing = match summary.rows - summary.scored {
+        0 => String::new(),
+        missing => format!(", missing in {missing} rows"),
+    };
+    say("output", ranged(&data.roles.output, summary.output) + &missing);
     for (name, reason) in data.roles.set_aside.iter().take(MOST_INPUTS) {
         say("ignored", format!("{}: {reason}", clipped(name)));
     }
@@ -74,13 +90,22 @@ pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
     lines
 }
 
+/// A label and its text, in lines within 80 columns where words allow.
+pub fn labelled(label: &str, text: &str) -> String {
+    let mut label = label;
+    let mut lines = String::new();
+    for line in wrapped(text, WIDTH - LABEL) {
+        lines += &format!("{label:<LABEL$}{line}\n");
+        label = "";
+    }
+    lines
+}
+
 /// Prints the lines, within 80 columns where words allow.
 pub fn print(lines: &[(String, String)]) {
     for (label, text) in lines {
-        let mut label = label.as_str();
-        for line in wrapped(text, WIDTH - LABEL) {
-            note(format_args!("{label:<LABEL$}{line}"));
-            label = "";
+        for line in labelled(label, text).lines() {
+            note(format_args!("{line}"));
         }
     }
     note(format_args!(""));
@@ -108,6 +133,19 @@ pub fn parts(architecture: &Architecture) -> String {
         parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
     }
     parts.join(", ")
+}
+
+/// In which ways tables were read, and how many in each way.
+fn as_read(tables: &[Origin]) -> Vec<(String, usize)> {
+    let mut ways: Vec<(String, usize)> = Vec::new();
+    for table in tables {
+        let way = table.described();
+        match ways.iter_mut().find(|(known, _)| *known == way) {
+            Some((_, count)) => *count += 1,
+            None => ways.push((way, 1)),
+        }
+    }
+    ways
 }
 
 fn samples(summary: &Summary) -> String {

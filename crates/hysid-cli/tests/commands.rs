@@ -78,6 +78,7 @@ fn json_has_the_promised_keys() {
         "model",
         "architecture",
         "parameters",
+        "residuals",
         "members",
         "selection",
         "train",

@@ -69,9 +69,9 @@ fn text_tells_every_property_and_fits_a_terminal() {
     }
     assert!(ran.stdout.contains("\ndeterioration      yes "), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nexperiments for what could not be tested\n"), "{}", ran.stdout);
-    assert!(ran.stdout.contains("\nenergy, kN mm "), "{}", ran.stdout);
+    assert!(ran.stdout.contains("\nenergy, J "), "{}", ran.stdout);
     assert!(ran.stdout.contains("\nsecant stiffness, kN/mm "), "{}", ran.stdout);
-    assert!(ran.stderr.starts_with("file     joint.csv\nsamples  1901, all scored"), "{}", ran.stderr);
+    assert!(ran.stderr.starts_with("file     joint.csv\nread as  text, UTF-8; "), "{}", ran.stderr);
     assert_eq!(ran.last_line(), "page    joint.diagnosis.html");
 }
 
@@ -103,8 +103,8 @@ fn loops_of_a_plastic_stop_have_the_numbers_of_their_geometry() {
     assert_eq!(verdict(&diagnosis, "deterioration"), "no");
     assert_eq!(verdict(&diagnosis, "rate-dependence"), "not testable");
     let text = succeeds(&bench, "diagnose stop.csv --no-report").stdout;
-    let energies = text.lines().find(|line| line.starts_with("energy, kN mm")).unwrap();
-    assert_eq!(energies.split_whitespace().skip(3).collect::<Vec<_>>(), ["8", "8", "8"]);
+    let energies = text.lines().find(|line| line.starts_with("energy, J")).unwrap();
+    assert_eq!(energies.split_whitespace().skip(2).collect::<Vec<_>>(), ["8", "8", "8"]);
 }
 
 #[test]
@@ -278,14 +278,13 @@ fn bad_input_gets_one_line() {
     let model = bench.text("model.json");
     let constant = |column| with_column(column, |_| "2.5".into());
     let unsorted = with_cell(20, 0, "0.1");
-    let files: [(&str, String, i32, &str); 12] = [
+    let files: [(&str, String, i32, &str); 11] = [
         ("empty", String::new(), 1, ": is empty (expected a header line and rows of numbers)"),
-        ("NaN input", with_cell(15, 1, "nan"), 1, ", line 17, column \"x\": \"nan\" is not a number"),
         (
-            "NaN output",
-            with_cell(15, 2, "NaN"),
+            "NaN input",
+            with_cell(15, 1, "nan"),
             1,
-            ", line 17, column \"y\": \"NaN\" is not a number (leave the cell empty to drive the model without scoring)",
+            ", line 17, column \"x\": \"nan\" is a missing value (only the output may be blank; choose rows with --rows)",
         ),
         ("one sample", "t,x,y\n0,1,2\n".into(), 1, ": only 1 row has an output: at least 8 are needed"),
         ("constant input", constant(1), 1, ": column \"x\" is constant (2.5): there is nothing to identify"),

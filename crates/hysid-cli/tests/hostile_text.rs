@@ -104,8 +104,11 @@ fn errors_are_one_short_line_whatever_the_file_or_the_arguments_hold() {
         (cell("\"a\nb\x1b[2J\""), r#"line 2, column "y": "a\nb\x1b[2J" is not a number"#.to_string()),
         (cell(&long), format!("\"{}… (2000000 characters)\" is not a number", &long[..60])),
         (format!("t,x,{long}\n0,1,w\n"), format!("column \"{}… (2000000 characters)\"", &long[..60])),
-        (format!("{long}|x\n1|2\n"), "there is only one column, \"zzz".into()),
-        (format!("t,{0},{0}\n0,1,2\n", quoted("a\u{7}")), r#"there are two columns named "a\x07""#.into()),
+        (format!("{long}:x\n1:2\n"), "there is only one column, \"zzz".into()),
+        (
+            format!("t,x,{}\n0,1,w\n1,2,3\n", quoted("a\u{7}")),
+            r#"column "a\x07": "w" is not a number"#.into(),
+        ),
         (
             format!("record,x,y\n{0},1,2\nb,1,2\n{0},1,2\n", quoted("a\r\u{85}b")),
             r#"record "a\r\u{85}b" continues"#.into(),

@@ -94,7 +94,7 @@ fn the_input_alone_is_enough_to_simulate() {
     assert!(alone.stdout.starts_with("x,y_model\n"), "{}", alone.stdout);
     assert_eq!(last_cells(&whole.stdout), last_cells(&alone.stdout));
     // A table of one column that is not the input was separated by something else.
-    bench.put("bars.csv", "t|x|y\n0|1|2\n");
+    bench.put("bars.csv", "t:x:y\n0:1:2\n");
     for command in ["simulate m.json bars.csv", "evaluate m.json bars.csv", "evaluate m.json alone.csv"] {
         let ran = bench.run(command);
         assert_eq!(ran.status, Some(1));

@@ -15,6 +15,11 @@ pub enum Error {
     /// A record cannot be used as it is.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// Data that a model was not fitted to, where only those tell.
+    #[error(
+        "record {0:?} is not among those that the model was fitted to: intervals of parameters need the training data"
+    )]
+    NotTrainedOn(String),
     /// An option of a fit that cannot be used.
     #[error(transparent)]
     Option(#[from] OptionError),
@@ -232,6 +237,14 @@ pub enum DataProblem {
     /// An output is blank between others, where it becomes an input.
     #[error("is blank here: the output is the input of an inverse, which needs a value in every row")]
     BlankWithin,
+    /// Too few rows with an output for a test of the residual.
+    #[error("has only {found} rows with an output: tests of the residual need at least {needed}")]
+    TooFewForTests {
+        /// Rows with an output.
+        found: usize,
+        /// Rows needed.
+        needed: usize,
+    },
     /// Too few rows with an output.
     #[error("has only {found} rows with an output: at least {needed} are needed to identify a model")]
     TooFewRows {

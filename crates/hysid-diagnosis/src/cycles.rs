@@ -1,9 +1,36 @@
 //! Cycles of the input and the numbers engineers read from their loops.
+//!
+//! A [`Cycle`] is a closed loop between turning points, as the tests of properties compare them. A [`CycleTable`] divides
+//! whole records into cycles, one row a cycle, with the figures of structures, magnets and actuators; definitions:
+//! docs/cycles.md.
+
+mod backbone;
+mod creep;
+mod division;
+mod field;
+mod figure;
+mod losses;
+mod path;
+mod reading;
+mod row;
+mod table;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashMap;
 
 use serde::Serialize;
 
+pub use self::backbone::{BackbonePoint, Direction};
+pub use self::division::Division;
+pub use self::field::Field;
+pub use self::figure::{FIGURES, Figure, Quantity};
+pub use self::losses::LossAtFrequency;
+pub use self::row::CycleRow;
+pub use self::table::{CycleOptions, CycleTable};
+
+use self::path::{area, range, weights};
+use self::reading::{apart_along_input, apart_along_output, ends, secant};
 use super::branch::{Branch, BranchSet};
 use super::significance::{self, MEDIAN_OF_NORMAL};
 use super::static_hysteresis::FULL;
@@ -11,7 +38,7 @@ use super::{DiagnosisOptions, Piece};
 use hysid_core::data::record::Dataset;
 
 /// A cycle closes if the input comes back this close, as a share of its swing.
-const CLOSED: f64 = 0.02;
+pub(crate) const CLOSED: f64 = 0.02;
 
 /// A cycle of the input, there and back, and its loop. Inputs and outputs are in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -69,6 +96,15 @@ impl Cycle {
     }
 }
 
+/// The backbones of all records, from where each began.
+pub(crate) fn backbones(survey: &BranchSet) -> Vec<BackbonePoint> {
+    let of_record = |record: usize| {
+        let begin = survey.of_record(record).first().map_or(0.0, |branch| branch.from);
+        backbone::backbone(survey, record, begin)
+    };
+    (0..survey.data.records().len()).flat_map(of_record).collect()
+}
+
 /// All cycles of the input whose rows have an output. They do not overlap: after one the next begins.
 pub(crate) fn cycles(survey: &BranchSet) -> Vec<Cycle> {
     let mut found = Vec::new();
@@ -99,45 +135,25 @@ fn cycle(survey: &BranchSet, index: usize) -> Option<Cycle> {
     if y.iter().any(|y| y.is_nan()) {
         return None;
     }
-    // The way along the loop, and straight back from its end to its beginning.
-    let n = x.len();
-    let step = |row: usize| 0.5 * (x[(row + 1) % n] - x[(row + n - 1) % n]);
-    let energy: f64 = (0..n).map(|row| y[row] * step(row)).sum();
-    let steps: Vec<f64> = (0..n).map(step).collect();
-    let range = |values: &[f64]| {
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
-    };
     let (input, output) = (range(x), range(y));
     let middle = 0.5 * (output.0 + output.1);
-    let ends = |branch: &Branch| Some((branch.curve.at(branch.from)?.y, branch.curve.at(branch.to)?.y));
     let ((first, tip), (_, last)) = (ends(out)?, ends(back)?);
-    let apart_along_input = |level: f64| Some((crossing(out, level)? - crossing(back, level)?).abs());
-    let apart_along_output = |x: f64| Some((out.curve.at(x)?.y - back.curve.at(x)?.y).abs());
+    let half = |apart: f64| 0.5 * apart;
     Some(Cycle {
         record: record.name().into(),
         rows: (rows.start, rows.end - 1),
         input,
         output,
-        energy,
+        energy: area(x, y),
         area: survey.openings[place].area,
-        energy_deviation: survey.output_noise.of_sum(&steps),
-        width: apart_along_input(middle).unwrap_or(0.0),
-        secant_stiffness: (tip - 0.5 * (first + last)) / (out.to - out.from),
-        coercive_input: apart_along_input(0.0).map(|apart| 0.5 * apart),
-        remanent_output: apart_along_output(0.0).map(|apart| 0.5 * apart),
+        energy_deviation: survey.output_noise.of_sum(&weights(x)),
+        width: apart_along_input(out, back, middle).unwrap_or(0.0),
+        secant_stiffness: secant((out.from, 0.5 * (first + last)), (out.to, tip)),
+        coercive_input: apart_along_input(out, back, 0.0).map(half),
+        remanent_output: apart_along_output(out, back, 0.0).map(half),
         gap: last - first,
         speed: out.duration().zip(back.duration()).map(|(a, b)| (out.travel() + back.travel()) / (a + b)),
         branches: (index, index + 1),
-    })
-}
-
-/// Input at which a branch first passes a level of the output.
-fn crossing(branch: &Branch, level: f64) -> Option<f64> {
-    let points: Vec<(f64, f64)> = branch.curve.points().collect();
-    points.windows(2).find(|pair| (pair[0].1 - level) * (pair[1].1 - level) <= 0.0).map(|pair| {
-        let rise = pair[1].1 - pair[0].1;
-        let share = if rise == 0.0 { 0.0 } else { (level - pair[0].1) / rise };
-        pair[0].0 + share * (pair[1].0 - pair[0].0)
     })
 }
 

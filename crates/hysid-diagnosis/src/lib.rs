@@ -21,6 +21,7 @@ mod comparison;
 mod congruency;
 pub mod cycles;
 mod deterioration;
+pub mod distribution;
 mod doctor;
 mod interpolation;
 mod loop_closure;
@@ -31,7 +32,10 @@ mod noise;
 mod odd_symmetry;
 mod orientation;
 mod rate_dependence;
+pub mod residuals;
+pub mod reversal_curves;
 mod saturation;
+pub mod serial;
 mod significance;
 mod smoothing;
 mod static_hysteresis;
@@ -42,13 +46,14 @@ use std::fmt;
 use serde::Serialize;
 
 pub use advice::Advice;
-pub use cycles::Cycle;
+pub use cycles::{BackbonePoint, Cycle, CycleOptions, CycleTable};
 pub use doctor::{DataIssue, DataIssueKind, Severity, before_a_fit};
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 pub use hysid_core::property::Property;
 pub use model::ModelDiagnosis;
 pub use rate_dependence::delay::{self, Delay};
+pub use reversal_curves::{ReversalCurveOptions, ReversalCurves};
 
 /// Fewest scored rows that say anything about hysteresis.
 const FEWEST_ROWS: usize = 8;
@@ -200,6 +205,9 @@ pub struct Diagnosis {
     /// Reversals of the first input below this are none, in its unit.
     #[serde(skip)]
     pub smallest_reversal: f64,
+    /// The backbone of each record.
+    #[serde(skip)]
+    pub backbone: Vec<BackbonePoint>,
     /// Cycles of the first input with an output, in the order of the data.
     pub cycles: Vec<Cycle>,
     /// What in the data would mislead a fit, warnings first.
@@ -263,6 +271,7 @@ impl Diagnosis {
             output_noise: survey.output_noise.deviation(),
             input_noise: survey.input_noise.deviation(),
             turning_points: turning_rows.iter().map(Vec::len).sum(),
+            backbone: cycles::backbones(survey),
             turning_rows,
             smallest_reversal: survey.smallest_reversal,
             cycles,

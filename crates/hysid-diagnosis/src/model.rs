@@ -23,6 +23,7 @@
 
 mod bound;
 mod certificate;
+mod cycles;
 mod direct;
 mod invertibility;
 mod loop_widths;
@@ -39,6 +40,7 @@ use serde::{Serialize, Serializer};
 
 use super::{Finding, Property, Verdict};
 pub use certificate::{Basis, Bound, Claim, MemoryCertificate, Refinement};
+pub use cycles::ModelCycles;
 use hysid_core::error::Result;
 use hysid_core::model::Model;
 use hysid_core::options::ModelName;

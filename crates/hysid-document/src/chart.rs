@@ -1,12 +1,14 @@
 //! Charts as data, drawn as SVG.
 
 mod axis;
+mod heat_map;
 mod svg;
 pub mod thin;
 
 use serde::{Deserialize, Serialize};
 
 pub use axis::Axis;
+pub use heat_map::{HeatCell, heat_map};
 pub use svg::STYLE;
 use thin::Point;
 
@@ -28,12 +30,25 @@ pub enum Colour {
     Band,
     /// One of several curves of the same kind, counted from 0; colours repeat after [`SERIES`].
     Series(usize),
+    /// A class of values of a heat map: an area, from [`LEVELS`]`.start()` for the lowest to [`LEVELS`]`.end()` for the highest
+    /// values; 0 is the class around 0.
+    Level(i8),
+}
+
+/// Classes of values of a heat map.
+pub const LEVELS: std::ops::RangeInclusive<i8> = -3..=8;
+
+impl Colour {
+    /// True if a curve of this colour is the outline of an area.
+    pub fn is_area(self) -> bool {
+        matches!(self, Self::Band | Self::Level(_))
+    }
 }
 
 /// Number of different colours of [`Colour::Series`].
 pub const SERIES: usize = 6;
 
-/// A line, or dots where a point has no neighbours; of [`Colour::Band`], an area.
+/// A line, or dots where a point has no neighbours; or the outline of an area, see [`Colour::is_area`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Its points, in the units of the axes; one that is not finite leaves a gap.

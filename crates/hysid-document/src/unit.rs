@@ -7,7 +7,7 @@ pub fn split(column: &str) -> (String, Option<String>) {
 }
 
 /// Units that a leading `u` makes millionths of.
-const MICRO: [&str; 8] = ["s", "m", "m2", "m3", "V", "A", "C", "T"];
+const MICRO: [&str; 10] = ["s", "m", "m2", "m3", "V", "A", "C", "T", "J", "W"];
 
 /// A unit with the signs that a column name cannot have: `uC/cm2` is µC/cm².
 fn written(unit: &str) -> String {

@@ -1,6 +1,7 @@
 //! The native half of the Python package `hysid`: thin, private, and without an opinion. What users see is
 //! written in Python, in `python/hysid`.
 
+mod cycles;
 mod data;
 mod elements;
 mod failure;
@@ -15,6 +16,8 @@ use pyo3::prelude::*;
 /// What `hysid` is made of.
 #[pymodule]
 mod _hysid {
+    #[pymodule_export]
+    use crate::cycles::{cycles, figure_names};
     #[pymodule_export]
     use crate::data::{Dataset, diagnose, unit_factor};
     #[pymodule_export]

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use hysid::data::initial_state::InitialState;
 use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
+use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
+use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, Prediction};
 use hysid_export::description::RateSource;
@@ -173,6 +175,28 @@ impl Model {
         serde_json::to_string(&errors).map_err(refused)
     }
 
+    /// Tests of the residual of free runs over all records, as JSON.
+    fn residuals(&self, py: Python<'_>, data: &Dataset, initial_state: Option<&str>) -> PyResult<String> {
+        let set = Arc::clone(&data.set);
+        let state = initial_state.map(str::parse::<InitialState>).transpose().map_err(refused)?;
+        let test = || {
+            let begun =
+                state.map(|state| model::Model::clone(&self.model).with_initial_state(state)).transpose()?;
+            let model = begun.as_ref().unwrap_or(&self.model);
+            let is_training = !model.known_records(&set).is_empty();
+            let options = ResidualOptions { is_training, ..ResidualOptions::default() };
+            Residuals::of_model(model, &set, &options)
+        };
+        serde_json::to_string(&py.detach(test).map_err(refused)?).map_err(refused)
+    }
+
+    /// Confidence intervals of the parameters of a law, from its training data, as JSON; `None` for another model.
+    fn parameter_intervals(&self, py: Python<'_>, data: &Dataset) -> PyResult<Option<String>> {
+        let set = Arc::clone(&data.set);
+        let found = py.detach(|| ParameterIntervals::of(&self.model, &set)).map_err(refused)?;
+        found.map(|found| serde_json::to_string(&found).map_err(refused)).transpose()
+    }
+
     /// Rows at the beginning of each record that were not trained on.
     fn warm_up(&self) -> usize {
         self.model.warm_up()
@@ -193,6 +217,18 @@ impl Model {
     fn diagnose(&self, py: Python<'_>) -> PyResult<String> {
         let diagnosis = py.detach(|| ModelDiagnosis::of(&self.model)).map_err(refused)?;
         serde_json::to_string(&diagnosis).map_err(refused)
+    }
+
+    /// Its cycles and first-order reversal curves, as JSON.
+    #[pyo3(signature = (division, field, smoothing_factor))]
+    fn cycles(
+        &self,
+        py: Python<'_>,
+        division: Option<&str>,
+        field: Option<&str>,
+        smoothing_factor: Option<usize>,
+    ) -> PyResult<String> {
+        py.detach(|| crate::cycles::of_model(&self.model, division, field, smoothing_factor))
     }
 
     /// Runs it sample by sample, from its initial state.

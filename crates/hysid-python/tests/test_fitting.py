@@ -200,6 +200,49 @@ def test_diagnoses_say_what_the_program_says(program, tmp_path):
         diagnosis["wear"]
 
 
+def test_cycles_are_those_of_the_program(program, tmp_path):
+    import json
+
+    train, _ = hysid.specimen("reinforced-concrete-joint").data()
+    frame = train.frame()
+    frame.to_csv(tmp_path / "train.csv", index=False)
+    said = json.loads(program("cycles", "train.csv", "--json", folder=tmp_path).stdout)
+    names = train.names
+    table = hysid.cycles(frame[names["input"]], frame[names["output"]], frame[names["time"]])
+    assert (table.field, table.division) == (said["field"], said["division"]) == ("structure", "zero")
+    for name in ("energy", "damping_percent", "residual_after_peak", "period"):
+        expected = [np.nan if row[name] is None else row[name] for row in said["cycles"]]
+        assert np.array_equal(table[name], expected, equal_nan=True), name
+    assert list(table.backbone["input"]) == [point["input"] for point in said["backbone"]]
+    assert table["complete"].dtype == bool and table["notes"][-1].startswith("incomplete")
+    assert table.reversal_curves is None
+    assert list(table.to_frame()["cycle"]) == list(range(1, len(table["cycle"]) + 1))
+    written = pandas_table(tmp_path / "train.cycles.csv")
+    assert np.allclose(written["energy [J]"], table["energy"], rtol=1e-12, equal_nan=True)
+
+
+def pandas_table(path):
+    import pandas
+
+    return pandas.read_csv(path)
+
+
+def test_a_model_has_cycles_and_reversal_curves(spring_and_slider):
+    model = hysid.fit(*spring_and_slider, model="prandtl-ishlinskii")
+    table = model.cycles(field="structure")
+    assert table["complete"].sum() >= 14 and (np.diff(table.backbone["output"][table.backbone["direction"] == "up"]) > 0).all()
+    curves = table.reversal_curves
+    assert curves["reversal_input"].shape == curves["density"].shape and table.smoothing_factor >= 2
+    assert (curves["everett"] >= -1e-9).all()
+    assert "first-order" in repr(table)
+    with pytest.raises(ValueError, match="division `noon` is unknown|noon"):
+        model.cycles(division="noon")
+    with pytest.raises(ValueError, match="smoothing_factor 11: choose 1 to 10"):
+        model.cycles(smoothing_factor=11)
+    with pytest.raises(TypeError, match="field 3"):
+        hysid.cycles(*spring_and_slider, field=3)
+
+
 def test_a_minimum_at_a_kink_is_found():
     def distance(x):
         return np.abs(x - [3.0, -1.0]) @ [1.0, 100.0], np.sign(x - [3.0, -1.0]) * [1.0, 100.0]

@@ -1,7 +1,9 @@
 //! Identification of any model by its name: a network, a classical model, or `auto`.
 
 pub mod auto;
+mod held_out;
 pub(crate) mod initial_state;
+pub mod intervals;
 pub mod law;
 mod memory_need;
 pub mod network;
@@ -25,6 +27,7 @@ use crate::options::network::Method;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
+pub use held_out::HeldOutRows;
 pub use memory_need::{MemoryNeed, memory_need};
 pub use validate::cross_validate;
 

@@ -7,9 +7,8 @@ use anyhow::{Result, bail};
 use hysid::data::column::{Course, Part, one_signal};
 use hysid::data::unit;
 
-use crate::cell::CellReader;
-use crate::table::Table;
 use crate::terminal::{clipped, listed};
+use hysid_tables::{CellReader, ColumnReader, Table, starts_again};
 
 /// More columns than this are not all inputs.
 const MOST_INPUTS: usize = 4;
@@ -44,7 +43,7 @@ impl Guess<'_> {
             self.set_aside_what_no_input_is()?;
         }
         if self.output.is_none() {
-            self.output = self.free.pop().cloned();
+            self.output = self.last_that_may_be_output();
             self.refuse_the_inverse()?;
         }
         if !self.has_inputs {
@@ -52,6 +51,14 @@ impl Guess<'_> {
             self.refuse_alike()?;
         }
         Ok(())
+    }
+
+    /// The last column that is no temperature or the like.
+    fn last_that_may_be_output(&mut self) -> Option<String> {
+        let accompanies = |name: &&&String| Part::of(name) == Some(Part::Accompanies);
+        let place =
+            self.free.iter().rposition(|name| !accompanies(&name)).or(self.free.len().checked_sub(1))?;
+        Some(self.free.remove(place).clone())
     }
 
     /// Columns that must be left.
@@ -63,12 +70,15 @@ impl Guess<'_> {
     fn set_aside_what_no_input_is(&mut self) -> Result<()> {
         let mut unclear = Vec::new();
         for name in self.free.clone() {
-            let course = self.values(name).map(|values| {
-                let parts: Vec<&[f64]> = self.records.iter().map(|rows| &values[rows.clone()]).collect();
-                Course::of(parts)
-            });
-            let grows = matches!(course, Some(Course::Counts | Course::Grows));
-            if unit::may_be_time(name) && grows {
+            let values = self.values(name);
+            let course = values.as_ref().map(|values| Course::of(self.parts(values)));
+            let runs = values.as_ref().map(|values| Running::of(&self.parts(values)));
+            let is_time = match runs {
+                Some(Running::Strictly) => unit::may_be_time(name) || self.is_first_nameless(name),
+                Some(Running::WithEqualStamps) => unit::may_be_time(name),
+                Some(Running::No) | None => false,
+            };
+            if is_time && (course != Some(Course::Counts) || unit::may_be_time(name)) {
                 self.take_time(name);
                 continue;
             }
@@ -103,6 +113,17 @@ impl Guess<'_> {
         }
     }
 
+    fn is_first_nameless(&self, name: &str) -> bool {
+        self.table.layout.header_lines.is_empty()
+            && self.time.is_none()
+            && self.table.header.first().is_some_and(|first| first == name)
+    }
+
+    /// The values of each record.
+    fn parts<'v>(&self, values: &'v [f64]) -> Vec<&'v [f64]> {
+        self.records.iter().map(|rows| &values[rows.clone()]).collect()
+    }
+
     fn take_time(&mut self, name: &String) {
         if self.time.is_some() {
             return self.set_aside(name, "a second time");
@@ -121,10 +142,10 @@ impl Guess<'_> {
     /// The numbers of a column, NaN where it is blank; `None` if its first cells are no numbers.
     fn values(&self, name: &str) -> Option<Vec<f64>> {
         let place = self.table.column(name)?;
-        let mut cells = CellReader::new(self.table.delimiter);
-        let number = |(row, &line): (usize, &u64)| match self.table.cell(row, place).trim() {
-            "" => Some(f64::NAN),
-            cell => cells.number(cell, line).ok(),
+        let mut cells = CellReader::new(self.table.numbers());
+        let mut column = ColumnReader::new(self.table, place);
+        let number = |(row, &line): (usize, &u64)| {
+            column.number(self.table, &mut cells, self.table.cell(row, place), line).ok()
         };
         let numbers: Vec<Option<f64>> = self.table.lines.iter().enumerate().map(number).collect();
         // A single word among numbers is a mistake, which is told where the column is read for its numbers.
@@ -178,5 +199,37 @@ impl Guess<'_> {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether values may be time stamps: they grow, and may start again where a record begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Running {
+    Strictly,
+    /// Some are equal to the one before, as of a clock of few digits.
+    WithEqualStamps,
+    No,
+}
+
+impl Running {
+    fn of(records: &[&[f64]]) -> Self {
+        let (mut equal, mut rises) = (0, 0);
+        for values in records {
+            let Some(&first) = values.first() else { continue };
+            let mut first = first;
+            for pair in values.windows(2) {
+                match pair[1] - pair[0] {
+                    step if step > 0.0 => rises += 1,
+                    0.0 => equal += 1,
+                    _ if starts_again(first, pair[0], pair[1]) => first = pair[1],
+                    _ => return Self::No,
+                }
+            }
+        }
+        match (rises, equal) {
+            (0, _) => Self::No,
+            (_, 0) => Self::Strictly,
+            _ => Self::WithEqualStamps,
+        }
     }
 }

@@ -23,13 +23,13 @@ use crate::messages::{json_results, note, results, summarised, warning};
 pub fn run(arguments: &Compare) -> Result<Outcome> {
     let page = (!arguments.no_report)
         .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
-    let tables = read_tables(&arguments.train)?;
+    let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let test = match &arguments.test {
         Some(test) => {
-            let unseen = read_tables(std::slice::from_ref(test))?;
+            let unseen = read_tables(std::slice::from_ref(test), &arguments.columns.reading)?;
             roles.check_against(&unseen[0], &tables[0])?;
-            Some(Data::new(unseen, roles.clone())?)
+            Some(Data::new(unseen, roles.clone(), arguments.columns.reading.zero)?)
         }
         None => None,
     };
@@ -45,7 +45,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
             request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?;
         requests.extend(request.variants());
     }
-    let train = Data::new(tables, roles)?;
+    let train = Data::new(tables, roles, arguments.columns.reading.zero)?;
 
     data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);
     if let Some(test) = &test {

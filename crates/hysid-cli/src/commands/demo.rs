@@ -18,7 +18,7 @@ use crate::files::{self, check_outputs};
 use crate::identification::{Work, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
-use crate::table::Table;
+use hysid_tables::{Reading, Table};
 
 /// Runs the command.
 pub fn run(arguments: &Demo) -> Result<Outcome> {
@@ -72,9 +72,9 @@ fn fit_as_typed(train: &Path) -> Box<crate::arguments::Fit> {
 }
 
 fn read(path: &Path) -> Result<Data> {
-    let table = Table::read(path)?;
+    let table = Table::read(path, &Reading::default())?;
     let roles = Roles::detect(&table, &fit_as_typed(path).columns)?;
-    Data::new(vec![table], roles)
+    Data::new(vec![table], roles, None)
 }
 
 fn next(train: &Path, test: &Path, out: &Path) -> String {

@@ -17,9 +17,9 @@ use crate::data::Data;
 use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, note, results, warning};
-use crate::table::{Table, is_json};
 use crate::terminal::{clipped, listed};
 use crate::understanding;
+use hysid_tables::{Table, is_json};
 
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
@@ -52,10 +52,12 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
 }
 
 fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
-    let tables = arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes));
+    let reading = arguments.columns.reading.reading();
+    let tables =
+        arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes, &reading));
     let tables: Vec<Table> = tables.collect::<Result<_>>()?;
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let data = Data::new(tables, roles)?;
+    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
     let understood = understanding::of_data(&data, &Summary::of(&data.set));
     understanding::print(&understood);
     if let [first, further @ ..] = data.roles.inputs.as_slice()

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
 
 use crate::Outcome;
@@ -14,20 +15,22 @@ use crate::commands::{check_band, read_model};
 use crate::data::explained;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::messages::{json_results, results, summarised, warning};
-use crate::table::Rows;
+use crate::residual_tests::{self, Gatherer};
 use crate::table_run::{self, Simulated, Wanted};
 use crate::units::Factors;
+use hysid_tables::Rows;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
-    let mut rows = Rows::open(&arguments.data)?;
+    let mut rows = Rows::open(&arguments.data, &arguments.columns.reading.reading())?;
     let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
     let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
 
     let warm_up = model.warm_up();
     let (mut sums, mut sums_behind, mut covered) = (ErrorSums::default(), ErrorSums::default(), (0, 0));
+    let mut gatherer = arguments.residuals.then(Gatherer::default);
     let mut take = |simulated: &Simulated<'_>| {
         let (prediction, measured) = (simulated.prediction, simulated.measured);
         sums.add_rows(measured, &prediction.output);
@@ -35,13 +38,22 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         sums_behind.add_rows(&measured[skipped..], &prediction.output[skipped..]);
         let (inside, scored) = prediction.covered(measured);
         covered = (covered.0 + inside, covered.1 + scored);
+        if let Some(gatherer) = &mut gatherer {
+            gatherer.take(simulated);
+        }
         if simulated.ends_record {
             sums.end_record();
             sums_behind.end_record();
         }
         Ok(ControlFlow::Continue(()))
     };
-    let wanted = Wanted { measured: true, cells: false, band: arguments.data_sets.level(arguments.band) };
+    let wanted = Wanted {
+        measured: true,
+        drive: arguments.residuals,
+        cells: false,
+        band: arguments.data_sets.level(arguments.band),
+        zero: arguments.columns.reading.zero,
+    };
     let warnings = table_run::run(&model, &mut rows, &roles, &factors, wanted, &mut take)?;
     // Errors of converted outputs are in the model's unit, which its name tells.
     let output = if factors.output.is_some() { &model.names().output } else { &roles.output };
@@ -50,12 +62,15 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
         let defect = DataError { record: String::new(), row: None, channel, problem };
         return Err(explained(&rows.head.file, None, defect.into(), &roles));
     };
-    summarised(&warnings.context("the run was ended early")?).iter().for_each(warning);
+    let warnings = warnings.context("the run was ended early")?;
+    summarised(&warnings).iter().for_each(warning);
+    let residuals = gatherer.map(|gatherer| gatherer.tests(&model, output, &warnings)).transpose();
+    let residuals = residuals.map_err(|error| explained(&rows.head.file, None, error, &roles))?;
     let level = arguments.data_sets.level(arguments.band);
     let band = level.map(|level| BandCoverage::of(covered, level));
     let after_warm_up = (warm_up > 0).then(|| sums_behind.errors(output)).flatten();
     match arguments.json {
-        true => json_results(&Printed { errors: &errors, after_warm_up, band })?,
+        true => json_results(&Printed { errors: &errors, after_warm_up, band, residuals })?,
         false => {
             let mut sets = vec![("free run", &errors)];
             sets.extend(after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
@@ -63,7 +78,10 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
             if after_warm_up.is_some() {
                 text += &format!("({AFTER_WARM_UP}: without the first {warm_up} rows of each record)\n");
             }
-            results(&(text + &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()))))?;
+            text += &band.map_or_else(String::new, |band| format!("\n{}\n", band.words()));
+            text +=
+                &residuals.map_or_else(String::new, |found| format!("\n{}", residual_tests::text(&found)));
+            results(&text)?;
         }
     }
     Ok(Outcome::Done)
@@ -79,4 +97,7 @@ struct Printed<'a> {
     after_warm_up: Option<Errors>,
     #[serde(skip_serializing_if = "Option::is_none")]
     band: Option<BandCoverage>,
+    /// Tests of the residual, if they are wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residuals: Option<Residuals>,
 }

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
+use hysid::data::record::Dataset;
+use hysid::diagnosis::residuals::Residuals;
+use hysid::fit::intervals::ParameterIntervals;
 use hysid::fit::network::Checkpoint;
 use hysid::model::selection::Selection;
 use hysid::model::{Model, RecordLeadIn};
@@ -32,7 +35,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let model = Destination::new(out(arguments)?, Kind::Model, force);
     let report =
         (!arguments.no_report).then(|| Destination::new(report_path(model.path()), Kind::Page, force));
-    let tables = read_tables(&arguments.train)?;
+    let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
     let begun = arguments.resume.as_deref().map(checkpoint::read).transpose()?;
     let checkpoint = checkpoint_destination(arguments);
     let outputs: Vec<&Destination> = std::iter::once(&model).chain(&report).chain(&checkpoint).collect();
@@ -49,7 +52,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     }
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
-    let data = Data::new(tables, roles)?;
+    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
     let data = if arguments.inverse { data.exchanged()? } else { data };
     warn_of_ignored(chosen);
     let work = Work {
@@ -69,7 +72,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
     match arguments.json {
-        true => json_results(&Printed::of(&identified, out))?,
+        true => json_results(&Printed::of(&identified, out, &trained)?)?,
         false => results(&(identified.results(None, &written) + &next(out)))?,
     }
     reported?;
@@ -194,11 +197,25 @@ struct Printed<'a> {
     /// Turning points of the first input before each training record; left out where all begin in one state.
     #[serde(skip_serializing_if = "<[RecordLeadIn]>::is_empty")]
     lead_ins: &'a [RecordLeadIn],
+    /// Confidence intervals of the parameters; left out for a model that has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intervals: Option<ParameterIntervals>,
+    /// Tests of the residual by the data, training first; left out for too few rows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    residuals: Vec<PrintedResiduals>,
     /// What to know before relying on the model.
     notes: Vec<String>,
     seconds: f64,
     evaluations: usize,
     termination: Termination,
+}
+
+#[derive(serde::Serialize)]
+struct PrintedResiduals {
+    /// What the data are: `training` or `held-out`.
+    data: String,
+    #[serde(flatten)]
+    tests: Residuals,
 }
 
 #[derive(serde::Serialize)]
@@ -228,9 +245,10 @@ impl PrintedMember {
 }
 
 impl<'a> Printed<'a> {
-    fn of(identified: &'a Identified, out: &Path) -> Self {
+    fn of(identified: &'a Identified, out: &Path, trained: &Dataset) -> Result<Self> {
+        let residuals = identified.residuals(trained)?.into_iter();
         let (model, provenance) = (&identified.model, identified.model.provenance());
-        Self {
+        Ok(Self {
             model: out.display().to_string(),
             architecture: PrintedArchitecture::of(model),
             parameters: model.parameters(),
@@ -242,11 +260,13 @@ impl<'a> Printed<'a> {
             train_after_warm_up: provenance.train_after_warm_up.as_ref(),
             initial_state: report::initial_state(model),
             lead_ins: &provenance.lead_ins,
+            intervals: identified.intervals(trained)?,
+            residuals: residuals.map(|(data, tests)| PrintedResiduals { data, tests }).collect(),
             notes: model.notes(),
             validation: provenance.validation.as_ref(),
             seconds: identified.seconds,
             evaluations: identified.evaluations,
             termination: provenance.termination,
-        }
+        })
     }
 }

@@ -13,7 +13,6 @@ use hysid_files::{Destination, Kind};
 use serde::Serialize;
 
 use crate::arguments::{Invert, Preview};
-use crate::cell::push_shortest;
 use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::csv_text::header_line;
@@ -21,18 +20,19 @@ use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::inversion::{self, Bounds, Inverted, Wanted};
 use crate::messages::{Usage, json_results, note, raw_results, results, warning};
-use crate::table::Table;
 use crate::terminal::clipped;
 use crate::units::Factors;
 use crate::{Outcome, understanding};
+use hysid_tables::{Table, push_shortest};
 
 /// Runs the command.
 pub fn run(arguments: &Invert) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
-    let table = Table::read(&arguments.reference)?;
+    let table = Table::read(&arguments.reference, &arguments.columns.reading.reading())?;
     let names = Names::of(&model, &table, arguments.band.is_some())?;
-    let header = header_line(table.delimiter, table.header.iter().chain(names.all()).map(String::as_str))?;
+    let header =
+        header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str))?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     if arguments.json && out.is_none() {
         return Err(Usage(
@@ -85,6 +85,11 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// What separates the cells of the table that is written.
+fn delimiter_of(table: &Table) -> u8 {
+    table.delimiter().in_a_copy(table.numbers().decimal)
+}
+
 /// Names of the columns that are added.
 struct Names {
     drive: String,
@@ -123,7 +128,7 @@ impl Names {
 
 /// The rows of the table with the columns that are added.
 fn rows(table: &Table, wanted: &Wanted, inverted: &Inverted) -> Result<Vec<u8>> {
-    let mut writer = csv::WriterBuilder::new().delimiter(table.delimiter).from_writer(Vec::new());
+    let mut writer = csv::WriterBuilder::new().delimiter(delimiter_of(table)).from_writer(Vec::new());
     let mut number = String::new();
     for (record, inversion) in wanted.records.iter().zip(&inverted.records) {
         for (row, place) in record.rows.clone().enumerate() {

@@ -8,17 +8,16 @@ use anyhow::{Result, ensure};
 use hysid_files::{Destination, Kind, NewFile};
 
 use crate::arguments::Simulate;
-use crate::cell::{CellReader, DecimalSign, push_shortest};
 use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::csv_text::header_line;
 use crate::files::{self, check_outputs};
 use crate::messages::{stdout_failed, warning};
-use crate::table::Rows;
 use crate::table_run::{self, Simulated, Wanted};
 use crate::terminal::clipped;
 use crate::units::Factors;
 use crate::{Outcome, interrupt};
+use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
 const BUFFERED: usize = 1 << 20;
@@ -26,7 +25,8 @@ const BUFFERED: usize = 1 << 20;
 /// Runs the command.
 pub fn run(arguments: &Simulate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
-    let mut rows = Rows::open(&arguments.data)?;
+    let reading = arguments.columns.reading.reading();
+    let mut rows = Rows::open(&arguments.data, &reading)?;
     let mut names = vec![format!("{}_model", model.names().output)];
     if arguments.band.is_some() {
         check_band(&model, &arguments.model)?;
@@ -40,8 +40,9 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
             clipped(name)
         );
     }
+    let delimiter = rows.head.delimiter().in_a_copy(rows.head.numbers().decimal);
     let all = rows.head.header.iter().chain(&names).map(String::as_str);
-    let header = header_line(rows.head.delimiter, all)?;
+    let header = header_line(delimiter, all)?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
     let kind = Kind::Beginning(header.clone());
     let out = out.map(|out| Destination::new(out, kind, arguments.overwriting.force));
@@ -53,9 +54,15 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
 
     let factors = Factors::of(&model, &roles, &rows.head.file, false, arguments.units.same_units)?;
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
-    let numbers = Numbers { data: &arguments.data, roles: &roles, delimiter: rows.head.delimiter };
-    let mut output = Output { sink, numbers, sign: None, delimiter: rows.head.delimiter, text: header };
-    let wanted = Wanted { cells: true, measured: false, band: arguments.data_sets.level(arguments.band) };
+    let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
+    let mut output = Output { sink, numbers, sign: None, delimiter, text: header };
+    let wanted = Wanted {
+        drive: false,
+        cells: true,
+        measured: false,
+        band: arguments.data_sets.level(arguments.band),
+        zero: arguments.columns.reading.zero,
+    };
     let mut take = |simulated: &Simulated<'_>| {
         output.add(simulated)?;
         Ok(if interrupt::requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
@@ -134,6 +141,7 @@ impl Output<'_> {
 /// How numbers are written in a table.
 struct Numbers<'n> {
     data: &'n Path,
+    reading: &'n Reading,
     roles: &'n Roles,
     delimiter: u8,
 }
@@ -151,14 +159,16 @@ impl Numbers<'_> {
 
     /// The decimal sign that comes first in the columns that the model needs.
     fn first_sign(&self) -> Result<DecimalSign> {
-        let mut rows = Rows::open(self.data)?;
+        let mut rows = Rows::open(self.data, self.reading)?;
         let used = self.roles.time.iter().chain(&self.roles.inputs).chain(&self.roles.rate);
-        let places: Vec<usize> = used.filter_map(|name| rows.head.column(name)).collect();
-        let mut numbers = CellReader::new(self.delimiter);
+        let places = used.filter_map(|name| rows.head.column(name));
+        let mut columns: Vec<ColumnReader> =
+            places.map(|place| ColumnReader::new(&rows.head, place)).collect();
+        let mut numbers = CellReader::new(rows.head.numbers());
         while let Some(row) = rows.next_row()? {
-            for &place in &places {
+            for column in columns.iter_mut().filter(|column| !column.has_stamps()) {
                 // What is wrong with a cell is said where the table is read for its numbers.
-                let _ = numbers.number(row.cell(place), row.line);
+                let _ = numbers.number(row.cell(column.place()), row.line);
             }
             if let Some(sign) = numbers.sign() {
                 return Ok(sign);

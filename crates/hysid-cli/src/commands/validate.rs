@@ -35,12 +35,12 @@ struct Validated {
 
 /// Runs the command.
 pub fn run(arguments: &Validate) -> Result<Outcome> {
-    let tables = read_tables(&arguments.data)?;
+    let tables = read_tables(&arguments.data, &arguments.columns.reading)?;
     let file = tables[0].file.clone();
     let roles = Roles::detect(&tables[0], &arguments.columns)?;
     let chosen = &arguments.model.0;
     let request = request(chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
-    let data = Data::new(tables, roles)?;
+    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
     warn_of_ignored(chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;

@@ -5,7 +5,7 @@ use hysid_document::chart::thin::thin;
 use hysid_document::{Badge, Card, Chart, Colour, Curve, Part, Piece, Text, capitalised, count, unit};
 
 use super::findings::{meaning, shown};
-use super::quantities::Quantities;
+use crate::quantities::Quantities;
 
 /// Points of a curve in a picture.
 const POINTS: usize = 800;

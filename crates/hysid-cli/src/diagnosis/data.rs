@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, verdicts};
 use super::overview::Overview;
-use super::quantities::Quantities;
 use super::{counsel, findings, loops, paragraph};
 use crate::data::Data;
+use crate::quantities::Quantities;
 use crate::terminal::{self, clipped};
 
 /// A diagnosis of measured data, and what is told with it.

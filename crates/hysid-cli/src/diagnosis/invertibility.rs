@@ -5,7 +5,7 @@ use hysid_document::chart::thin::Point;
 use hysid_document::{Card, Chart, Colour, Curve, unit};
 
 use super::cards;
-use super::quantities::Quantities;
+use crate::quantities::Quantities;
 
 /// Width and height of a chart in a card, in pixels.
 const SIZE: (f64, f64) = (460.0, 320.0);

@@ -6,7 +6,7 @@ use hysid_document::chart::thin::{Point, thin};
 use hysid_document::plain::aligned;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, unit};
 
-use super::quantities::{Quantities, text_label};
+use crate::quantities::{Quantities, text_label};
 use crate::terminal::clipped;
 
 /// Cycles shown at each end of a long table.

@@ -14,8 +14,8 @@ use hysid_document::{Cell, Page, Part, Table};
 use serde::Serialize;
 
 use super::cards::{EXPLANATION, cards, sentence, verdicts};
-use super::quantities::{Quantities, text_label};
 use super::{findings, invertibility, paragraph};
+use crate::quantities::{Quantities, text_label};
 use crate::terminal::{self, listed};
 
 /// Neurons in the table of a page; of more, those that matter most.

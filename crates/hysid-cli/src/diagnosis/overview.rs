@@ -5,7 +5,7 @@ use hysid::diagnosis::Diagnosis;
 use hysid_document::chart::thin::{Point, thin, thin_path};
 use hysid_document::{Chart, Colour, Curve, Part, count, unit};
 
-use super::quantities::Quantities;
+use crate::quantities::Quantities;
 use crate::report::time_label;
 
 /// Points of all loops together.
@@ -74,7 +74,7 @@ impl<'a> Overview<'a> {
             let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
             let points = path.iter().map(point).collect();
             curves.push(Curve::new(points, Colour::Measured, 1.3));
-            let points = backbone(&self.tips(index), self.diagnosis.smallest_reversal);
+            let points = self.backbone(index);
             backbones.push(Curve::new(points, Colour::Simulated, 2.0));
         }
         curves.extend(backbones.into_iter().filter(|curve| curve.points.len() > 2));
@@ -95,6 +95,15 @@ impl<'a> Overview<'a> {
         self.diagnosis.turning_rows[index].iter().map(tip).filter(|tip| tip.1.is_finite()).collect()
     }
 
+    /// The backbone of a record, in the order of the input.
+    fn backbone(&self, index: usize) -> Vec<Point> {
+        let name = self.data.records()[index].name();
+        let own = self.diagnosis.backbone.iter().filter(|point| point.record == name);
+        let mut points: Vec<Point> = own.map(|point| (point.input, point.output)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    }
+
     /// The input over time, or over the row where there is no time.
     fn way(&self, index: usize) -> Chart {
         let record = &self.data.records()[index];
@@ -112,34 +121,8 @@ impl<'a> Overview<'a> {
     }
 }
 
-/// The tips that go beyond all before them by this much, in the order of the input.
-fn backbone(tips: &[Point], by: f64) -> Vec<Point> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut kept: Vec<Point> = Vec::new();
-    for &tip in tips {
-        if tip.0 < low - by || tip.0 > high + by {
-            kept.push(tip);
-            low = low.min(tip.0);
-            high = high.max(tip.0);
-        }
-    }
-    kept.sort_by(|a, b| a.0.total_cmp(&b.0));
-    kept
-}
-
 /// Points as dots, evenly chosen of very many.
 fn dots(points: Vec<Point>) -> Curve {
     let every = points.len().div_ceil(MOST_DOTS).max(1);
     Curve::dots(points.into_iter().step_by(every), Colour::Error, 2.2)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_backbone_takes_tips_beyond_all_before() {
-        let tips = [(1.0, 10.0), (-1.0, -10.0), (0.5, 4.0), (2.0, 15.0), (-1.1, -9.0), (-3.0, -20.0)];
-        assert_eq!(backbone(&tips, 0.2), [(-3.0, -20.0), (-1.0, -10.0), (1.0, 10.0), (2.0, 15.0)]);
-    }
 }

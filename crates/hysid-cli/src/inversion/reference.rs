@@ -5,11 +5,10 @@ use std::ops::Range;
 use anyhow::Result;
 use hysid::Reference;
 
-use crate::cell::{CellReader, DecimalSign};
 use crate::columns::Roles;
 use crate::data::{Kind, column_of, places_of};
-use crate::table::Table;
 use crate::units::Factors;
+use hysid_tables::{CellReader, DecimalSign, Table};
 
 /// The wanted outputs of a table, in the units of the model.
 pub struct Wanted {
@@ -54,7 +53,7 @@ impl Wanted {
     /// # Errors
     /// A cell that is no number, a blank wanted output, with its line.
     pub fn of(table: &Table, roles: &Roles, factors: &Factors) -> Result<Self> {
-        let mut cells = CellReader::new(table.delimiter);
+        let mut cells = CellReader::new(table.numbers());
         let mut read = |name: &String, factor: Option<f64>, kind: Kind| -> Result<Vec<f64>> {
             let mut numbers = column_of(table, name, kind, &mut cells)?;
             if let Some(factor) = factor {
@@ -79,7 +78,7 @@ impl Wanted {
         };
         Ok(Self {
             file: table.file.clone(),
-            records: places_of(table, roles)?.into_iter().map(record).collect(),
+            records: places_of(table, roles, time.as_deref())?.into_iter().map(record).collect(),
             lines: table.lines.clone(),
             sign: cells.sign().unwrap_or(DecimalSign::Point),
         })

@@ -57,6 +57,8 @@ fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Re
         title: "Fit of <x>".into(),
         model,
         sets: vec![set("training", model, data), set("unseen", model, data)],
+        residuals: &[],
+        intervals: None,
         warnings,
         understood: &[],
         model_file: "my model.json".into(),

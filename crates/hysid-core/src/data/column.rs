@@ -1,6 +1,8 @@
 //! Meaning of a column from its values and its name: a counter or time is no input, two columns may be one
 //! signal, and a force is usually the output.
 
+mod words;
+
 use crate::data::unit;
 
 /// Least number of values from which a course is found.
@@ -84,6 +86,8 @@ pub enum Part {
     Drives(Domain),
     /// An output: force, stress, flux density, polarization.
     Follows(Domain),
+    /// A further input, and no output: temperature, humidity.
+    Accompanies,
 }
 
 /// The branch of physics of a quantity.
@@ -97,35 +101,12 @@ pub enum Domain {
     Electricity,
 }
 
-const DISPLACEMENTS: [&str; 14] = [
-    "displacement",
-    "disp",
-    "strain",
-    "deflection",
-    "elongation",
-    "stroke",
-    "travel",
-    "drift",
-    "rotation",
-    "angle",
-    "weg",
-    "dehnung",
-    "verschiebung",
-    "position",
-];
-const FORCES: [&str; 7] = ["force", "load", "stress", "torque", "moment", "kraft", "pressure"];
-
 impl Part {
     /// The role that the name and unit of a column indicate; `None` if they indicate none.
     pub fn of(name: &str) -> Option<Self> {
         let (quantity, unit) = unit::split(name);
-        let lower = quantity.to_lowercase();
-        let is_among =
-            |words: &[&str]| lower.split(|c: char| !c.is_alphanumeric()).any(|word| words.contains(&word));
-        match (is_among(&DISPLACEMENTS), is_among(&FORCES)) {
-            (true, false) => return Some(Self::Drives(Domain::Mechanics)),
-            (false, true) => return Some(Self::Follows(Domain::Mechanics)),
-            _ => {}
+        if let Some(part) = words::part(quantity) {
+            return Some(part);
         }
         match (quantity, &unit) {
             ("H", None) => Some(Self::Drives(Domain::Magnetism)),
@@ -135,9 +116,24 @@ impl Part {
         }
     }
 
-    /// True if these roles of an input and an output are interchanged.
+    /// True if these roles of an input and an output are interchanged: a force in place of the input and a displacement
+    /// in place of the output, or the voltage of an actuator in place of the output.
     pub fn are_swapped(input: Option<Self>, output: Option<Self>) -> bool {
-        matches!((input, output), (Some(Self::Follows(one)), Some(Self::Drives(other))) if one == other)
+        match (input, output) {
+            (Some(Self::Follows(one)), Some(Self::Drives(other))) if one == other => true,
+            (Some(input), Some(Self::Drives(Domain::Electricity))) => {
+                input.domain() == Some(Domain::Mechanics)
+            }
+            (Some(input), Some(Self::Drives(Domain::Magnetism))) => input.domain() == Some(Domain::Mechanics),
+            _ => false,
+        }
+    }
+
+    fn domain(self) -> Option<Domain> {
+        match self {
+            Self::Drives(domain) | Self::Follows(domain) => Some(domain),
+            Self::Accompanies => None,
+        }
     }
 }
 
@@ -192,7 +188,27 @@ mod tests {
             assert!(swapped(follows, drives), "{follows} {drives}");
             assert!(!swapped(drives, follows), "{drives} {follows}");
         }
-        for (input, output) in [("u_V", "y_um"), ("x", "y"), ("H_fit_V", "B_V_us"), ("y_um", "u_V")] {
+        for (input, output) in [
+            ("Kraft", "Weg"),
+            ("Effort (kN)", "Déplacement (mm)"),
+            ("Fuerza", "Desplazamiento"),
+            ("Сила", "Перемещение"),
+            ("荷重(kN)", "変位(mm)"),
+            ("恢复力", "位移"),
+            ("磁感应强度", "磁场强度"),
+            ("displacement_um", "voltage_V"),
+            ("y_um", "current_A"),
+        ] {
+            assert!(swapped(input, output), "{input} {output}");
+            assert!(!swapped(output, input), "{output} {input}");
+        }
+        assert_eq!(Part::of("Temperature [°C]"), Some(Part::Accompanies));
+        assert_eq!(Part::of("T_K"), Some(Part::Accompanies));
+        // The unit decides.
+        assert_eq!(Part::of("Spannung"), None);
+        assert_eq!(Part::of("Spannung [MPa]"), Some(Part::Follows(Domain::Mechanics)));
+        assert_eq!(Part::of("Spannung [V]"), Some(Part::Drives(Domain::Electricity)));
+        for (input, output) in [("u_V", "y_um"), ("x", "y"), ("H_fit_V", "B_V_us")] {
             assert!(!swapped(input, output), "{input} {output}");
         }
     }

@@ -1,18 +1,23 @@
 //! Units in the names of columns: `force [kN]`, `Time (s)`, `x / mm`, `H_A_per_m`.
 
+mod derived;
 mod quantity;
 
 use crate::data::column::Part;
+pub use derived::{energy, power, quotient};
 use quantity::Quantity;
 
 /// Known units that are no multiples of others: a temperature in degrees Celsius has another zero.
 const OTHER: [&str; 1] = ["degC"];
 
+/// Further units that do not end a name without brackets.
+const OTHER_ALONE: [&str; 5] = ["°C", "℃", "°F", "Celsius", "n.u."];
+
 /// Names that only time has.
 const TIME_NAMES: [&str; 2] = ["t", "time"];
 
 /// Further names of time, lower case, without blanks and underscores. The values must confirm them.
-const FURTHER_TIME_NAMES: [&str; 25] = [
+const FURTHER_TIME_NAMES: [&str; 29] = [
     "timestamp",
     "elapsed",
     "elapsedtime",
@@ -32,16 +37,26 @@ const FURTHER_TIME_NAMES: [&str; 25] = [
     "temps",
     "tiempo",
     "tempo",
+    "xvalue",
+    "relativetime",
     "tijd",
     "czas",
     "tid",
     "время",
     "时间",
+    "时刻",
     "時間",
+    "時刻",
 ];
+
+/// Words of longer names of time, such as `Running Time`.
+const TIME_WORDS: [&str; 6] = ["time", "zeit", "temps", "tiempo", "tempo", "время"];
 
 /// The usual role of a quantity with this unit in hysteresis, if it has one.
 pub(crate) fn part(unit: &str) -> Option<Part> {
+    if OTHER.contains(&unit) || OTHER_ALONE.contains(&unit) && unit != "n.u." {
+        return Some(Part::Accompanies);
+    }
     Quantity::of(unit)?.part()
 }
 
@@ -86,6 +101,11 @@ pub fn of_column(name: &str) -> Option<String> {
     split(name).1
 }
 
+/// True for a text that is a known unit and nothing else, such as `kN`, `A/m` or `°C`.
+pub fn is_unit(text: &str) -> bool {
+    OTHER.contains(&text) || OTHER_ALONE.contains(&text) || Quantity::of(text).is_some()
+}
+
 /// True for `t`, `time`, and either with a unit of time.
 pub fn is_time(name: &str) -> bool {
     is_named_time(name, &TIME_NAMES)
@@ -94,7 +114,12 @@ pub fn is_time(name: &str) -> bool {
 /// True for names that may mean time, in several languages, such as `timestamp`, `Zeit` or `elapsed_ms`, and
 /// for all names with a unit of time. The values must confirm it.
 pub fn may_be_time(name: &str) -> bool {
-    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_unit_of_time(split(name).1.as_deref())
+    let (quantity, unit) = split(name);
+    let has_word = || {
+        quantity.to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| TIME_WORDS.contains(&word))
+    };
+    let is_in_time = is_in_unit_of_time(unit.as_deref());
+    is_time(name) || is_named_time(name, &FURTHER_TIME_NAMES) || is_in_time || unit.is_none() && has_word()
 }
 
 fn is_named_time(name: &str, names: &[&str]) -> bool {
@@ -123,6 +148,11 @@ pub fn split(name: &str) -> (&str, Option<String>) {
             let unit = Some(unit.trim().to_string()).filter(|unit| !unit.is_empty() && unit != "-");
             return (quantity.trim_end_matches([' ', '_']), unit);
         }
+    }
+    if let Some((quantity, unit)) = name.rsplit_once(", ")
+        && is_unit(unit.trim())
+    {
+        return (quantity.trim(), Some(unit.trim().to_string()));
     }
     if let Some((quantity, unit)) = name.rsplit_once('/')
         && is_known(unit.trim())
@@ -188,6 +218,8 @@ mod tests {
             ("v_mm_s", "mm/s"),
             ("M_kN_m", "kN m"),
             ("t_µs", "µs"),
+            ("Force, kN", "kN"),
+            ("Сила, кН", "кН"),
         ] {
             assert_eq!(of_column(name).as_deref(), Some(unit), "{name}");
         }

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::thin::is_drawable;
-use super::{Axis, Chart, Colour, Curve, Label, SERIES};
+use super::{Axis, Chart, Colour, Curve, LEVELS, Label, SERIES};
 use crate::escape::{escape, is_not_xml};
 
 /// Units of the drawing in a pixel, since the library draws on a grid of whole units.
@@ -59,6 +59,10 @@ impl Colour {
             Colour::Faint => RGBColor(0xB0, 0xB0, 0xB0),
             Colour::Band => RGBColor(0xA0, 0xC8, 0xF0),
             Colour::Series(index) => SERIES_MARKERS[index % SERIES],
+            Colour::Level(level) => {
+                let level = level.clamp(*LEVELS.start(), *LEVELS.end());
+                RGBColor(0x10, if level < 0 { 0x21 } else { 0x20 }, 0x30 + level.unsigned_abs())
+            }
         }
     }
 }
@@ -176,7 +180,7 @@ fn draw_curve(curve: &Curve, context: &mut Context) -> Drawn {
                 let dot = Circle::new(*point, fine(curve.width), style.filled());
                 context.draw_series(std::iter::once(dot))?;
             }
-            _ if curve.colour == Colour::Band => {
+            _ if curve.colour.is_area() => {
                 let area = Polygon::new(run.to_vec(), marker.filled());
                 context.draw_series(std::iter::once(area))?;
             }
@@ -226,7 +230,7 @@ fn draw_header(chart: &Chart, area: &Area, left: f64, legend: &[Vec<&(Colour, St
         let mut x = begin;
         for (colour, name) in line {
             let dash = vec![(fine(x), middle(number)), (fine(x + 18.0), middle(number))];
-            let width = if *colour == Colour::Band { 10.0 } else { 2.0 };
+            let width = if colour.is_area() { 10.0 } else { 2.0 };
             area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(width) as u32)))?;
             area.draw(&Text::new(name.clone(), (fine(x + 23.0), middle(number)), style()))?;
             x += entry_width(name);

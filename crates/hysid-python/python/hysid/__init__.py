@@ -1,7 +1,7 @@
 """Identification of hysteresis: measured input and output in, a small, stable model out.
 
 `fit` identifies a `Model`, `validate` cross-validates it, `diagnose` determines properties of the hysteresis in data,
-and `compare` fits all models to the same data. `operators` and `classical` contain the operators and laws of the field
+`cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same data. `operators` and `classical` contain the operators and laws of the field
 as functions on arrays, `specimens` gives synthetic data. `HysteresisRegressor` is the estimator for scikit-learn,
 `plot` draws with matplotlib; both are imported when they are first used.
 """
@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid, classical, operators
 from hysid._comparison import Compared, Comparison, compare
+from hysid._cycles import Cycles, cycles
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import Progress, fit
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
+from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
 from hysid.model import Errors, Member, Model, Prediction, Stepper
@@ -35,6 +37,7 @@ models: tuple[str, ...] = tuple(_hysid.model_names())
 __all__ = [
     "Compared",
     "Comparison",
+    "Cycles",
     "Diagnosis",
     "Errors",
     "Finding",
@@ -48,14 +51,18 @@ __all__ = [
     "Minimum",
     "Model",
     "ModelDiagnosis",
+    "ParameterInterval",
     "Prediction",
     "Progress",
     "Records",
+    "ResidualFinding",
+    "Residuals",
     "Specimen",
     "Stepper",
     "Validation",
     "classical",
     "compare",
+    "cycles",
     "diagnose",
     "fit",
     "minimise",

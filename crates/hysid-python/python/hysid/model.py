@@ -16,9 +16,11 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
 from hysid._data import Column, Columns, columns
+from hysid._cycles import Cycles, named_options
 from hysid._diagnosis import ModelDiagnosis
 from hysid._html import number, table
 from hysid._inverse import Inverse, Inversion, Reference
+from hysid._residuals import ParameterInterval, Residuals, intervals_of
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -590,6 +592,75 @@ class Model:
             arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
         )
 
+    def residuals(
+        self,
+        x: Values,
+        y: Values,
+        time: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        records: ArrayLike | None = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+    ) -> Residuals:
+        """Test the residual of a free run for structure: whiteness, correlation with the input, size and bias by place.
+
+        Parameters
+        ----------
+        x, y, time, rate, records : array
+            As of `evaluate`.
+        initial_state : str, optional
+            As of `simulate`.
+        same_units : bool
+            As of `simulate`.
+
+        Returns
+        -------
+        Residuals
+            A finding for each test, with its p-value and what helps.
+
+        Raises
+        ------
+        ValueError
+            Invalid inputs, or fewer than 50 rows with a measured output.
+        """
+        state = name_of("initial_state", initial_state)
+        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        data = arranged.dataset()
+        content = json.loads(self._native.residuals(data, state))
+        if arranged.output is not None and arranged.output.name is None:
+            content["output"] = self.output
+        warn(self._native.range_warnings(data))
+        return Residuals(content)
+
+    def parameter_intervals(
+        self,
+        x: Values,
+        y: Values,
+        time: ArrayLike | None = None,
+        rate: ArrayLike | None = None,
+        records: ArrayLike | None = None,
+    ) -> list[ParameterInterval] | None:
+        """Compute 95 % confidence intervals of the parameters of a classical law from its training data.
+
+        Parameters
+        ----------
+        x, y, time, rate, records : array
+            The data that the model was fitted to, as of `fit`. The model file does not contain the intervals.
+
+        Returns
+        -------
+        list of ParameterInterval or None
+            One for each parameter of the law. None for networks, ensembles, and laws without intervals.
+
+        Raises
+        ------
+        ValueError
+            Data that the model was not fitted to.
+        """
+        printed = self._native.parameter_intervals(columns(x, y, time, rate, records).dataset())
+        return None if printed is None else intervals_of(printed)
+
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
         """Columns in the units of the training, converted where names contain units; warns of conversions."""
         if same_units:
@@ -829,6 +900,28 @@ class Model:
             Properties found by probing the model, and from its equations and weights.
         """
         return ModelDiagnosis(json.loads(self._native.diagnose()))
+
+    def cycles(
+        self, *, division: str | None = None, field: str | None = None, smoothing_factor: int | None = None
+    ) -> Cycles:
+        """Drive the model through cycles and first-order reversal curves over its trained range and read their figures.
+
+        Parameters
+        ----------
+        division : str, optional
+            Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``; as suits the data by default.
+        field : str, optional
+            What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``; by default as the names and
+            units of the columns indicate.
+        smoothing_factor : int, optional
+            Smoothing factor of the density of the reversal curves, 1 to 10; chosen by default.
+
+        Returns
+        -------
+        Cycles
+            The figures of the model's cycles, not of measured data.
+        """
+        return Cycles._of(self._native.cycles(*named_options(division, field, smoothing_factor)))
 
     # Comparison and display
 

@@ -39,8 +39,9 @@ use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::metrics::Errors;
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::error::{Error, Result};
+use crate::fit::HeldOutRows;
 use crate::fit::network::{Fitted, Observer};
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::{FoundStates, Selection, WarmUp};
@@ -182,12 +183,29 @@ impl Chosen<'_, '_, '_> {
         let body = Predictor::Ensemble(combination.ensemble(members, self.data.input_range(0))?);
         let ensemble = ensemble(body, self.data, self.options, validation, Some(selection.clone()), work)?;
         if self.options.members == 1
-            && let Some(model) = self.single(&combination, &ensemble, selection)?
+            && let Some((model, predicted)) = self.single(&combination, &ensemble, selection)?
         {
-            return fit(model);
+            return Ok(fit(model)?.with_held_out(self.held_out(&predicted)?));
         }
-        let band = self.band(&self.rows_held_out(&combination));
-        fit(ensemble.with_band(band))
+        let rows = self.rows_held_out(&combination);
+        let band = self.band(&rows);
+        let held_out = self.held_out(&self.predicted(&rows))?;
+        Ok(fit(ensemble.with_band(band))?.with_held_out(held_out))
+    }
+
+    /// The outputs that were predicted for the scored rows of each fold.
+    fn predicted(&self, rows: &[Vec<HeldOutRow>]) -> Vec<Vec<f64>> {
+        let of_fold = |(fold, rows): (&HeldOut, &Vec<HeldOutRow>)| {
+            let measured =
+                fold.fold.held_out.records().iter().flat_map(Record::output).filter(|y| !y.is_nan());
+            measured.zip(rows).map(|(measured, row)| measured - row.error).collect()
+        };
+        self.bench.folds.iter().zip(rows).map(of_fold).collect()
+    }
+
+    fn held_out(&self, predicted: &[Vec<f64>]) -> Result<Option<HeldOutRows>> {
+        let folds = self.bench.folds.iter().map(|fold| &fold.fold);
+        HeldOutRows::of(self.data.names(), folds.zip(predicted.iter().map(Vec::as_slice)))
     }
 
     /// The candidates' starts with their weights by the folds that are `counted`, no more than are needed.
@@ -247,13 +265,13 @@ impl Chosen<'_, '_, '_> {
         (0..folds.len()).map(of_fold).collect()
     }
 
-    /// One small model, with what is known of it.
+    /// One small model, with what is known of it, and what models made in the same way predict on the folds.
     fn single(
         &mut self,
         combination: &Combination,
         ensemble: &Model,
         mut selection: Selection,
-    ) -> Result<Option<Model>> {
+    ) -> Result<Option<(Model, Vec<Vec<f64>>)>> {
         let Self { options, bench, evidence, .. } = *self;
         let makers = single::Makers { trials: &mut self.trials, bench, combination, evidence, options };
         let Some(found) = makers.single(ensemble)? else { return Ok(None) };
@@ -267,7 +285,8 @@ impl Chosen<'_, '_, '_> {
         let provenance = provenance_of(&found.model, Some(selection), validation, bench.work);
         let band = self.band(&single::rows_held_out(&found.predicted, bench.folds));
         // A distilled model was taught more than the data.
-        found.model.with_provenance(provenance).with_band(band).trained_on(self.data).map(Some)
+        let model = found.model.with_provenance(provenance).with_band(band).trained_on(self.data)?;
+        Ok(Some((model, found.predicted)))
     }
 }
 

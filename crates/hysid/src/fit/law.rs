@@ -6,6 +6,7 @@ pub mod generalized_prandtl_ishlinskii;
 mod grids;
 pub mod jiles_atherton;
 pub(crate) mod linear;
+pub mod linearised;
 pub mod lugre;
 pub mod masing;
 pub mod menegotto_pinto;
@@ -21,6 +22,7 @@ use hysid_core::for_each_law;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::law::linearised::Linearised;
 use crate::fit::law::search::{Identified, SearchObserver};
 use crate::law::{Classical, Law};
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -42,6 +44,16 @@ pub trait Identify: Law {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>>;
 
+    /// The law about the result of a fit with these options to these data, from which the intervals of its parameters
+    /// follow; `None` for a law without intervals.
+    ///
+    /// # Errors
+    /// As [`Identify::identify`].
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let _ = (data, options);
+        Ok(None)
+    }
+
     /// As [`Identify::identify`], without a check within a round.
     ///
     /// # Errors
@@ -62,6 +74,15 @@ pub trait LeastSquaresLaw: Law {
     /// # Errors
     /// As [`Identify::identify`].
     fn fitted(data: &Dataset, options: &ClassicalOptions, stop: StopCheck<'_>) -> Result<Self>;
+
+    /// As [`Identify::linearised`].
+    ///
+    /// # Errors
+    /// As [`Identify::identify`].
+    fn linearised_weights(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let _ = (data, options);
+        Ok(None)
+    }
 }
 
 impl<L: LeastSquaresLaw> Identify for L {
@@ -79,6 +100,10 @@ impl<L: LeastSquaresLaw> Identify for L {
             termination,
             searched: Vec::new(),
         })
+    }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        self.linearised_weights(data, options)
     }
 }
 
@@ -109,6 +134,26 @@ macro_rules! fit {
 }
 
 for_each_law!(fit);
+
+macro_rules! linearised {
+    ($($module:ident::$law:ident),* $(,)?) => {
+        /// As [`Identify::linearised`].
+        ///
+        /// # Errors
+        /// As [`Identify::linearised`].
+        pub(crate) fn linearised(
+            law: &Classical,
+            data: &Dataset,
+            options: &ClassicalOptions,
+        ) -> Result<Option<Linearised>> {
+            match law {
+                $(Classical::$law(law) => law.linearised(data, options),)*
+            }
+        }
+    };
+}
+
+for_each_law!(linearised);
 
 /// The same as one of all laws.
 fn any(found: Identified<impl Into<Classical>>) -> Identified<Classical> {

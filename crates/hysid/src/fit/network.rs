@@ -29,6 +29,7 @@ use std::ops::ControlFlow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
+use crate::fit::HeldOutRows;
 use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::law::facts::Origin;
@@ -140,12 +141,20 @@ pub struct Fitted {
     /// Parameters found by the search of a law, from which a similar fit can begin
     /// ([`near`](crate::options::classical::ClassicalOptions::near)); empty for other models.
     pub searched: Vec<f64>,
+    /// The rows that were held out in turn, with what models gave for them that were fitted without; `None` if none were
+    /// held out.
+    pub held_out: Option<HeldOutRows>,
 }
 
 impl Fitted {
     /// A model that no similar fit can begin from.
     pub(crate) fn of(model: Model, evaluations: usize) -> Self {
-        Self { model, evaluations, searched: Vec::new() }
+        Self { model, evaluations, searched: Vec::new(), held_out: None }
+    }
+
+    /// With rows that were held out.
+    pub(crate) fn with_held_out(self, held_out: Option<HeldOutRows>) -> Self {
+        Self { held_out, ..self }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::data::column::{Domain, Part};
 
 /// Exponents of length, mass, time, electric current, temperature difference and angle.
-type Dimension = [i8; 6];
+pub(super) type Dimension = [i8; 6];
 
 const NONE: Dimension = [0; 6];
 pub(super) const LENGTH: Dimension = [1, 0, 0, 0, 0, 0];
@@ -14,10 +14,12 @@ const TEMPERATURE: Dimension = [0, 0, 0, 0, 1, 0];
 const ANGLE: Dimension = [0, 0, 0, 0, 0, 1];
 const FREQUENCY: Dimension = [0, 0, -1, 0, 0, 0];
 const FORCE: Dimension = [1, 1, -2, 0, 0, 0];
-/// Of energy too.
-const MOMENT: Dimension = [2, 1, -2, 0, 0, 0];
-const PRESSURE: Dimension = [-1, 1, -2, 0, 0, 0];
-const POWER: Dimension = [2, 1, -3, 0, 0, 0];
+pub(super) const ENERGY: Dimension = [2, 1, -2, 0, 0, 0];
+const MOMENT: Dimension = ENERGY;
+pub(super) const ENERGY_DENSITY: Dimension = [-1, 1, -2, 0, 0, 0];
+const PRESSURE: Dimension = ENERGY_DENSITY;
+pub(super) const POWER: Dimension = [2, 1, -3, 0, 0, 0];
+pub(super) const POWER_DENSITY: Dimension = [-1, 1, -3, 0, 0, 0];
 const VOLTAGE: Dimension = [2, 1, -3, -1, 0, 0];
 const CHARGE: Dimension = [0, 0, 1, 1, 0, 0];
 /// Charge of an area.
@@ -52,14 +54,22 @@ impl Quantity {
             FORCE | MOMENT | PRESSURE => Part::Follows(Mechanics),
             FIELD => Part::Drives(Magnetism),
             FLUX | FLUX_DENSITY => Part::Follows(Magnetism),
-            VOLTAGE => Part::Drives(Electricity),
+            VOLTAGE | CURRENT => Part::Drives(Electricity),
+            TEMPERATURE => Part::Accompanies,
             CHARGE | POLARIZATION => Part::Follows(Electricity),
             _ => return None,
         };
         Some(part)
     }
 
-    fn times(self, other: Self, power: i8) -> Self {
+    /// The quantity with angles as numbers: a moment times an angle is an energy.
+    pub fn without_angles(mut self) -> Self {
+        self.dimension[5] = 0;
+        self
+    }
+
+    /// The product with a power of another.
+    pub fn times(self, other: Self, power: i8) -> Self {
         let mut dimension = self.dimension;
         dimension.iter_mut().zip(other.dimension).for_each(|(own, more)| *own += power * more);
         Self { factor: self.factor * other.factor.powi(power.into()), dimension }
@@ -106,21 +116,22 @@ fn symbol(text: &str) -> Option<Quantity> {
 /// Names, factor to base units and dimension. A name is exact: `MN` is not `mN`.
 #[rustfmt::skip]
 const SYMBOLS: &[(&str, f64, Dimension)] = &[
-    ("s sec secs second seconds", 1.0, TIME), ("ms msec", 1e-3, TIME), ("us µs μs usec", 1e-6, TIME), ("ns", 1e-9, TIME),
+    ("s sec Sec secs second seconds с сек 秒", 1.0, TIME), ("ms msec мс 毫秒 ミリ秒", 1e-3, TIME), ("us µs μs usec", 1e-6, TIME), ("ns", 1e-9, TIME),
     ("min minutes", 60.0, TIME), ("h hours", 3600.0, TIME), ("d", 86400.0, TIME),
-    ("m", 1.0, LENGTH), ("mm", 1e-3, LENGTH), ("cm", 1e-2, LENGTH), ("um µm μm", 1e-6, LENGTH), ("nm", 1e-9, LENGTH),
+    ("m м 米", 1.0, LENGTH), ("mm мм 毫米", 1e-3, LENGTH), ("cm см 厘米", 1e-2, LENGTH), ("um µm μm мкм 微米", 1e-6, LENGTH), ("nm", 1e-9, LENGTH),
     ("km", 1e3, LENGTH), ("inch in \"", 0.0254, LENGTH), ("ft '", 0.3048, LENGTH),
     ("g", 1e-3, MASS), ("kg", 1.0, MASS),
-    ("N", 1.0, FORCE), ("mN", 1e-3, FORCE), ("kN", 1e3, FORCE), ("MN", 1e6, FORCE),
+    ("N Н 牛", 1.0, FORCE), ("mN", 1e-3, FORCE), ("kN кН 千牛", 1e3, FORCE), ("MN", 1e6, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE), ("kip", 4_448.221_615_260_5, FORCE),
-    ("Nm", 1.0, MOMENT), ("Nmm", 1e-3, MOMENT), ("kNm", 1e3, MOMENT), ("J", 1.0, MOMENT), ("mJ", 1e-3, MOMENT),
-    ("Pa", 1.0, PRESSURE), ("kPa", 1e3, PRESSURE), ("MPa", 1e6, PRESSURE), ("GPa", 1e9, PRESSURE),
+    ("Nm", 1.0, MOMENT), ("Nmm", 1e-3, MOMENT), ("kNm", 1e3, MOMENT), ("J", 1.0, ENERGY), ("mJ", 1e-3, ENERGY),
+    ("uJ µJ", 1e-6, ENERGY), ("kJ", 1e3, ENERGY), ("MJ", 1e6, ENERGY),
+    ("Pa", 1.0, PRESSURE), ("kPa", 1e3, PRESSURE), ("MPa МПа 兆帕", 1e6, PRESSURE), ("GPa", 1e9, PRESSURE),
     ("bar", 1e5, PRESSURE), ("psi", 6_894.757_293_168_361, PRESSURE),
-    ("W", 1.0, POWER), ("kW", 1e3, POWER),
-    ("V", 1.0, VOLTAGE), ("uV µV", 1e-6, VOLTAGE), ("mV", 1e-3, VOLTAGE), ("kV", 1e3, VOLTAGE),
-    ("A", 1.0, CURRENT), ("uA µA", 1e-6, CURRENT), ("mA", 1e-3, CURRENT), ("kA", 1e3, CURRENT),
+    ("W", 1.0, POWER), ("uW µW", 1e-6, POWER), ("mW", 1e-3, POWER), ("kW", 1e3, POWER), ("MW", 1e6, POWER),
+    ("V В 伏", 1.0, VOLTAGE), ("uV µV", 1e-6, VOLTAGE), ("mV", 1e-3, VOLTAGE), ("kV", 1e3, VOLTAGE),
+    ("A А 安", 1.0, CURRENT), ("uA µA", 1e-6, CURRENT), ("mA", 1e-3, CURRENT), ("kA", 1e3, CURRENT),
     ("C", 1.0, CHARGE), ("nC", 1e-9, CHARGE), ("uC µC μC", 1e-6, CHARGE), ("mC", 1e-3, CHARGE),
-    ("T", 1.0, FLUX_DENSITY), ("uT µT", 1e-6, FLUX_DENSITY), ("mT", 1e-3, FLUX_DENSITY),
+    ("T Тл", 1.0, FLUX_DENSITY), ("uT µT", 1e-6, FLUX_DENSITY), ("mT", 1e-3, FLUX_DENSITY),
     ("G", 1e-4, FLUX_DENSITY), ("kG", 0.1, FLUX_DENSITY),
     ("Wb", 1.0, FLUX), ("mWb", 1e-3, FLUX),
     ("Oe", 1000.0 / (4.0 * std::f64::consts::PI), FIELD), ("kOe", 1e6 / (4.0 * std::f64::consts::PI), FIELD),

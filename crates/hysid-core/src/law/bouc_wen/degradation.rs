@@ -110,6 +110,12 @@ impl Degradation {
         Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda }
     }
 
+    /// The values, in the order of [`Degradation::from_values`].
+    pub fn values(&self) -> [f64; 9] {
+        let &Self { delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda } = self;
+        [delta_a, delta_nu, delta_eta, zeta_s, p, q, psi_0, delta_psi, lambda]
+    }
+
     /// The properties of an element after the dissipated energy `e`.
     pub(super) fn at(&self, n: f64, e: f64) -> Properties {
         let e = limited(e);

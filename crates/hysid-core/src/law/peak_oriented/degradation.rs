@@ -45,6 +45,21 @@ impl Degradation {
         Self { cap, softening, residual, endurance, pace, strength_loss, target_growth, pinching_growth }
     }
 
+    /// The values, in the order of [`Degradation::from_values`].
+    pub fn values(&self) -> [f64; 8] {
+        let &Self {
+            cap,
+            softening,
+            residual,
+            endurance,
+            pace,
+            strength_loss,
+            target_growth,
+            pinching_growth,
+        } = self;
+        [cap, softening, residual, endurance, pace, strength_loss, target_growth, pinching_growth]
+    }
+
     /// `C(d)`: the share of the envelope that is left beyond the cap.
     pub(super) fn capped_share(&self, d: f64) -> f64 {
         capped_share(d, self.cap, self.softening, self.residual)

@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
@@ -25,21 +26,27 @@ impl Identify for BoucWen {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        // The rate only adds to the output, so it is no part of the memory.
-        let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
-        let (low, high) = data.input_range(0);
-        // The element starts at 0: an input far from it is reached by yielding.
-        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
-        let family = Elements::new(range, options);
+        let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        law.offset = found.weights[0];
-        law.elastic_stiffness = found.weights[1];
-        law.hysteretic_stiffness = found.weights[2];
-        law.damping = found.weights.get(3).copied().unwrap_or(0.0);
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Elements, Vec<Series>)> {
+    // The rate only adds to the output, so it is no part of the memory.
+    let series = thinned(Series::all(data, options.rate)?, Memory::TurningPoints);
+    let (low, high) = data.input_range(0);
+    // The element starts at 0: an input far from it is reached by yielding.
+    let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+    Ok((Elements::new(range, options), series))
 }
 
 /// Bouc-Wen elements, in the form of the search.
@@ -88,6 +95,25 @@ impl Elements {
             n: parameters[2],
             degradation,
         }
+    }
+}
+
+impl LawFamily for Elements {
+    type Law = BoucWen;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> BoucWen {
+        BoucWen {
+            offset: weights[0],
+            elastic_stiffness: weights[1],
+            hysteretic_stiffness: weights[2],
+            damping: weights.get(3).copied().unwrap_or(0.0),
+            ..self.law(searched)
+        }
+    }
+
+    fn searched(&self, law: &BoucWen) -> Vec<f64> {
+        let shape = [law.yield_displacement, law.b, law.n];
+        shape.into_iter().chain(law.degradation.iter().flat_map(Degradation::values)).collect()
     }
 }
 

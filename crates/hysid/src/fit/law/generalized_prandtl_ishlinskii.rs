@@ -9,6 +9,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{OptionError, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
@@ -48,25 +49,26 @@ impl Identify for GeneralizedPrandtlIshlinskii {
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
-        let series = Series::all(data, None)?;
-        let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
-        let lags = sign * work(&series) < 0.0;
-        let series = thinned(series, Memory::TurningPoints);
-        let family = Plays::new(data.input_range(0), sign, lags, options);
+        let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        law.offset = found.weights[0];
-        law.weights = match law.weights {
-            PlayWeights::Exponential { plays, rho, tau } => {
-                PlayWeights::Exponential { plays, rho: rho * found.weights[1], tau }
-            }
-            PlayWeights::Free(_) => {
-                PlayWeights::Free(found.weights[1..].iter().map(|weight| family.sign * weight).collect())
-            }
-        };
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
+    let series = Series::all(data, None)?;
+    let sign = if slope(&series) < 0.0 { -1.0 } else { 1.0 };
+    let lags = sign * work(&series) < 0.0;
+    let series = thinned(series, Memory::TurningPoints);
+    Ok((Plays::new(data.input_range(0), sign, lags, options), series))
 }
 
 /// Generalized plays, in the form of the search.
@@ -142,6 +144,40 @@ impl Plays {
             None => PlayWeights::Free(vec![self.sign; self.operators]),
         };
         GeneralizedPrandtlIshlinskii { offset: 0.0, left, right, initial, spacing, weights }
+    }
+}
+
+impl LawFamily for Plays {
+    type Law = GeneralizedPrandtlIshlinskii;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> GeneralizedPrandtlIshlinskii {
+        let mut law = self.law(searched);
+        law.offset = weights[0];
+        law.weights = match law.weights {
+            PlayWeights::Exponential { plays, rho, tau } => {
+                PlayWeights::Exponential { plays, rho: rho * weights[1], tau }
+            }
+            PlayWeights::Free(_) => {
+                PlayWeights::Free(weights[1..].iter().map(|weight| self.sign * weight).collect())
+            }
+        };
+        law
+    }
+
+    fn searched(&self, law: &GeneralizedPrandtlIshlinskii) -> Vec<f64> {
+        let (left, right) = (law.left, law.right);
+        let from = right.value(self.low) - left.value(self.low);
+        let shape = |x: f64| (right.a1 * x + right.a2).tanh();
+        let rise = right.a0 * (shape(self.high) - shape(self.low)).max(SMALLEST_SHARE);
+        let largest = law.spacing * (self.operators - 1).max(1) as f64;
+        let initial = law.initial / (0.5 * (right.value(0.0) - left.value(0.0)).abs() + largest);
+        let place = |envelope: Envelope| [-envelope.a2 / envelope.a1, 1.0 / envelope.a1];
+        let mut all = [place(left), place(right)].concat();
+        all.extend([from, rise, largest, initial]);
+        if let PlayWeights::Exponential { tau, .. } = law.weights {
+            all.push(tau * largest);
+        }
+        all
     }
 }
 

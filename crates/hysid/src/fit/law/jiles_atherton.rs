@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
@@ -22,20 +23,28 @@ impl Identify for JilesAtherton {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-        let (low, high) = data.input_range(0);
-        let form = match options.differential_form {
-            true => JilesAthertonForm::Differential,
-            false => JilesAthertonForm::Original,
-        };
-        let family = Materials::new(low.abs().max(high.abs()), form);
+        let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        (law.offset, law.permeability, law.saturation) =
-            (found.weights[0], found.weights[1], found.weights[2]);
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Materials, Vec<Series>)> {
+    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+    let (low, high) = data.input_range(0);
+    let form = match options.differential_form {
+        true => JilesAthertonForm::Differential,
+        false => JilesAthertonForm::Original,
+    };
+    Ok((Materials::new(low.abs().max(high.abs()), form), series))
 }
 
 /// Jiles-Atherton laws, in the form of the search.
@@ -61,6 +70,19 @@ impl Materials {
         let &[a, k, share, c] = parameters else { unreachable!("four variables are searched") };
         let coupling = share * 3.0 * a;
         JilesAtherton { offset: 0.0, permeability: 0.0, saturation: 1.0, a, k, coupling, c, form: self.form }
+    }
+}
+
+impl LawFamily for Materials {
+    type Law = JilesAtherton;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> JilesAtherton {
+        let law = self.law(searched);
+        JilesAtherton { offset: weights[0], permeability: weights[1], saturation: weights[2], ..law }
+    }
+
+    fn searched(&self, law: &JilesAtherton) -> Vec<f64> {
+        vec![law.a, law.k, law.coupling / (3.0 * law.a), law.c]
     }
 }
 

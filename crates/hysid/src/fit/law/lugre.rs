@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
@@ -25,18 +26,25 @@ impl Identify for Lugre {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
-        let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
-        let (low, high) = data.input_range(0);
-        let family = Contacts::new((high - low).max(f64::MIN_POSITIVE), &series);
+        let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        (law.offset, law.spring) = (found.weights[0], found.weights[1]);
-        (law.sliding, law.bristle_damping, law.viscous) =
-            (found.weights[2], found.weights[3], found.weights[4]);
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Contacts, Vec<Series>)> {
+    let rate = options.rate.ok_or(Error::RateNeeded(Lugre::FACTS.name))?;
+    let series = thinned(Series::all(data, Some(rate))?, Memory::Path);
+    let (low, high) = data.input_range(0);
+    Ok((Contacts::new((high - low).max(f64::MIN_POSITIVE), &series), series))
 }
 
 /// LuGre laws, in the form of the search.
@@ -62,6 +70,21 @@ impl Contacts {
             unreachable!("three variables are searched")
         };
         Lugre { presliding, stribeck, stribeck_velocity, ..Lugre::default() }
+    }
+}
+
+impl LawFamily for Contacts {
+    type Law = Lugre;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> Lugre {
+        let &[offset, spring, sliding, bristle_damping, viscous] = weights else {
+            unreachable!("five weights are found")
+        };
+        Lugre { offset, spring, sliding, bristle_damping, viscous, ..self.law(searched) }
+    }
+
+    fn searched(&self, law: &Lugre) -> Vec<f64> {
+        vec![law.presliding, law.stribeck, law.stribeck_velocity]
     }
 }
 

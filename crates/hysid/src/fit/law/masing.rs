@@ -4,8 +4,10 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::{LeastSquaresLaw, grids};
 use crate::law::masing::{Masing, MasingParts};
+use crate::law::series::Series;
 use crate::operator::{play, stop};
 use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
@@ -33,6 +35,41 @@ impl LeastSquaresLaw for Masing {
             slopes: weights[1..].iter().map(|weight| weight * slope).collect(),
         })
     }
+
+    fn linearised_weights(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (series, rows_each) = in_stretches(Series::all(data, None)?);
+        let MasingParts { constant, thresholds, slopes } = self.parts();
+        let count = 1 + slopes.len();
+        let mut rows = WeightRows::new(count);
+        let mut features = vec![1.0; count];
+        for series in &series {
+            rows.begin();
+            let mut plays = vec![0.0; thresholds.len()];
+            for (sample, &y) in series.samples.iter().zip(&series.output) {
+                slope_features(sample.x, thresholds, &mut plays, &mut features);
+                rows.add(&features, y);
+            }
+        }
+        let weights = [&[*constant], slopes.as_slice()].concat();
+        let bounded: Vec<bool> = (0..count).map(|i| i > 0).collect();
+        // The constant, the bends, which are not fitted, and the slopes.
+        let mut gradients = vec![unit_gradient(count, 0)];
+        gradients.extend(vec![Vec::new(); thresholds.len()]);
+        gradients.extend((1..count).map(|slope| unit_gradient(count, slope)));
+        Ok(Some(rows.linearised(&weights, &bounded, gradients, rows_each)))
+    }
+}
+
+/// The features of a row: 1, a stop less the one before for each slope, and what is left of the input for the last one.
+fn slope_features(x: f64, thresholds: &[f64], plays: &mut [f64], features: &mut [f64]) {
+    let mut before = 0.0;
+    for ((play, &r), feature) in plays.iter_mut().zip(thresholds).zip(&mut features[1..]) {
+        *play = play::follow(*play, x, r);
+        let elongation = stop::elongation(x, *play);
+        *feature = elongation - before;
+        before = elongation;
+    }
+    features[thresholds.len() + 1] = x - before;
 }
 
 /// Score by cross-validation, and weights (constant, slopes) in scaled units.
@@ -71,14 +108,8 @@ fn slope_sums(rows: &TrainingRows, grid: &[f64], stop: StopCheck<'_>) -> Result<
             if gatherer.is_over(6 * features.len()) {
                 break;
             }
-            let mut before = 0.0;
-            for ((play, &r), feature) in plays.iter_mut().zip(grid).zip(&mut features[1..]) {
-                *play = play::follow(*play, sample.x, r);
-                let elongation = stop::elongation(sample.x, *play);
-                *feature = (elongation - before) * factor;
-                before = elongation;
-            }
-            features[grid.len() + 1] = (sample.x - before) * factor;
+            slope_features(sample.x, grid, &mut plays, &mut features);
+            features[1..].iter_mut().for_each(|feature| *feature *= factor);
             gatherer.add(fold, &features, target);
         }
     }

@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
@@ -28,18 +29,25 @@ impl Identify for MenegottoPinto {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-        let (low, high) = data.input_range(0);
-        // The material is virgin at 0.
-        let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
-        let family = Steels::new(range, options.asymmetric);
+        let (family, series) = posed(data, options)?;
         let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        law.offset = found.weights[0];
-        law.hardening_stiffness = found.weights[1];
-        law.strength = found.weights[2];
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Steels, Vec<Series>)> {
+    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+    let (low, high) = data.input_range(0);
+    // The material is virgin at 0.
+    let range = (high.max(0.0) - low.min(0.0)).max(f64::MIN_POSITIVE);
+    Ok((Steels::new(range, options.asymmetric), series))
 }
 
 /// Steels, in the form of the search.
@@ -80,6 +88,21 @@ impl Steels {
             isotropic,
             down: self.asymmetric.then(|| Downwards { ratio: parameters[5], isotropic: parameters[6] }),
         }
+    }
+}
+
+impl LawFamily for Steels {
+    type Law = MenegottoPinto;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> MenegottoPinto {
+        let law = self.law(searched);
+        MenegottoPinto { offset: weights[0], hardening_stiffness: weights[1], strength: weights[2], ..law }
+    }
+
+    fn searched(&self, law: &MenegottoPinto) -> Vec<f64> {
+        let upwards = [law.yield_displacement, law.roundness, law.loss, law.pace, law.isotropic];
+        let downwards = law.down.iter().flat_map(|down| [down.ratio, down.isotropic]);
+        upwards.into_iter().chain(downwards).collect()
     }
 }
 

@@ -12,11 +12,13 @@
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic, lowest};
+use crate::fit::law::linearised::{FitVariable, Linearised, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::{LeastSquaresLaw, grids};
 use crate::law::modified_prandtl_ishlinskii::{
     DeadZoneParts, DeadZones, ModifiedPrandtlIshlinskii, dead_zone,
 };
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::series::Series;
 use crate::law::thresholds::check_thresholds;
 use crate::linear_algebra::Symmetric;
 use crate::network::scaling::Scaling;
@@ -90,6 +92,42 @@ impl LeastSquaresLaw for ModifiedPrandtlIshlinskii {
         let problem = &problems[grid];
         let start = problem.convex_start(prior, stop)?;
         problem.refine(start, ITERATIONS, stop).in_users_units(&grids[grid], scaling)
+    }
+
+    fn linearised_weights(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (series, rows_each) = in_stretches(Series::all(data, None)?);
+        let point = Point::of_law(self);
+        let (plays, slopes) = (point.hysteresis.len() - 2, point.slopes.len());
+        let count = 2 + plays + 1 + slopes;
+        let mut rows = WeightRows::new(count);
+        let (mut drive, mut jacobian) = (vec![1.0; 2 + plays], vec![0.0; count]);
+        let mut residual = Vec::new();
+        for series in &series {
+            rows.begin();
+            drive[2..].fill(0.0);
+            for (sample, &y) in series.samples.iter().zip(&series.output) {
+                drive[1] = sample.x;
+                let thresholds = self.hysteresis().thresholds();
+                drive[2..]
+                    .iter_mut()
+                    .zip(thresholds)
+                    .for_each(|(play, &r)| *play = play::follow(*play, sample.x, r));
+                if !y.is_nan() {
+                    residual.push(point.linearise(&drive, &mut jacobian) - y);
+                    rows.add(&jacobian, y);
+                }
+            }
+        }
+        let at_bound = |i: usize| match i {
+            0 | 1 => false,
+            i if i < 2 + plays => point.hysteresis[i] == 0.0,
+            i if i == 2 + plays => false,
+            i => point.slopes[i - 3 - plays] <= LEAST_SLOPE * (1.0 + 1e-9),
+        };
+        let columns = rows.columns.into_iter().enumerate();
+        let variables = columns.map(|(i, column)| FitVariable::weight(column, at_bound(i))).collect();
+        let gradients = point.gradients();
+        Ok(Some(Linearised { records: rows.records, residual, variables, gradients, rows_each }))
     }
 }
 
@@ -402,6 +440,38 @@ fn hat(y: f64, knots: &[f64]) -> f64 {
 impl Point {
     fn negative(&self) -> usize {
         self.thresholds.partition_point(|&r| r < 0.0)
+    }
+
+    /// The point of a law, in the user's units.
+    fn of_law(law: &ModifiedPrandtlIshlinskii) -> Self {
+        let (plays, zones) = (law.hysteresis(), law.superposition());
+        Self {
+            hysteresis: [&[plays.constant(), plays.linear()], plays.weights()].concat(),
+            thresholds: zones.parts().thresholds.clone(),
+            constant: zones.parts().constant,
+            slopes: zones.slopes(),
+            prior: Prior { sign: Sign::Any, ridge: 0.0 },
+        }
+    }
+
+    /// The derivatives of each parameter of the law by plays, constant and slopes; empty for a threshold.
+    fn gradients(&self) -> Vec<Vec<f64>> {
+        let first = self.hysteresis.len();
+        let count = first + 1 + self.slopes.len();
+        let of = |at: usize| unit_gradient(count, at);
+        let slope = |piece: usize| first + 1 + piece;
+        let mut all = vec![of(0), of(1)];
+        all.extend((2..first).flat_map(|play| [Vec::new(), of(play)]));
+        let negative = self.negative();
+        all.extend([of(first), of(slope(negative))]);
+        for j in 0..self.thresholds.len() {
+            // A weight is the change of the slope away from 0.
+            let (from, to) = if j < negative { (j + 1, j) } else { (j, j + 1) };
+            let mut weight = of(slope(to));
+            weight[slope(from)] = -1.0;
+            all.extend([Vec::new(), weight]);
+        }
+        all
     }
 
     /// The sum of plays of a row.

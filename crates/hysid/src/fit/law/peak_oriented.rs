@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
@@ -28,21 +29,25 @@ impl Identify for PeakOriented {
         stop: StopCheck<'_>,
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
-        let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
-        let (low, high) = data.input_range(0);
-        // The member is virgin at 0.
-        let range = high.max(-low).max(f64::MIN_POSITIVE);
-        let family = Members::new(range, work(&series) < 0.0, options);
+        let (family, series) = posed(data, options)?;
         let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        law.offset = found.weights[0];
-        law.up.strength = found.weights[1];
-        law.spring *= law.up.strength;
-        if let Some(down) = &mut law.down {
-            down.strength = found.weights[2];
-        }
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Members, Vec<Series>)> {
+    let series = thinned(Series::all(data, None)?, Memory::TurningPoints);
+    let (low, high) = data.input_range(0);
+    // The member is virgin at 0.
+    let range = high.max(-low).max(f64::MIN_POSITIVE);
+    Ok((Members::new(range, work(&series) < 0.0, options), series))
 }
 
 /// Members, in the form of the search.
@@ -122,6 +127,32 @@ impl Members {
             pinch_weight,
             degradation,
         }
+    }
+}
+
+impl LawFamily for Members {
+    type Law = PeakOriented;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> PeakOriented {
+        let mut law = self.law(searched);
+        law.offset = weights[0];
+        law.up.strength = weights[1];
+        law.spring *= law.up.strength;
+        if let Some(down) = &mut law.down {
+            down.strength = weights[2];
+        }
+        law
+    }
+
+    fn searched(&self, law: &PeakOriented) -> Vec<f64> {
+        let x = law.up.yield_displacement;
+        let spring = law.spring * x / law.up.strength;
+        let shape = [law.n, law.hardening, law.unloading, law.curvature];
+        let pinch = [law.pinch_place, law.pinch_height, law.pinch_weight];
+        let down = law.down.iter().map(|down| down.yield_displacement / x);
+        let degradation = law.degradation.iter().flat_map(Degradation::values);
+        let all = std::iter::once(x).chain(shape).chain(pinch).chain([spring]);
+        all.chain(down).chain(degradation).collect()
     }
 }
 

@@ -4,8 +4,10 @@ use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::law::grids::best_on_grids;
 use crate::fit::law::linear::{FoldSums, Gatherer, TrainingRows, logarithmic};
+use crate::fit::law::linearised::{Linearised, WeightRows, in_stretches, unit_gradient};
 use crate::fit::law::{LeastSquaresLaw, grids};
 use crate::law::prandtl_ishlinskii::PrandtlIshlinskii;
+use crate::law::series::Series;
 use crate::operator::play;
 use crate::optimise::non_negative::{Bounds, Penalty};
 use crate::options::classical::{ClassicalOptions, Sign};
@@ -33,6 +35,32 @@ impl LeastSquaresLaw for PrandtlIshlinskii {
             grid,
             weights[2..].iter().map(|weight| weight * slope).collect(),
         )
+    }
+
+    fn linearised_weights(&self, data: &Dataset, _: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (series, rows_each) = in_stretches(Series::all(data, None)?);
+        let count = 2 + self.weights().len();
+        let mut rows = WeightRows::new(count);
+        let mut features = vec![1.0; count];
+        for series in &series {
+            rows.begin();
+            let mut plays = vec![0.0; self.weights().len()];
+            for (sample, &y) in series.samples.iter().zip(&series.output) {
+                features[1] = sample.x;
+                for ((play, &r), feature) in plays.iter_mut().zip(self.thresholds()).zip(&mut features[2..]) {
+                    *play = play::follow(*play, sample.x, r);
+                    *feature = *play;
+                }
+                rows.add(&features, y);
+            }
+        }
+        let weights = [&[self.constant(), self.linear()], self.weights()].concat();
+        // A sign may bound the weight of the input and those of the plays; one that is 0 is at its bound.
+        let bounded: Vec<bool> = (0..count).map(|i| i >= PLAYS_BEGIN.start).collect();
+        // Constant and input, then a threshold, which is not fitted, and a weight of each play.
+        let mut gradients = vec![unit_gradient(count, 0), unit_gradient(count, 1)];
+        gradients.extend((2..count).flat_map(|play| [Vec::new(), unit_gradient(count, play)]));
+        Ok(Some(rows.linearised(&weights, &bounded, gradients, rows_each)))
     }
 }
 

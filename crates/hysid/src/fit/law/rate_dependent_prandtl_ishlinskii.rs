@@ -5,6 +5,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
@@ -46,22 +47,25 @@ impl Identify for RateDependentPrandtlIshlinskii {
                 OptionError::value("operators", operators, format!("choose 1 to {MOST_PLAYS}")).into()
             );
         }
-        let rate = options.rate.ok_or(Error::RateNeeded(Self::FACTS.name))?;
-        let series = Series::all(data, Some(rate))?;
-        let family = Plays::new(&series, options);
-        let series = thinned(series, Memory::Path);
+        let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
         let found = search(&family, &series, effort, observer, stop)?;
-        let mut law = family.law(&found.parameters);
-        (law.offset, law.spring) = (found.weights[0], found.weights[1]);
-        law.weights = match law.weights {
-            PlayWeights::Exponential { plays, tau, .. } => {
-                PlayWeights::Exponential { plays, rho: found.weights[2], tau }
-            }
-            PlayWeights::Free(_) => PlayWeights::Free(found.weights[2..].to_vec()),
-        };
+        let law = family.whole(&found.parameters, &found.weights);
         Ok(found.identified(law.validated()?))
     }
+
+    fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {
+        let (family, series) = posed(data, options)?;
+        Ok(Some(linearised::of_search(&family, &series, self)))
+    }
+}
+
+/// What is searched, and the rows that it is compared with.
+fn posed(data: &Dataset, options: &ClassicalOptions) -> Result<(Plays, Vec<Series>)> {
+    let rate = options.rate.ok_or(Error::RateNeeded(RateDependentPrandtlIshlinskii::FACTS.name))?;
+    let series = Series::all(data, Some(rate))?;
+    let family = Plays::new(&series, options);
+    Ok((family, thinned(series, Memory::Path)))
 }
 
 /// Rate-dependent plays, in the form of the search.
@@ -136,6 +140,39 @@ impl Plays {
             PlayWeights::Exponential { plays: self.operators, rho: 1.0, tau }
         };
         RateDependentPrandtlIshlinskii { offset: 0.0, spring: 0.0, spacing, thresholds, weights }
+    }
+}
+
+impl LawFamily for Plays {
+    type Law = RateDependentPrandtlIshlinskii;
+
+    fn whole(&self, searched: &[f64], weights: &[f64]) -> RateDependentPrandtlIshlinskii {
+        let mut law = self.law(searched);
+        (law.offset, law.spring) = (weights[0], weights[1]);
+        law.weights = match law.weights {
+            PlayWeights::Exponential { plays, tau, .. } => {
+                PlayWeights::Exponential { plays, rho: weights[2], tau }
+            }
+            PlayWeights::Free(_) => PlayWeights::Free(weights[2..].to_vec()),
+        };
+        law
+    }
+
+    fn searched(&self, law: &RateDependentPrandtlIshlinskii) -> Vec<f64> {
+        let steps = self.operators as f64;
+        let (largest, form) = match law.thresholds {
+            Thresholds::Linear { beta } => (law.spacing * steps, vec![beta * self.rate / self.input]),
+            Thresholds::Logarithmic { beta, lambda, epsilon } => {
+                let growth = lambda * self.rate.powf(epsilon);
+                (law.spacing * steps * beta.ln(), vec![beta, growth, epsilon])
+            }
+        };
+        let mut all = vec![largest / self.input];
+        all.extend(form);
+        if let PlayWeights::Exponential { tau, .. } = law.weights {
+            all.push(tau * law.spacing * steps);
+        }
+        all
     }
 }
 

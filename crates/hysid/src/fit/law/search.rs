@@ -79,7 +79,7 @@ impl Variable {
     }
 
     /// The parameter at `u`: `l + (h - l) u`, or `l (h/l)^u` on a logarithmic scale (theory.md (8.2)).
-    fn value(self, u: f64) -> f64 {
+    pub fn value(self, u: f64) -> f64 {
         let value = if self.logarithmic {
             self.low * (self.high / self.low).powf(u)
         } else {
@@ -89,7 +89,7 @@ impl Variable {
     }
 
     /// The inverse of [`Variable::value`].
-    fn place(self, value: f64) -> f64 {
+    pub fn place(self, value: f64) -> f64 {
         let u = if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
         } else {

@@ -15,6 +15,7 @@ use crate::data::metrics::Errors;
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
+use crate::fit::HeldOutRows;
 use crate::fit::network::checkpoint::Snapshot;
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
@@ -116,6 +117,7 @@ struct Stage<'o> {
 #[derive(Default)]
 struct Validation {
     errors: Option<Errors>,
+    held_out: Option<HeldOutRows>,
     /// Penalties do harm.
     is_exact: bool,
 }
@@ -215,7 +217,7 @@ impl<'a> Fitting<'a> {
         };
         let body = Predictor::Network { network, scaling };
         let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
-        Ok(Fitted::of(model, evaluations))
+        Ok(Fitted::of(model, evaluations).with_held_out(validation.held_out))
     }
 
     /// All starts on everything, thinned if it is much.
@@ -281,7 +283,7 @@ impl<'a> Fitting<'a> {
         let with_penalties: Vec<&OnFold> = best.iter().map(|&index| &on_folds[index]).collect();
         let onward: Vec<Beginning> =
             best.iter().enumerate().map(|(fold, &index)| onward(fold, &self.state.folds[index])).collect();
-        let validation = Validation { errors: self.pooled(&with_penalties, &folds), is_exact: false };
+        let validation = self.validation(&with_penalties, &folds, false)?;
         if self.asked.keeps_penalties() {
             return Ok(validation);
         }
@@ -296,7 +298,7 @@ impl<'a> Fitting<'a> {
             return Ok(validation);
         }
         if mean_error(&without) < WORTH * mean_error(&with_penalties) {
-            return Ok(Validation { errors: self.pooled(&without, &folds), is_exact: true });
+            return self.validation(&without, &folds, true);
         }
         Ok(validation)
     }
@@ -354,6 +356,13 @@ impl<'a> Fitting<'a> {
         let mut pooled = PooledErrors::default();
         runs.iter().zip(folds).for_each(|(run, fold)| pooled.add(&fold.held_out, &run.predicted));
         pooled.errors(&self.measured.names().output)
+    }
+
+    /// What one run on each fold gives for the rows held out.
+    fn validation(&self, runs: &[&OnFold], folds: &[Fold], is_exact: bool) -> Result<Validation> {
+        let predicted = folds.iter().zip(runs.iter().map(|run| run.predicted.as_slice()));
+        let held_out = HeldOutRows::of(self.measured.names(), predicted)?;
+        Ok(Validation { errors: self.pooled(runs, folds), held_out, is_exact })
     }
 
     /// The best starts on everything, further without penalties: the lowest objective of these.

@@ -58,6 +58,20 @@ impl<'a> Columns<'a> {
         }
     }
 
+    /// The sum of the features with these weights, row by row.
+    pub fn sum(&self, weights: &[f64]) -> Vec<f64> {
+        let mut sum = vec![0.0; self.columns.first().map_or(0, Vec::len)];
+        for (column, weight) in self.columns.iter().zip(weights) {
+            sum.iter_mut().zip(column).for_each(|(sum, feature)| *sum += weight * feature);
+        }
+        sum
+    }
+
+    /// The features, column by column.
+    pub fn into_columns(self) -> Vec<Vec<f64>> {
+        self.columns
+    }
+
     /// The weights that come closest to `target`. Of columns that were not finished the residual is beyond that
     /// of any other.
     pub fn project(&mut self, target: &[f64], non_negative: &[bool]) -> Projection {

@@ -1,0 +1,82 @@
+//! Arguments of `hysid cycles`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{ArgAction, Args};
+use hysid::diagnosis::cycles::{CycleOptions, Division, Field};
+use hysid::diagnosis::reversal_curves::SMOOTHING_FACTORS;
+
+use super::{ColumnOptions, Overwriting, RUN, fraction, number_within};
+
+const CYCLES_EXAMPLES: &str = "\
+Examples:
+  hysid cycles data.csv                  data.cycles.csv, page data.cycles.html
+  hysid cycles data.csv --field magnet -o loops.csv
+  hysid cycles model.json                cycles of the model, driven by Hysid
+
+Definitions of all figures: docs/cycles.md";
+
+/// Arguments of `cycles`.
+#[derive(Debug, Args)]
+#[command(after_help = CYCLES_EXAMPLES)]
+pub struct Cycles {
+    /// Tables of measured data, CSV with a header line; or one model file of `hysid fit`
+    #[arg(value_name = "DATA.csv|MODEL.json", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Table to write [default: name of the file with `.cycles.csv`; `-` is stdout]
+    ///
+    /// The default is in the current folder and named after the first file. The page has the same name with `.html`; the
+    /// table of first-order reversal curves, if there are any, has it with `.forc.csv`.
+    #[arg(short, long, value_name = "TABLE.csv")]
+    pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// What is read: structure, magnet, actuator or general (all) [default: by names and units of the columns]
+    #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
+    pub field: Option<Field>,
+    /// Where cycles begin: zero, mean or reversals [default: as suits the data]
+    ///
+    /// Where the input passes zero or its mean, always in the same direction; or at every other turning point.
+    #[arg(long, value_name = "WHERE", value_parser = named::<Division>, help_heading = "Method")]
+    pub divide: Option<Division>,
+    /// Ignore reversals of the input below this share of its range
+    #[arg(long, value_name = "FRACTION", default_value_t = CycleOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_short_help = true)]
+    pub smallest_reversal: f64,
+    /// Smooth branches before outputs are read from them
+    #[arg(long, value_name = "BOOL", default_value_t = CycleOptions::default().smoothing, action = ArgAction::Set, help_heading = "Method", hide_short_help = true)]
+    pub smoothing: bool,
+    /// Smoothing factor of first-order reversal curves, 1 to 10 [default: chosen by the noise]
+    #[arg(long, value_name = "N", value_parser = smoothing_factor, help_heading = "Method", hide_short_help = true)]
+    pub smoothing_factor: Option<usize>,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
+    /// Write no page
+    #[arg(long, help_heading = RUN)]
+    pub no_report: bool,
+}
+
+impl Cycles {
+    /// What the library is asked for.
+    pub fn options(&self) -> CycleOptions {
+        CycleOptions {
+            smallest_reversal: self.smallest_reversal,
+            smoothing: self.smoothing,
+            division: self.divide,
+            field: self.field,
+        }
+    }
+}
+
+fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, String> {
+    name.parse().map_err(|error: hysid::Error| error.to_string())
+}
+
+fn smoothing_factor(text: &str) -> Result<usize, String> {
+    number_within(text, &SMOOTHING_FACTORS)
+}

@@ -1,0 +1,172 @@
+//! `hysid cycles`: tables of what engineers read from hysteresis loops.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use hysid::data::summary::Summary;
+use hysid::diagnosis::cycles::CycleOptions;
+use hysid::options::chosen::RateChoice;
+use hysid_files::{Destination, Kind};
+
+use crate::arguments::{self, RateOption};
+use crate::columns::Roles;
+use crate::commands::model_from_bytes;
+use crate::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
+use crate::data::Data;
+use crate::files::{self, check_outputs};
+use crate::messages::{Usage, note, raw_results, results, warning};
+use crate::terminal::{clipped, listed};
+use crate::{Outcome, understanding};
+use hysid_tables::{Table, is_json};
+
+/// Runs the command.
+pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
+    let outputs = Outputs::of(arguments)?;
+    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    let mut contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    check_outputs(&outputs.table.iter().chain(&outputs.page).collect::<Vec<_>>(), &inputs)?;
+    let model = contents.iter().position(|content| is_json(content));
+    match (model, contents.len()) {
+        (Some(_), 1) => {
+            let path = &arguments.files[0];
+            let model = model_from_bytes(path, contents.remove(0))?;
+            for option in useless_for_models(arguments) {
+                warning(format_args!("the cycles of a model ignore {option}"));
+            }
+            let cycles = Cycles::of_model(path, &model, &arguments.options(), arguments.smoothing_factor)?;
+            understanding::print(&cycles.understood);
+            tell(arguments, &outputs, &inputs, &cycles)
+        }
+        (Some(place), _) => {
+            let model = inputs[place].display();
+            Err(Usage(format!("{model} is a model: give it alone, without further files")).into())
+        }
+        (None, _) => {
+            let data = read(arguments, &contents)?;
+            let understood = understanding::of_data(&data, &Summary::of(&data.set));
+            understanding::print(&understood);
+            warn_of_inputs(&data, arguments);
+            let cycles =
+                Cycles::of_data(&data, &arguments.options(), arguments.smoothing_factor, understood)?;
+            tell(arguments, &outputs, &inputs, &cycles)
+        }
+    }
+}
+
+/// Where the results go; no files if the table goes to stdout.
+struct Outputs {
+    table: Option<Destination>,
+    page: Option<Destination>,
+    curves: Option<Destination>,
+}
+
+impl Outputs {
+    fn of(arguments: &arguments::Cycles) -> Result<Self> {
+        let path = arguments.out.clone().unwrap_or_else(|| {
+            let mut name = arguments.files[0].file_stem().unwrap_or("data".as_ref()).to_os_string();
+            name.push(".cycles.csv");
+            PathBuf::from(name)
+        });
+        if path == Path::new("-") {
+            if arguments.json {
+                let advice =
+                    "--json prints to stdout in place of the table: name a file for the table with -o";
+                return Err(Usage(advice.into()).into());
+            }
+            return Ok(Self { table: None, page: None, curves: None });
+        }
+        let force = arguments.overwriting.force;
+        let begun = |path: PathBuf, beginning: &[u8]| {
+            Destination::new(path, Kind::Beginning(beginning.to_vec()), force)
+        };
+        let page =
+            (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
+        Ok(Self {
+            page,
+            curves: Some(begun(path.with_extension("forc.csv"), BEGINNING_OF_CURVES)),
+            table: Some(begun(path, BEGINNING)),
+        })
+    }
+}
+
+fn read(arguments: &arguments::Cycles, contents: &[Vec<u8>]) -> Result<Data> {
+    let reading = arguments.columns.reading.reading();
+    let tables =
+        arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes, &reading));
+    let tables: Vec<Table> = tables.collect::<Result<_>>()?;
+    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    Data::new(tables, roles, arguments.columns.reading.zero)
+}
+
+fn warn_of_inputs(data: &Data, arguments: &arguments::Cycles) {
+    if let [first, further @ ..] = data.roles.inputs.as_slice()
+        && !further.is_empty()
+    {
+        warning(format_args!(
+            "cycles of {} over {}; {} {} not used (choose with --input)",
+            clipped(&data.roles.output),
+            clipped(first),
+            listed(further),
+            if further.len() == 1 { "is" } else { "are" },
+        ));
+    }
+    if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
+        warning("cycles ignores --rate: it needs no rate");
+    }
+}
+
+/// Prints and writes the results.
+fn tell(
+    arguments: &arguments::Cycles,
+    outputs: &Outputs,
+    inputs: &[&Path],
+    cycles: &Cycles,
+) -> Result<Outcome> {
+    let table = cycles::csv(cycles)?;
+    let Some(destination) = &outputs.table else {
+        raw_results(&String::from_utf8(table)?)?;
+        return Ok(Outcome::Done);
+    };
+    let curves = cycles.curves.as_ref().zip(outputs.curves.as_ref());
+    if let Some((_, destination)) = curves {
+        check_outputs(&[destination], inputs)?;
+    }
+    files::write(destination, &table)?;
+    if let Some((curves, destination)) = curves {
+        files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
+    }
+    if let Some(page) = &outputs.page {
+        files::write_page(page, &cycles::page(cycles))?;
+    }
+    let path = |destination: &Destination| destination.path().to_path_buf();
+    let written = Files {
+        table: Some(path(destination)),
+        page: outputs.page.as_ref().map(path),
+        curves: curves.map(|(_, destination)| path(destination)),
+    };
+    match arguments.json {
+        true => raw_results(&cycles.json(&written)?)?,
+        false => results(&cycles::text(cycles))?,
+    }
+    for (what, path) in [("table", &written.table), ("FORC", &written.curves), ("page", &written.page)] {
+        if let Some(path) = path {
+            note(format_args!("{what:<8}{}", files::shown(path)));
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Options that were asked for and that concern data only.
+fn useless_for_models(arguments: &arguments::Cycles) -> Vec<&'static str> {
+    let (columns, defaults) = (&arguments.columns, CycleOptions::default());
+    let asked = [
+        ("--record", columns.record.is_some()),
+        ("--time", columns.time.is_some()),
+        ("--input", !columns.input.is_empty()),
+        ("--output", columns.output.is_some()),
+        ("--rate", columns.rate != RateOption::Choice(RateChoice::Auto)),
+        ("--smallest-reversal", arguments.smallest_reversal != defaults.smallest_reversal),
+        ("--smoothing", arguments.smoothing != defaults.smoothing),
+    ];
+    asked.into_iter().filter(|(_, asked)| *asked).map(|(option, _)| option).collect()
+}

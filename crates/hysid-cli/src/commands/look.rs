@@ -1,0 +1,106 @@
+//! `hysid look`: how tables are read, without a fit.
+
+use std::path::Path;
+
+use anyhow::Result;
+use hysid::data::summary::Summary;
+use hysid_files::{Destination, Kind};
+use serde::Serialize;
+
+use crate::Outcome;
+use crate::arguments::Look;
+use crate::columns::Roles;
+use crate::csv_text::csv_text;
+use crate::data::{Data, read_tables};
+use crate::files::{self, check_outputs};
+use crate::identification::data_warnings;
+use crate::looked::Looked;
+use crate::messages::{Usage, json_results, note, raw_results, results, warning};
+use crate::understanding;
+
+/// Lines about the data as a whole that are shown below the tables.
+const OF_THE_DATA: [&str; 3] = ["samples", "guessed", "turning"];
+
+/// Runs the command.
+pub fn run(arguments: &Look) -> Result<Outcome> {
+    let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns);
+    let looked: Vec<Looked> = tables.iter().map(|table| Looked::of(table, roles.as_ref().ok())).collect();
+    let data = roles.and_then(|roles| Data::new(tables, roles, arguments.columns.reading.zero));
+    let warnings =
+        data.as_ref().map_or_else(|_| Vec::new(), |data| data_warnings(data, &Summary::of(&data.set)));
+    let to_stdout = arguments.out.as_deref() == Some(Path::new("-"));
+    match (arguments.json, to_stdout) {
+        (true, true) => {
+            return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
+        }
+        (true, false) => json_results(&Printed::of(&looked, &data, &warnings))?,
+        (false, true) => {
+            text(&looked, data.as_ref().ok()).lines().for_each(|line| note(format_args!("{line}")))
+        }
+        (false, false) => results(&text(&looked, data.as_ref().ok()))?,
+    }
+    warnings.iter().for_each(warning);
+    let data = data?;
+    match &arguments.out {
+        Some(_) if to_stdout => raw_results(&csv_text(&data.set)?)?,
+        Some(out) => write(out, &data, arguments)?,
+        None => {}
+    }
+    Ok(Outcome::Done)
+}
+
+/// The object that `--json` prints.
+#[derive(Serialize)]
+struct Printed<'l> {
+    files: &'l [Looked],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    records: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    guessed: Option<&'static str>,
+    /// What is doubtful about the data.
+    warnings: &'l [String],
+    /// Why the data cannot be used as they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    problem: Option<String>,
+}
+
+impl<'l> Printed<'l> {
+    fn of(files: &'l [Looked], data: &Result<Data>, warnings: &'l [String]) -> Self {
+        match data {
+            Ok(data) => Self {
+                files,
+                records: Some(data.set.records().len()),
+                guessed: data.roles.guessed,
+                warnings,
+                problem: None,
+            },
+            Err(problem) => {
+                Self { files, records: None, guessed: None, warnings, problem: Some(format!("{problem:#}")) }
+            }
+        }
+    }
+}
+
+fn text(looked: &[Looked], data: Option<&Data>) -> String {
+    let mut text = looked.iter().map(Looked::text).collect::<Vec<_>>().join("\n");
+    let Some(data) = data else { return text };
+    text.push('\n');
+    let lines = understanding::of_data(data, &Summary::of(&data.set));
+    for (label, line) in lines.iter().filter(|(label, _)| OF_THE_DATA.contains(&label.as_str())) {
+        text += &understanding::labelled(label, line);
+    }
+    text
+}
+
+/// Writes the data as a table that is read without options.
+fn write(out: &Path, data: &Data, arguments: &Look) -> Result<()> {
+    let text = csv_text(&data.set)?;
+    let header = text.lines().next().unwrap_or_default().as_bytes().to_vec();
+    let out = Destination::new(out, Kind::Beginning(header), arguments.overwriting.force);
+    let inputs: Vec<&Path> = arguments.files.iter().map(|path| path.as_path()).collect();
+    check_outputs(&[&out], &inputs)?;
+    files::write(&out, text.as_bytes())?;
+    note(format_args!("table   {}", files::shown(out.path())));
+    Ok(())
+}

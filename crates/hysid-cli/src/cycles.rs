@@ -1,0 +1,185 @@
+//! What `hysid cycles` tells: tables as CSV, text for a terminal, one JSON object, and a page with pictures.
+
+mod curves;
+mod page;
+mod pictures;
+mod table;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+use hysid::Model;
+use hysid::data::record::Dataset;
+use hysid::diagnosis::cycles::{CycleOptions, CycleTable, FIGURES, Figure};
+use hysid::diagnosis::model::ModelCycles;
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid_document::count;
+use serde::Serialize;
+
+pub use curves::{BEGINNING as BEGINNING_OF_CURVES, csv as curves_csv};
+pub use page::page;
+pub use table::{BEGINNING, csv};
+pub use text::text;
+
+use crate::data::Data;
+use crate::quantities::Quantities;
+use crate::terminal;
+
+/// Cycles, and what they are cycles of.
+pub struct Cycles<'a> {
+    /// The file that the title of the page names.
+    pub file: String,
+    /// True for a model that was driven; false for measured data.
+    pub of_model: bool,
+    /// The loops.
+    pub data: std::borrow::Cow<'a, Dataset>,
+    /// The cycles in figures.
+    pub table: CycleTable,
+    /// First-order reversal curves, if there are any.
+    pub curves: Option<ReversalCurves>,
+    /// Names and units.
+    pub quantities: Quantities,
+    /// What was understood, label and text.
+    pub understood: Vec<(String, String)>,
+}
+
+impl<'a> Cycles<'a> {
+    /// The cycles of measured data.
+    pub fn of_data(
+        data: &'a Data,
+        options: &CycleOptions,
+        smoothing_factor: Option<usize>,
+        understood: Vec<(String, String)>,
+    ) -> Result<Self> {
+        let explained = |error| data.explain(error);
+        let table = CycleTable::of(&data.set, options).map_err(explained)?;
+        let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
+        let curves = ReversalCurves::of(&data.set, &of_curves).map_err(explained)?;
+        Ok(Self {
+            file: data.source.tables[0].file.clone(),
+            of_model: false,
+            quantities: Quantities::of(data.set.names()),
+            data: std::borrow::Cow::Borrowed(&data.set),
+            table,
+            curves,
+            understood,
+        })
+    }
+
+    /// The cycles that a model is driven through.
+    pub fn of_model(
+        path: &Path,
+        model: &Model,
+        options: &CycleOptions,
+        smoothing_factor: Option<usize>,
+    ) -> Result<Cycles<'static>> {
+        let file = path.display().to_string();
+        let driven =
+            ModelCycles::of(model, options, smoothing_factor).map_err(|error| anyhow!("{file}: {error}"))?;
+        let understood = understood(&file, model, &driven);
+        Ok(Cycles {
+            file,
+            of_model: true,
+            quantities: Quantities::of(driven.data.names()),
+            data: std::borrow::Cow::Owned(driven.data),
+            table: driven.table,
+            curves: driven.reversal_curves,
+            understood,
+        })
+    }
+
+    /// The figures of the field.
+    pub fn figures(&self) -> impl Iterator<Item = &'static Figure> + use<'_> {
+        FIGURES.iter().filter(|figure| figure.is_of(self.table.field))
+    }
+
+    /// All of it as one JSON object.
+    pub fn json(&self, files: &Files) -> Result<String> {
+        let named = |figure: &Figure| {
+            let named = self.quantities.as_figure(figure.name, figure.quantity);
+            (figure.name, hysid::data::unit::of_column(&named))
+        };
+        terminal::json(&Printed {
+            input: &self.quantities.input,
+            output: &self.quantities.output,
+            of_model: self.of_model,
+            table: files.table.as_deref(),
+            page: files.page.as_deref(),
+            curves: files.curves.as_deref(),
+            units: self.figures().map(named).collect(),
+            cycles: &self.table,
+            reversal_curves: self.curves.as_ref(),
+        })
+    }
+
+    /// What the cycles are, in a sentence without full stop.
+    pub fn headline(&self) -> String {
+        let complete = self.table.complete().count();
+        let rest = self.table.cycles.len() - complete;
+        let incomplete =
+            if rest == 0 { String::new() } else { format!(" and {}", count(rest, "incomplete part")) };
+        let whose = if self.of_model { " of the model, not of measured data" } else { "" };
+        format!(
+            "{}{incomplete}{whose}: {} over {}",
+            count(complete, "cycle"),
+            terminal::clipped(&self.quantities.output),
+            terminal::clipped(&self.quantities.input),
+        )
+    }
+}
+
+/// The files that are written, if they are.
+#[derive(Debug, Default)]
+pub struct Files {
+    /// The table of cycles.
+    pub table: Option<PathBuf>,
+    /// The page.
+    pub page: Option<PathBuf>,
+    /// The table of reversal curves.
+    pub curves: Option<PathBuf>,
+}
+
+/// What a model was driven with, label and text.
+fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, String)> {
+    let (low, high) = driven.probing.input;
+    let input = &model.names().inputs[0];
+    let value = |value: f64, name: &str| {
+        let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(name).as_deref());
+        format!("{:.4}{unit}", hysid::significant::Significant(value))
+    };
+    let mut lines = vec![
+        ("file".to_string(), file.to_string()),
+        ("model".to_string(), format!("{}: {} parameters", model.name().name(), model.parameters())),
+        (
+            "driven".to_string(),
+            format!(
+                "{input} from {:.4} to {}, the trained range",
+                hysid::significant::Significant(low),
+                value(high, input)
+            ),
+        ),
+    ];
+    for (name, &held) in model.names().inputs.iter().skip(1).zip(&driven.probing.held) {
+        lines.push(("input".into(), format!("{name}: held at {}", value(held, name))));
+    }
+    lines.extend(driven.probing.outside.clone().map(|outside| ("outside".to_string(), outside)));
+    lines
+}
+
+/// The object that `--json` prints.
+#[derive(Serialize)]
+struct Printed<'a> {
+    input: &'a str,
+    output: &'a str,
+    /// True for cycles of a model that was driven.
+    of_model: bool,
+    table: Option<&'a Path>,
+    page: Option<&'a Path>,
+    curves: Option<&'a Path>,
+    /// Unit of each figure of the field, where the units of the columns are known.
+    units: std::collections::BTreeMap<&'static str, Option<String>>,
+    #[serde(flatten)]
+    cycles: &'a CycleTable,
+    reversal_curves: Option<&'a ReversalCurves>,
+}

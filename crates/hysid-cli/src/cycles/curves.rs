@@ -1,0 +1,63 @@
+//! First-order reversal curves: their table as CSV, and what they are in words.
+
+use anyhow::Result;
+use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
+
+use super::Cycles;
+use crate::csv_text::header_line;
+use hysid_tables::shortest;
+
+/// How every table of reversal curves begins, by which it is known again.
+pub const BEGINNING: &[u8] = b"reversal_input";
+
+/// The nodes as CSV: Everett function and density over reversal input and input.
+pub fn csv(cycles: &Cycles, curves: &ReversalCurves) -> Result<Vec<u8>> {
+    let q = &cycles.quantities;
+    let names = [
+        q.as_input("reversal_input"),
+        q.as_input("input"),
+        q.as_output("output"),
+        q.as_output("everett"),
+        q.as_density("density"),
+        q.as_density("density_deviation"),
+    ];
+    let mut writer = csv::Writer::from_writer(header_line(b',', names.iter().map(String::as_str))?);
+    for node in &curves.nodes {
+        let given = [node.reversal_input, node.input, node.output, node.everett].map(shortest);
+        let densities =
+            [node.density, node.density_deviation].map(|value| value.map_or_else(String::new, shortest));
+        writer.write_record(given.into_iter().chain(densities))?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// Number of curves, smoothing and largest density in a sentence without full stop.
+/// `number` writes a number.
+pub fn summary(cycles: &Cycles, curves: &ReversalCurves, number: impl Fn(f64) -> String) -> String {
+    let whose = if cycles.of_model { " of the model" } else { "" };
+    let direction = if curves.rising { "rising" } else { "falling" };
+    let chosen = if curves.smoothing_is_chosen { "chosen by the noise" } else { "as asked for" };
+    let q = &cycles.quantities;
+    let with_unit = |value: f64, column: &str| hysid_document::unit::with(&number(value), column);
+    let largest = largest(curves).map_or_else(String::new, |node| {
+        format!(
+            "; the largest density is {} at the reversal input {} and the input {}",
+            with_unit(node.density.unwrap_or_default(), &q.as_density("density")),
+            number(node.reversal_input),
+            number(node.input)
+        )
+    });
+    format!(
+        "{} {direction} first-order reversal curves{whose}, {} apart, that end at {}; smoothing factor {} ({chosen}){largest}",
+        curves.curves.len(),
+        with_unit(curves.step, &q.input),
+        with_unit(curves.end, &q.input),
+        curves.smoothing_factor,
+    )
+}
+
+/// The node with the largest density.
+fn largest(curves: &ReversalCurves) -> Option<&ReversalNode> {
+    let known = curves.nodes.iter().filter(|node| node.density.is_some());
+    known.max_by(|a, b| a.density.unwrap_or(0.0).total_cmp(&b.density.unwrap_or(0.0)))
+}

@@ -1,0 +1,132 @@
+//! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
+
+use hysid_document::{Page, Part, Text, number, unit};
+
+use super::table::{has_backbone, notes, shown};
+use super::text::{begin, both_ends, present};
+use super::{Cycles, curves, pictures};
+
+/// Rows of a long table at each end.
+const AT_EACH_END: usize = 100;
+
+/// Figures that the page leaves to the file: when and where a cycle is, and the deviation of its energy.
+const PLACES: [&str; 4] = ["start_time", "input_min", "input_max", "energy_deviation"];
+
+/// The page of the cycles.
+pub fn page(cycles: &Cycles) -> Page {
+    let lead = match cycles.of_model {
+        true => {
+            format!("{}. Hysid drove the model through cycles over its trained range.", cycles.headline())
+        }
+        false => format!("{}. Cycles begin {}.", cycles.headline(), begin(cycles)),
+    };
+    let mut parts = vec![Part::Lead(Text::from(lead))];
+    parts.push(Part::section("Loops", [Part::chart(pictures::loops(cycles))]));
+    let figures = pictures::figures(cycles);
+    if !figures.is_empty() {
+        parts.push(Part::section("Figures over amplitude", [Part::Charts(figures)]));
+    }
+    if !cycles.table.cycles.is_empty() {
+        parts.push(table_section(cycles));
+    }
+    parts.extend(backbone_section(cycles));
+    parts.extend(losses_section(cycles));
+    parts.extend(curves_section(cycles));
+    parts.push(Part::section("How the data were read", [Part::Definitions(cycles.understood.clone())]));
+    Page { title: format!("Cycles: {}", cycles.file), parts }
+}
+
+fn table_section(cycles: &Cycles) -> Part {
+    let names: Vec<&str> =
+        cycles.figures().map(|figure| figure.name).filter(|name| !PLACES.contains(name)).collect();
+    let figures = present(cycles, &names);
+    let rows = cycles.table.cycles.len();
+    let mut parts = vec![Part::Table(shown(cycles, &figures, both_ends(rows, AT_EACH_END), unit::label))];
+    if cycles.table.cycles.iter().any(|row| !row.complete) {
+        parts.push(Part::note("* incomplete: the record begins or ends within the cycle."));
+    }
+    let notes = notes(cycles);
+    if !notes.is_empty() {
+        parts.push(Part::Folded("Notes".into(), vec![Part::warnings(&notes)]));
+    }
+    Part::section("Cycles", parts)
+}
+
+fn backbone_section(cycles: &Cycles) -> Option<Part> {
+    let points = &cycles.table.backbone;
+    if points.is_empty() || !has_backbone(cycles.table.field) {
+        return None;
+    }
+    let q = &cycles.quantities;
+    let headings = ["record".to_string(), "row".into(), unit::label(&q.input), unit::label(&q.output)];
+    let mut table = hysid_document::Table::new(headings);
+    for point in points {
+        table.push([
+            point.record.as_str().into(),
+            (point.row + 1).into(),
+            hysid_document::Cell::number(point.input, 4),
+            hysid_document::Cell::number(point.output, 4),
+        ]);
+    }
+    let words = "The turning points of the first cycle of each amplitude: those beyond all earlier ones in their \
+                 direction.";
+    Some(Part::section("Backbone", [Part::Table(table), Part::note(words)]))
+}
+
+fn losses_section(cycles: &Cycles) -> Option<Part> {
+    use hysid::diagnosis::cycles::Quantity;
+    let losses = pictures::at_several_frequencies(cycles);
+    if losses.is_empty() {
+        return None;
+    }
+    let q = &cycles.quantities;
+    let headings = [
+        q.as_input("amplitude"),
+        q.as_figure("frequency", Quantity::Frequency),
+        q.as_energy("loss per cycle"),
+        q.as_power("loss per time"),
+    ];
+    let headings = headings.iter().map(|name| unit::label(name)).chain(["cycles".to_string()]);
+    let mut table = hysid_document::Table::new(headings);
+    for loss in losses.into_iter().flatten() {
+        let cell = |value| hysid_document::Cell::number(value, 4);
+        table.push([
+            cell(loss.amplitude),
+            cell(loss.frequency),
+            cell(loss.energy),
+            cell(loss.power),
+            loss.cycles.into(),
+        ]);
+    }
+    let words = "Means of cycles whose amplitudes and frequencies differ by less than 5 %.";
+    Some(Part::section("Losses by frequency", [Part::Table(table), Part::note(words)]))
+}
+
+fn curves_section(cycles: &Cycles) -> Option<Part> {
+    let found = cycles.curves.as_ref()?;
+    let q = &cycles.quantities;
+    let mut parts = vec![
+        Part::paragraph(curves::summary(cycles, found, |value| number(value, 4)) + "."),
+        Part::chart(pictures::reversal_curves(cycles, found)),
+    ];
+    if found.nodes.iter().any(|node| node.density.is_some()) {
+        parts.push(Part::heading(format!("FORC diagram: {}", unit::label(&q.as_density("density")))));
+        parts.push(Part::chart(pictures::forc_diagram(cycles, found)));
+        parts.push(Part::note(format!(
+            "Half width: half the distance of input and reversal input, the half width of a relay; middle: their mean. \
+             Colours are classes of the density, with their limits in the legend; the density is the mixed derivative of \
+             parabolas over {} curves and as many steps of the input. Its largest magnitude is {}.",
+            2 * found.smoothing_factor + 1,
+            number(found.largest_density(), 3),
+        )));
+    }
+    parts.push(Part::heading(unit::label(&q.as_output("Everett function"))));
+    parts.push(Part::chart(pictures::everett(cycles, found)));
+    parts.push(Part::note(
+        "Half the change of the output from the reversal input to the input: what the relays between both switch.",
+    ));
+    if !found.notes.is_empty() {
+        parts.push(Part::warnings(&found.notes));
+    }
+    Some(Part::section("First-order reversal curves", parts))
+}

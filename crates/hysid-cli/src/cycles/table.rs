@@ -1,0 +1,111 @@
+//! The table of cycles: as CSV, and as rows for text and page.
+
+use anyhow::Result;
+use hysid::diagnosis::cycles::{CycleRow, Field, Figure, Quantity};
+use hysid_document::{Cell, Table};
+
+use super::Cycles;
+use crate::csv_text::header_line;
+use hysid_tables::shortest;
+
+/// How every table of cycles begins, by which it is known again.
+pub const BEGINNING: &[u8] = b"record,cycle,first_row,last_row,complete,";
+
+/// The table as CSV: rows count from 1 in their record, an empty cell is a figure that the data do not give.
+pub fn csv(cycles: &Cycles) -> Result<Vec<u8>> {
+    let fixed = ["record", "cycle", "first_row", "last_row", "complete"].map(String::from);
+    let named = |figure: &Figure| cycles.quantities.as_figure(figure.name, figure.quantity);
+    let figures: Vec<&Figure> = cycles.figures().collect();
+    let has_backbone = has_backbone(cycles.table.field);
+    let marks: &[&str] =
+        if has_backbone { &["backbone_peak", "backbone_valley", "notes"] } else { &["notes"] };
+    let names: Vec<String> = fixed
+        .into_iter()
+        .chain(figures.iter().map(|figure| named(figure)))
+        .chain(marks.iter().map(|mark| mark.to_string()))
+        .collect();
+    let mut writer = csv::Writer::from_writer(header_line(b',', names.iter().map(String::as_str))?);
+    for row in &cycles.table.cycles {
+        let place = [row.cycle, row.rows.0 + 1, row.rows.1 + 1].map(|number| number.to_string());
+        let values = figures.iter().map(|figure| (figure.of)(row).map_or_else(String::new, shortest));
+        let marks = [row.backbone_peak, row.backbone_valley].map(|mark| yes(mark).to_string());
+        let cells = std::iter::once(row.record.clone())
+            .chain(place)
+            .chain([yes(row.complete).to_string()])
+            .chain(values)
+            .chain(marks.into_iter().filter(|_| has_backbone))
+            .chain([row.notes.join("; ")]);
+        writer.write_record(cells)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+fn yes(is: bool) -> &'static str {
+    if is { "yes" } else { "no" }
+}
+
+/// True if the tables of the field mark the points of the backbone.
+pub fn has_backbone(field: Field) -> bool {
+    matches!(field, Field::Structure | Field::General)
+}
+
+/// A name for each row: its number, with its record where there are several, and a star if it is incomplete.
+pub fn row_name(cycles: &Cycles, row: &CycleRow) -> String {
+    let star = if row.complete { "" } else { "*" };
+    match cycles.data.records().len() {
+        1 => format!("{}{star}", row.cycle),
+        _ => format!("{}/{}{star}", row.record, row.cycle),
+    }
+}
+
+/// A table of some figures of some rows. `label` makes a heading of the name of a quantity with its unit; of the numbers,
+/// four digits are shown.
+pub fn shown(
+    cycles: &Cycles,
+    figures: &[&Figure],
+    places: impl Iterator<Item = usize>,
+    label: impl Fn(&str) -> String,
+) -> Table {
+    let heading = |figure: &&Figure| {
+        let own = match figure.name {
+            // What is lost in a cycle is the loss of a magnet.
+            "energy" if cycles.table.field == Field::Magnet => "loss per cycle",
+            _ => figure.label,
+        };
+        let per = if figure.quantity == Quantity::Creep { " per decade" } else { "" };
+        let named = cycles.quantities.as_figure(own.trim_end_matches(per), figure.quantity);
+        label(&named) + per
+    };
+    let mut table = Table::new(std::iter::once("cycle".to_string()).chain(figures.iter().map(heading)));
+    let mut next = 0;
+    for place in places {
+        if place > next {
+            table.push(["…".into(), Cell::Text(format!("{} more", place - next))]);
+        }
+        let row = &cycles.table.cycles[place];
+        let values = figures.iter().map(|figure| Cell::number((figure.of)(row), 4));
+        table.push(std::iter::once(Cell::Text(row_name(cycles, row))).chain(values));
+        next = place + 1;
+    }
+    table
+}
+
+/// Notes, each with the cycles that it is of.
+pub fn notes(cycles: &Cycles) -> Vec<String> {
+    let mut all: Vec<(&str, Vec<String>)> = Vec::new();
+    for row in &cycles.table.cycles {
+        for note in &row.notes {
+            let name = row_name(cycles, row);
+            match all.iter_mut().find(|(known, _)| known == note) {
+                Some((_, rows)) => rows.push(name),
+                None => all.push((note, vec![name])),
+            }
+        }
+    }
+    let said = |(note, rows): (&str, Vec<String>)| match rows.len() {
+        1 => format!("cycle {}: {note}", rows[0]),
+        count if count == cycles.table.cycles.len() => format!("all cycles: {note}"),
+        _ => format!("cycles {}: {note}", crate::terminal::listed(&rows)),
+    };
+    all.into_iter().map(said).chain(cycles.table.notes.iter().cloned()).collect()
+}

@@ -1,0 +1,157 @@
+//! The cycles on a terminal: the main figures, both ends of a long table, and what to know of them.
+
+use hysid::diagnosis::cycles::{Field, Figure};
+use hysid::significant::Significant;
+use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
+use hysid_document::{Cell, Part, Table, count};
+
+use super::Cycles;
+use super::table::{notes, shown};
+use crate::quantities::text_label;
+
+/// Rows shown at each end of a long table.
+const AT_EACH_END: usize = 8;
+
+/// Cycles that are said of the losses at most.
+const MOST_LOSSES: usize = 12;
+
+/// The main figures of a field.
+fn main_figures(field: Field) -> &'static [&'static str] {
+    match field {
+        Field::Structure => &[
+            "amplitude",
+            "energy",
+            "damping_percent",
+            "secant_stiffness",
+            "residual_after_peak",
+            "residual_after_valley",
+        ],
+        Field::Magnet => &["amplitude", "frequency", "coercive_input", "remanent_output", "energy", "power"],
+        Field::Actuator => {
+            &["amplitude", "mean_input", "width", "width_percent", "creep", "creep_per_decade"]
+        }
+        Field::General => {
+            &["amplitude", "mean_input", "energy", "width", "coercive_input", "remanent_output"]
+        }
+    }
+}
+
+/// All of it within 80 columns.
+pub fn text(cycles: &Cycles) -> String {
+    let mut blocks = vec![lines(&format!(
+        "{}. Field: {}; cycles begin {}.",
+        cycles.headline(),
+        cycles.table.field,
+        begin(cycles)
+    ))];
+    if !cycles.table.cycles.is_empty() {
+        blocks.push(rendered(&[Part::Table(main_table(cycles))]));
+    }
+    blocks.extend(losses(cycles));
+    blocks.extend(backbone(cycles));
+    blocks.extend(curves(cycles));
+    let notes: String = notes(cycles).iter().map(|note| indented(&format!("- {note}"), 2)).collect();
+    if !notes.is_empty() {
+        blocks.push(format!("notes\n{notes}"));
+    }
+    blocks.join("\n")
+}
+
+fn lines(text: &str) -> String {
+    wrapped(text, WIDTH).join("\n") + "\n"
+}
+
+/// Where cycles begin, in words.
+pub fn begin(cycles: &Cycles) -> &'static str {
+    use hysid::diagnosis::cycles::Division;
+    match cycles.table.division {
+        Division::Zero => "where the input passes 0",
+        Division::Mean => "where the input passes its mean",
+        Division::Reversals => "at turning points",
+    }
+}
+
+/// Figures of the field that any cycle has, in the order of the list.
+pub fn present(cycles: &Cycles, names: &[&str]) -> Vec<&'static Figure> {
+    let has = |figure: &&Figure| cycles.table.cycles.iter().any(|row| (figure.of)(row).is_some());
+    let find = |name: &&str| hysid::diagnosis::cycles::FIGURES.iter().find(|figure| figure.name == *name);
+    names.iter().filter_map(find).filter(has).collect()
+}
+
+/// Places of the rows at both ends.
+pub fn both_ends(rows: usize, at_each_end: usize) -> impl Iterator<Item = usize> {
+    // Leaving out a single one saves nothing.
+    (0..rows).filter(move |place| {
+        rows <= 2 * at_each_end + 2 || *place < at_each_end || *place + at_each_end >= rows
+    })
+}
+
+fn main_table(cycles: &Cycles) -> Table {
+    let mut figures = present(cycles, main_figures(cycles.table.field));
+    if cycles.data.records().len() > 1 {
+        // Names of records need the room of a figure or two.
+        figures.truncate(4);
+    }
+    let places = both_ends(cycles.table.cycles.len(), AT_EACH_END);
+    let mut table = shown(cycles, &figures, places, text_label);
+    for cell in table.rows.iter_mut().flatten() {
+        *cell = Cell::Text(cell.ascii());
+    }
+    table
+}
+
+/// Losses at several frequencies.
+fn losses(cycles: &Cycles) -> Option<String> {
+    let losses: Vec<_> = super::pictures::at_several_frequencies(cycles).into_iter().flatten().collect();
+    if losses.is_empty() {
+        return None;
+    }
+    let q = &cycles.quantities;
+    let figure = |name: &str, quantity| text_label(&q.as_figure(name, quantity));
+    use hysid::diagnosis::cycles::Quantity::{Energy, Frequency, Input, Power};
+    let mut table = Table::new([
+        figure("amplitude", Input),
+        figure("frequency", Frequency),
+        figure("loss per cycle", Energy),
+        figure("loss per time", Power),
+        "cycles".into(),
+    ]);
+    for loss in losses.iter().take(MOST_LOSSES) {
+        let number = |value: f64| Cell::Text(format!("{:.4}", Significant(value)));
+        table.push([
+            number(loss.amplitude),
+            number(loss.frequency),
+            number(loss.energy),
+            number(loss.power),
+            loss.cycles.into(),
+        ]);
+    }
+    let more = losses.len().saturating_sub(MOST_LOSSES);
+    let more = if more > 0 { format!("and {more} more\n") } else { String::new() };
+    Some(format!("losses by amplitude and frequency\n{}{more}", rendered(&[Part::Table(table)])))
+}
+
+fn backbone(cycles: &Cycles) -> Option<String> {
+    let points = &cycles.table.backbone;
+    let strongest = points.iter().max_by(|a, b| a.output.abs().total_cmp(&b.output.abs()))?;
+    let at = |value: f64, name: &str| {
+        let unit = hysid::data::unit::suffix(hysid::data::unit::of_column(name).as_deref());
+        format!("{:.4}{unit}", Significant(value))
+    };
+    Some(lines(&format!(
+        "backbone: {}; the largest output is {} at {}",
+        count(points.len(), "point"),
+        at(strongest.output, &cycles.quantities.output),
+        at(strongest.input, &cycles.quantities.input),
+    )))
+}
+
+fn curves(cycles: &Cycles) -> Option<String> {
+    let curves = cycles.curves.as_ref()?;
+    let mut text =
+        lines(&(super::curves::summary(cycles, curves, |value| format!("{:.4}", Significant(value))) + "."));
+    for note in &curves.notes {
+        text += &indented(&format!("- {note}"), 2);
+    }
+    Some(text)
+}

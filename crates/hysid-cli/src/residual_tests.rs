@@ -1,0 +1,139 @@
+//! Tests of the residual of a run over a table, and what they say on a terminal.
+
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::data::warning::Warning;
+use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, ResidualVerdict, Residuals};
+use hysid::model::Model;
+use hysid_document::plain::{aligned, indented};
+
+use crate::table_run::Simulated;
+
+/// How far statements stand in under their verdict.
+const INDENT: usize = 4;
+
+/// Gathers the rows of a run, record by record. They are kept: memory grows with the table.
+#[derive(Default)]
+pub struct Gatherer {
+    records: Vec<Gathered>,
+    has_ended: bool,
+}
+
+#[derive(Default)]
+struct Gathered {
+    time: Vec<f64>,
+    inputs: Vec<Vec<f64>>,
+    rate: Vec<f64>,
+    measured: Vec<f64>,
+    simulated: Vec<f64>,
+}
+
+impl Gatherer {
+    /// Takes rows that are simulated.
+    pub fn take(&mut self, rows: &Simulated<'_>) {
+        if self.records.is_empty() || self.has_ended {
+            self.records.push(Gathered::default());
+        }
+        self.has_ended = rows.ends_record;
+        let Some(record) = self.records.last_mut() else { return };
+        let (drive, count) = (rows.drive(), rows.measured.len());
+        let some = |column: &Vec<f64>| column.iter().take(count).copied().collect::<Vec<f64>>();
+        record.time.extend(some(&drive.time));
+        record.rate.extend(some(&drive.rate));
+        record.inputs.resize(drive.inputs.len(), Vec::new());
+        record.inputs.iter_mut().zip(&drive.inputs).for_each(|(input, from)| input.extend(some(from)));
+        record.measured.extend(rows.measured);
+        record.simulated.extend(&rows.prediction.output);
+    }
+
+    /// The tests; `warnings` tell whether the model was trained on the data.
+    ///
+    /// # Errors
+    /// Too few scored rows.
+    pub fn tests(self, model: &Model, output: &str, warnings: &[Warning]) -> hysid::Result<Residuals> {
+        let (mut records, mut simulated) = (Vec::new(), Vec::new());
+        for (index, gathered) in
+            self.records.into_iter().filter(|record| !record.measured.is_empty()).enumerate()
+        {
+            let Gathered { time, inputs, rate, measured, simulated: run } = gathered;
+            let mut record = Record::new(format!("record {}", index + 1), inputs, measured)?;
+            if !time.is_empty() {
+                record = record.with_time(time)?;
+            }
+            if !rate.is_empty() {
+                record = record.with_given_rate(rate)?;
+            }
+            records.push(record);
+            simulated.push(run);
+        }
+        let names = ColumnNames { output: output.into(), ..model.names().clone() };
+        let is_training = warnings.iter().any(|warning| matches!(warning, Warning::TrainedOn { .. }));
+        let options =
+            ResidualOptions { uses_rate: model.rate().is_some(), is_training, ..ResidualOptions::default() };
+        Residuals::of(&Dataset::new(names, records)?, &simulated, &options)
+    }
+}
+
+/// The verdicts in a table, under each what was found.
+pub fn text(residuals: &Residuals) -> String {
+    let mut rows = vec![["test of the residual", "verdict", "p"].map(String::from).to_vec()];
+    rows.extend(residuals.findings.iter().map(cells));
+    let mut lines = left(&rows).into_iter();
+    let mut text = lines.next().unwrap_or_default() + "\n";
+    for (line, finding) in lines.zip(&residuals.findings) {
+        text += &(line + "\n" + &indented(&finding.statement, INDENT));
+        if let Some(advice) = &finding.advice {
+            text += &indented(advice, INDENT);
+        }
+    }
+    text += &residuals
+        .caution
+        .as_ref()
+        .map_or_else(String::new, |caution| indented(&format!("Note: {caution}"), 0));
+    let tested = match residuals.rows == residuals.scored {
+        true => format!("{} rows", residuals.rows),
+        false => format!("{} of {} rows, in evenly spaced stretches", residuals.rows, residuals.scored),
+    };
+    let words = format!(
+        "(residual: measured minus simulated output, {tested}; p: probability of as much without structure, corrected for \
+         the number of tests)"
+    );
+    text + &indented(&words, 0)
+}
+
+/// Columns with their text at the left.
+fn left(rows: &[Vec<String>]) -> Vec<String> {
+    let width = rows.iter().map(|row| row[0].chars().count()).max().unwrap_or_default();
+    let padded: Vec<Vec<String>> =
+        rows.iter().map(|row| vec![format!("{:<width$}  {:<12}", row[0], row[1]), row[2].clone()]).collect();
+    aligned(&padded)
+}
+
+fn cells(finding: &ResidualFinding) -> Vec<String> {
+    vec![name(finding), verdict(finding.verdict).into(), p_value(finding)]
+}
+
+/// The test, with the input that it is about.
+pub fn name(finding: &ResidualFinding) -> String {
+    match &finding.input {
+        None => finding.test.name().into(),
+        Some(input) => format!("correlation with {}", crate::terminal::clipped(input)),
+    }
+}
+
+/// A verdict in words.
+pub fn verdict(verdict: ResidualVerdict) -> &'static str {
+    match verdict {
+        ResidualVerdict::Found => "found",
+        ResidualVerdict::NotFound => "not found",
+        ResidualVerdict::NotTestable => "not testable",
+    }
+}
+
+/// The corrected p-value.
+pub fn p_value(finding: &ResidualFinding) -> String {
+    match finding.adjusted_p_value {
+        None => "-".into(),
+        Some(p) if p < 0.001 => "<0.001".into(),
+        Some(p) => format!("{p:.3}"),
+    }
+}

@@ -1,0 +1,74 @@
+//! Units of quantities that are made of others: energies, powers and quotients.
+
+use super::quantity::{Dimension, ENERGY, ENERGY_DENSITY, POWER, POWER_DENSITY, Quantity};
+
+/// Prefixes and their factors.
+const PREFIXES: [(&str, f64); 5] = [("u", 1e-6), ("m", 1e-3), ("", 1.0), ("k", 1e3), ("M", 1e6)];
+
+/// Units with names of their own. A prefix stands before them.
+const NAMED: [(&str, Dimension); 4] =
+    [("J", ENERGY), ("J/m3", ENERGY_DENSITY), ("W", POWER), ("W/m3", POWER_DENSITY)];
+
+/// The unit of the area of a loop, which is the product of the units of output and input: `J` of kN and mm, `J/m3` of T
+/// and A/m, and `lbf inch` where the product is no decimal multiple of a unit of energy. The number does not change.
+pub fn energy(output: &str, input: &str) -> String {
+    let product = Quantity::of(output).zip(Quantity::of(input)).map(|(a, b)| a.times(b, 1));
+    product.and_then(name).unwrap_or_else(|| format!("{output} {input}"))
+}
+
+/// The unit of an energy over time: `W` of J and s, `W/m3` of J/m3 and s.
+pub fn power(energy: &str, time: &str) -> String {
+    let over = Quantity::of(energy).zip(Quantity::of(time)).map(|(a, b)| a.times(b, -1));
+    over.and_then(name).unwrap_or_else(|| quotient(energy, time))
+}
+
+/// The unit of a quotient: `kN/mm`, `T/(A/m)`.
+pub fn quotient(above: &str, below: &str) -> String {
+    if below.contains(['/', ' ']) { format!("{above}/({below})") } else { format!("{above}/{below}") }
+}
+
+/// The name of a unit that is a decimal multiple of an energy or a power. Angles count as numbers.
+fn name(quantity: Quantity) -> Option<String> {
+    let quantity = quantity.without_angles();
+    let (unit, _) = NAMED.into_iter().find(|(_, dimension)| *dimension == quantity.dimension)?;
+    let is_near = |factor: f64| (quantity.factor / factor - 1.0).abs() < 1e-9;
+    let (prefix, _) = PREFIXES.into_iter().find(|(_, factor)| is_near(*factor))?;
+    Some(format!("{prefix}{unit}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_have_the_name_of_their_unit_where_the_number_stays() {
+        for (output, input, expected) in [
+            ("kN", "mm", "J"),
+            ("N", "mm", "mJ"),
+            ("kN", "m", "kJ"),
+            ("T", "A/m", "J/m3"),
+            ("T", "kA/m", "kJ/m3"),
+            ("uC/cm2", "kV/cm", "kJ/m3"),
+            ("kN m", "rad", "kJ"),
+            ("kN m", "mrad", "J"),
+            ("mWb", "A", "mJ"),
+            ("um", "V", "um V"),
+            ("lbf", "inch", "lbf inch"),
+            ("G", "Oe", "G Oe"),
+            ("MPa", "percent", "MPa percent"),
+            ("ticks", "mm", "ticks mm"),
+        ] {
+            assert_eq!(energy(output, input), expected, "{output} {input}");
+        }
+    }
+
+    #[test]
+    fn powers_are_energies_over_time() {
+        assert_eq!(power("J", "s"), "W");
+        assert_eq!(power("J/m3", "s"), "W/m3");
+        assert_eq!(power("J/m3", "ms"), "kW/m3");
+        assert_eq!(power("J", "min"), "J/min");
+        assert_eq!(power("um V", "s"), "um V/s");
+        assert_eq!(quotient("T", "A/m"), "T/(A/m)");
+    }
+}

@@ -1,0 +1,274 @@
+//! How a record is divided into cycles.
+//!
+//! ```text
+//! zero, mean    from one passing of a level to the next in the same direction; the level is 0, or the median of the
+//!               middles of the half cycles
+//! reversals     from one turning point of the input to the next but one
+//! ```
+//!
+//! Turning points are those of the diagnosis: reversals below a share of the range, and below what noise can do, are none.
+//! What is left at the beginning and at the end of a record is a part of its own, marked as incomplete.
+
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use super::CLOSED;
+use super::field::Field;
+use super::path::{range, share};
+use crate::branch::{Branch, BranchSet};
+use crate::significance::median;
+
+/// Where cycles begin and end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Division {
+    /// Where the input passes 0, always in the same direction.
+    Zero,
+    /// Where the input passes the mean of its cycles, always in the same direction.
+    Mean,
+    /// At every other turning point.
+    Reversals,
+}
+
+impl Division {
+    /// All divisions.
+    pub const ALL: [Self; 3] = [Self::Zero, Self::Mean, Self::Reversals];
+
+    /// The name, such as `zero`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Zero => "zero",
+            Self::Mean => "mean",
+            Self::Reversals => "reversals",
+        }
+    }
+}
+
+impl fmt::Display for Division {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Division {
+    type Err = hysid_core::Error;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Self::ALL.into_iter().find(|division| division.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).to_vec();
+            hysid_core::Error::UnknownName { what: "division", name: name.into(), known }
+        })
+    }
+}
+
+/// A half cycle passes a level if it goes on to both sides by this share of its way.
+const BEYOND: f64 = 0.1;
+
+/// A record of whole cycles may end a step before the level is passed again; next to a turning point steps are shorter.
+pub(super) const LAST_STEP: f64 = 1.25;
+
+/// Such a step is at most this share of the way since the last turning point.
+const LARGEST_STEP: f64 = 0.5;
+
+/// Share of the half cycles that pass the level of a division.
+const MOST: f64 = 0.5;
+
+/// A record that oscillates about its mean begins this close to it, as a share of the swing.
+const NEAR_THE_MEAN: f64 = 0.1;
+
+/// Turning points of one side that scatter less than this share of those of the other side are the ends of the cycles.
+const STEADIER: f64 = 0.5;
+
+/// The division that suits data of a field: magnets and actuators from turning point to turning point, so that a cycle has
+/// both branches of its loop; other data from zero to zero, or from mean to mean, if most half cycles pass it.
+pub(super) fn choose(survey: &BranchSet, field: Field) -> Division {
+    if matches!(field, Field::Magnet | Field::Actuator) {
+        return Division::Reversals;
+    }
+    let records = 0..survey.data.records().len();
+    let pass = |level: &dyn Fn(usize) -> f64| {
+        let halves = records.clone().flat_map(|record| {
+            half_cycles(survey.of_record(record)).iter().map(move |branch| (record, branch))
+        });
+        let (passing, all) = halves.fold((0, 0), |(passing, all), (record, branch)| {
+            (passing + usize::from(is_beyond(branch, level(record))), all + 1)
+        });
+        passing as f64 > MOST * all as f64
+    };
+    if pass(&|_| 0.0) {
+        return Division::Zero;
+    }
+    let means: Vec<f64> = records.clone().map(|record| mean(survey.of_record(record))).collect();
+    let begins_there = records.clone().all(|record| {
+        let branches = survey.of_record(record);
+        let swing = half_cycles(branches).iter().map(Branch::travel).fold(0.0, f64::max);
+        branches.first().is_some_and(|first| (first.from - means[record]).abs() <= NEAR_THE_MEAN * swing)
+    });
+    if begins_there && pass(&|record| means[record]) { Division::Mean } else { Division::Reversals }
+}
+
+/// The branches between two turning points; all of them, if there are none.
+fn half_cycles(branches: &[Branch]) -> &[Branch] {
+    if branches.len() > 2 { &branches[1..branches.len() - 1] } else { branches }
+}
+
+fn is_beyond(branch: &Branch, level: f64) -> bool {
+    let (low, high) = (branch.from.min(branch.to), branch.from.max(branch.to));
+    let margin = BEYOND * branch.travel();
+    low <= level - margin && high >= level + margin
+}
+
+/// The median of the middles of the half cycles.
+fn mean(branches: &[Branch]) -> f64 {
+    let mut middles: Vec<f64> =
+        half_cycles(branches).iter().map(|branch| 0.5 * (branch.from + branch.to)).collect();
+    if middles.is_empty() { 0.0 } else { median(&mut middles) }
+}
+
+/// A cycle, or what is left of one at an end of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Span {
+    /// Where it begins: a row and a share of the step to the next.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Which part of a cycle it is.
+    pub part: SpanPart,
+    /// Its branches among those of the record: those with a step of it.
+    pub branches: Range<usize>,
+}
+
+/// What a part of a record is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SpanPart {
+    /// A whole cycle.
+    Cycle,
+    /// What comes before the first whole cycle.
+    Beginning,
+    /// What comes after the last whole cycle.
+    End,
+    /// All of a record without any whole cycle.
+    All,
+}
+
+/// The level whose passings divide a record; `None` for turning points.
+pub(super) fn level(survey: &BranchSet, record: usize, division: Division) -> Option<f64> {
+    match division {
+        Division::Zero => Some(0.0),
+        Division::Mean => Some(mean(survey.of_record(record))),
+        Division::Reversals => None,
+    }
+}
+
+/// The cycles of a record and its incomplete parts, in order. Parts over which the input goes less than the smallest
+/// reversal are left out.
+pub(super) fn divide(survey: &BranchSet, record: usize, division: Division) -> Vec<Span> {
+    let branches = survey.of_record(record);
+    let (Some(first), Some(last)) = (branches.first(), branches.last()) else { return Vec::new() };
+    let bounds = match level(survey, record, division) {
+        Some(level) => passings(survey, record, level),
+        None => reversals(survey, branches),
+    };
+    let (begin, end) = (first.rows.start as f64, (last.rows.end - 1) as f64);
+    let mut spans = Vec::new();
+    let mut push = |from: f64, to: f64, part: SpanPart| {
+        let overlaps =
+            |branch: &Branch| (branch.rows.start as f64) < to && (branch.rows.end - 1) as f64 > from;
+        let start = branches.iter().position(overlaps).unwrap_or(0);
+        let count = branches[start..].iter().take_while(|branch| overlaps(branch)).count();
+        let x = &survey.data.records()[record].inputs()[0];
+        let rows = &x[from.floor() as usize..=to.ceil() as usize];
+        let (low, high) = range(rows);
+        if part == SpanPart::Cycle || high - low >= survey.smallest_reversal {
+            spans.push(Span { from, to, part, branches: start..start + count });
+        }
+    };
+    let cycles: Vec<(f64, f64)> =
+        bounds.iter().zip(bounds.iter().skip(2)).step_by(2).map(|(&from, &to)| (from, to)).collect();
+    match (cycles.first(), cycles.last()) {
+        (Some(&(from, _)), Some(&(_, to))) => {
+            if from > begin {
+                push(begin, from, SpanPart::Beginning);
+            }
+            cycles.iter().for_each(|&(from, to)| push(from, to, SpanPart::Cycle));
+            if to < end {
+                push(to, end, SpanPart::End);
+            }
+        }
+        _ => push(begin, end, SpanPart::All),
+    }
+    spans
+}
+
+/// Half cycles begin and end where the input passes a level. A record that begins or ends near it begins or ends there.
+fn passings(survey: &BranchSet, record: usize, level: f64) -> Vec<f64> {
+    let branches = survey.of_record(record);
+    let x = &survey.data.records()[record].inputs()[0];
+    let (last, end) = (branches.len() - 1, x.len() - 1);
+    let is_near = |branch: &Branch, x: f64| (x - level).abs() <= tolerance(survey, branch.travel());
+    let is_a_step_away = || {
+        let (step, missing) = (x[end] - x[end - 1], level - x[end]);
+        (0.0..=LAST_STEP).contains(&(missing / step))
+            && missing.abs() <= LARGEST_STEP * branches[last].travel()
+    };
+    let begins_there = is_near(&branches[0], branches[0].from);
+    let ends_there = is_near(&branches[last], branches[last].to) || is_a_step_away();
+    let mut places = Vec::new();
+    if begins_there {
+        places.push(branches[0].rows.start as f64);
+    }
+    for (number, branch) in branches.iter().enumerate() {
+        let taken = (begins_there && number == 0) || (ends_there && number == last);
+        if !taken && (branch.from - level) * (branch.to - level) < 0.0 {
+            let rows = &x[branch.rows.clone()];
+            let is_passed = |pair: &[f64]| (pair[0] - level) * (pair[1] - level) <= 0.0 && pair[0] != pair[1];
+            let row = rows.windows(2).position(is_passed).expect("the branch has both sides of the level");
+            places.push((branch.rows.start + row) as f64 + share(rows, row, level));
+        }
+    }
+    if ends_there && last > 0 {
+        places.push((branches[last].rows.end - 1) as f64);
+    }
+    places
+}
+
+/// Half cycles begin and end at turning points, every other of which is the end of a cycle: on the side where they scatter
+/// less. A record that begins or ends at the same input as its neighbours begins or ends there.
+fn reversals(survey: &BranchSet, branches: &[Branch]) -> Vec<f64> {
+    let mut inputs = vec![branches[0].from];
+    inputs.extend(branches.iter().map(|branch| branch.to));
+    let mut rows = vec![branches[0].rows.start as f64];
+    rows.extend(branches.iter().map(|branch| (branch.rows.end - 1) as f64));
+    let last = branches.len();
+    let is_same = |a: usize, b: usize| {
+        (inputs[a] - inputs[b]).abs() <= tolerance(survey, branches[a].travel().max(branches[b - 1].travel()))
+    };
+    let begins = last >= 2 && is_same(0, 2);
+    let ends = last >= 2 && is_same(last - 2, last);
+    let scatter = |parity: usize| {
+        let side = (1..last).filter(|place| place % 2 == parity).map(|place| inputs[place]);
+        let (count, low, high) = side.fold((0, f64::INFINITY, f64::NEG_INFINITY), |(count, low, high), x| {
+            (count + 1, f64::min(low, x), f64::max(high, x))
+        });
+        (count >= 2).then_some(high - low)
+    };
+    let parity = match (scatter(0), scatter(1)) {
+        (Some(even), Some(odd)) if even < STEADIER * odd && odd > survey.same_input() => 0,
+        (Some(even), Some(odd)) if odd < STEADIER * even && even > survey.same_input() => 1,
+        _ => usize::from(!begins),
+    };
+    let first = match (parity, begins) {
+        (1, _) => 1,
+        (_, true) => 0,
+        _ => 2,
+    };
+    (first..=last).filter(|&place| place < last || ends).map(|place| rows[place]).collect()
+}
+
+/// Inputs at the ends of a cycle that are closer than this are the same.
+fn tolerance(survey: &BranchSet, swing: f64) -> f64 {
+    CLOSED * swing + 2.0 * survey.input_noise.deviation()
+}

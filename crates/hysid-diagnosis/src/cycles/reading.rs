@@ -1,0 +1,68 @@
+//! What is read from the branches of a loop: where they pass a level, how far they are apart, the slope of a secant.
+
+use super::CLOSED;
+use crate::branch::Branch;
+
+/// Input at which a branch first passes a level of the output, in the order of time.
+pub(super) fn crossing(branch: &Branch, level: f64) -> Option<f64> {
+    let mut points: Vec<(f64, f64)> = branch.curve.points().collect();
+    if !branch.rises() {
+        points.reverse();
+    }
+    points.windows(2).find(|pair| (pair[0].1 - level) * (pair[1].1 - level) <= 0.0).map(|pair| {
+        let rise = pair[1].1 - pair[0].1;
+        let share = if rise == 0.0 { 0.0 } else { (level - pair[0].1) / rise };
+        pair[0].0 + share * (pair[1].0 - pair[0].0)
+    })
+}
+
+/// Distance along the input of two branches at a level of the output.
+pub(super) fn apart_along_input(one: &Branch, other: &Branch, level: f64) -> Option<f64> {
+    Some((crossing(one, level)? - crossing(other, level)?).abs())
+}
+
+/// Distance along the output of two branches at an input.
+pub(super) fn apart_along_output(one: &Branch, other: &Branch, x: f64) -> Option<f64> {
+    Some((one.curve.at(x)?.y - other.curve.at(x)?.y).abs())
+}
+
+/// Outputs at both ends of a branch.
+pub(super) fn ends(branch: &Branch) -> Option<(f64, f64)> {
+    Some((branch.curve.at(branch.from)?.y, branch.curve.at(branch.to)?.y))
+}
+
+/// Output at an end of a branch; the curve of a noisy input may stop a little before.
+pub(super) fn output_at_end(branch: &Branch, x: f64) -> Option<f64> {
+    let (low, high) = branch.curve.range();
+    let nearest = x.max(low).min(high);
+    let is_end = (nearest - x).abs() <= CLOSED * branch.travel();
+    if is_end { branch.curve.at(nearest).map(|reading| reading.y) } else { None }
+}
+
+/// Slope of the line through two points.
+pub(super) fn secant(a: (f64, f64), b: (f64, f64)) -> f64 {
+    (b.1 - a.1) / (b.0 - a.0)
+}
+
+/// The largest distance of two branches along the output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Widest {
+    /// The distance.
+    pub apart: f64,
+    /// The input where it is.
+    pub x: f64,
+    /// Its standard deviation from the noise.
+    pub deviation: f64,
+}
+
+/// Where two branches are furthest apart within a range of inputs, at the inputs of the points of both and at the ends of
+/// the range.
+pub(super) fn widest(one: &Branch, other: &Branch, (low, high): (f64, f64)) -> Option<Widest> {
+    let points = one.curve.points().chain(other.curve.points());
+    let inputs = points.map(|(x, _)| x).chain([low, high]).filter(|x| (low..=high).contains(x));
+    let apart = |x: f64| {
+        let (p, q) = (one.curve.at(x)?, other.curve.at(x)?);
+        Some(Widest { apart: (p.y - q.y).abs(), x, deviation: p.deviation.hypot(q.deviation) })
+    };
+    inputs.filter_map(apart).max_by(|a, b| a.apart.total_cmp(&b.apart))
+}

@@ -1,0 +1,83 @@
+//! One cycle in figures.
+
+use serde::Serialize;
+
+/// A cycle, or an incomplete part of one, in figures. Inputs and outputs are in the user's units. A figure that the data do
+/// not give is `None`, and `notes` says why; those of other fields are `None` too. Each figure is defined in [`FIGURES`](crate::cycles::FIGURES) and docs/cycles.md.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct CycleRow {
+    /// Name of the record.
+    pub record: String,
+    /// Number of the row within its record, counted from 1.
+    pub cycle: usize,
+    /// First and last row, counted from 0 at the beginning of the record.
+    pub rows: (usize, usize),
+    /// False for what is left of a cycle at the beginning or the end of a record.
+    pub complete: bool,
+    /// Time at its beginning.
+    pub start_time: Option<f64>,
+    /// Its duration.
+    pub period: Option<f64>,
+    /// Cycles in a unit of time.
+    pub frequency: Option<f64>,
+    /// Smallest input.
+    pub input_min: Option<f64>,
+    /// Largest input.
+    pub input_max: Option<f64>,
+    /// Half the difference of the largest and the smallest input.
+    pub amplitude: Option<f64>,
+    /// Half the sum of the largest and the smallest input.
+    pub mean_input: Option<f64>,
+    /// Smallest output.
+    pub output_min: Option<f64>,
+    /// Largest output.
+    pub output_max: Option<f64>,
+    /// Input at the peak, where the input turned down.
+    pub peak_input: Option<f64>,
+    /// Output at the peak.
+    pub peak_output: Option<f64>,
+    /// Input at the valley, where the input turned up.
+    pub valley_input: Option<f64>,
+    /// Output at the valley.
+    pub valley_output: Option<f64>,
+    /// `∮ y dx`: the energy lost, positive if the loop is passed clockwise; of a magnet `∮ x dy = -∮ y dx`.
+    pub energy: Option<f64>,
+    /// Standard deviation of the energy from the noise of the output.
+    pub energy_deviation: Option<f64>,
+    /// Sum of the energies of the record's complete cycles so far.
+    pub cumulative_energy: Option<f64>,
+    /// Energy lost per unit of time.
+    pub power: Option<f64>,
+    /// Slope of the line from valley to peak.
+    pub secant_stiffness: Option<f64>,
+    /// Equivalent viscous damping ratio in percent of critical damping.
+    pub damping_percent: Option<f64>,
+    /// Input at which the output is 0 on the way down from the peak.
+    pub residual_after_peak: Option<f64>,
+    /// Input at which the output is 0 on the way up from the valley.
+    pub residual_after_valley: Option<f64>,
+    /// True if the peak is a point of the backbone.
+    pub backbone_peak: bool,
+    /// True if the valley is a point of the backbone.
+    pub backbone_valley: bool,
+    /// Half the distance along the input of both branches at the output 0.
+    pub coercive_input: Option<f64>,
+    /// Half the distance along the output of both branches at the input 0.
+    pub remanent_output: Option<f64>,
+    /// Largest difference of the outputs of both branches at equal input.
+    pub width: Option<f64>,
+    /// The same in percent of the loop's range of the output.
+    pub width_percent: Option<f64>,
+    /// The input where it is.
+    pub width_at_input: Option<f64>,
+    /// Duration of the longest hold of the input that begins in the cycle.
+    pub hold_duration: Option<f64>,
+    /// Change of the output during that hold.
+    pub creep: Option<f64>,
+    /// The same in percent of the data's range of the output.
+    pub creep_percent: Option<f64>,
+    /// Change of the output in a decade of time since the beginning of the hold.
+    pub creep_per_decade: Option<f64>,
+    /// Why figures are missing or to be read with care.
+    pub notes: Vec<String>,
+}

@@ -1,0 +1,498 @@
+//! The table of cycles of a data set.
+
+use std::f64::consts::PI;
+
+use hysid_core::data::record::{Dataset, Record};
+use hysid_core::error::Result;
+use serde::Serialize;
+
+use super::CLOSED;
+use super::backbone::{BackbonePoint, Direction, backbone};
+use super::creep::{Hold, holds};
+use super::division::{Division, LAST_STEP, Span, SpanPart, choose, divide, level};
+use super::field::Field;
+use super::losses::{LossAtFrequency, losses};
+use super::path::{Closure, Path, area, at, range, weights};
+use super::reading::{Widest, apart_along_output, crossing, output_at_end, secant, widest};
+use super::row::CycleRow;
+use crate::branch::{Branch, BranchSet};
+use crate::{DiagnosisOptions, FEWEST_ROWS};
+
+/// A loop over less than this share of a cycle's swing is smaller than the cycle: either that is said, or there is none.
+const COMES_BACK: f64 = 0.9;
+
+/// Rows further apart than this share of a swing do not show what the output does between them.
+const FAR_APART: f64 = 0.1;
+
+/// Share of a swing that is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Deviations of the noise below which a figure is not told from noise.
+const SURE: f64 = 3.0;
+
+/// How cycles are found and what is read from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleOptions {
+    /// Reversals of the input below this share of its range are no turning points.
+    pub smallest_reversal: f64,
+    /// Whether noise is smoothed out of branches before outputs are read from them.
+    pub smoothing: bool,
+    /// Where cycles begin and end; `None` for what suits the data.
+    pub division: Option<Division>,
+    /// The field of engineering; `None` for what names and units of the columns indicate.
+    pub field: Option<Field>,
+}
+
+impl Default for CycleOptions {
+    fn default() -> Self {
+        let DiagnosisOptions { smallest_reversal, smoothing } = DiagnosisOptions::default();
+        Self { smallest_reversal, smoothing, division: None, field: None }
+    }
+}
+
+impl CycleOptions {
+    /// How the branches are found.
+    pub fn branches(&self) -> DiagnosisOptions {
+        DiagnosisOptions { smallest_reversal: self.smallest_reversal, smoothing: self.smoothing }
+    }
+}
+
+/// The cycles of a data set in figures.
+///
+/// ```
+/// use hysid_core::data::record::Dataset;
+/// use hysid_core::operator::{Operator, Stop};
+/// use hysid_diagnosis::cycles::{CycleOptions, CycleTable};
+///
+/// // An elastic-perfectly plastic member: stiffness 1, strength 1, three cycles of amplitude 3.
+/// let x: Vec<f64> = (0..=1200).map(|k| 3.0 * (std::f64::consts::TAU * k as f64 / 400.0).sin()).collect();
+/// let y = Stop::new(1.0)?.run(&x);
+/// let table = CycleTable::of(&Dataset::from_slices(&x, &y)?, &CycleOptions::default())?;
+/// let last = table.cycles.last().unwrap();
+/// // 4 F_y (d - F_y/k), and twice the share of the box that the loop fills over π.
+/// assert!((last.energy.unwrap() - 8.0).abs() < 1e-2);
+/// assert!((last.damping_percent.unwrap() - 100.0 * 2.0 / std::f64::consts::PI * (8.0 / 12.0)).abs() < 0.1);
+/// assert!((last.residual_after_peak.unwrap() - 2.0).abs() < 1e-2);
+/// # Ok::<(), hysid_core::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CycleTable {
+    /// The field of engineering.
+    pub field: Field,
+    /// Where cycles begin and end.
+    pub division: Division,
+    /// One row for each cycle and each incomplete part, in the order of the data.
+    pub cycles: Vec<CycleRow>,
+    /// The backbone of each record.
+    pub backbone: Vec<BackbonePoint>,
+    /// Losses by amplitude and frequency, for data with time.
+    pub losses: Vec<LossAtFrequency>,
+    /// What concerns the whole table: why figures are missing in every row.
+    pub notes: Vec<String>,
+}
+
+impl CycleTable {
+    /// The cycles of the first input of the data and of their output.
+    ///
+    /// # Errors
+    /// Data without loops: a constant input or output, hardly any rows.
+    pub fn of(data: &Dataset, options: &CycleOptions) -> Result<Self> {
+        data.check_identifiable(FEWEST_ROWS)?;
+        let survey = BranchSet::new(data, &options.branches());
+        let field = options.field.unwrap_or_else(|| Field::of(data.names()));
+        let division = options.division.unwrap_or_else(|| choose(&survey, field));
+        let (mut cycles, mut points) = (Vec::new(), Vec::new());
+        for (number, record) in data.records().iter().enumerate() {
+            let begins = record.inputs()[0].first().copied().unwrap_or_default();
+            let level = level(&survey, number, division).unwrap_or(begins);
+            let backbone = if field.has_structures() { backbone(&survey, number, level) } else { Vec::new() };
+            cycles.extend(rows_of(&survey, number, (field, division), &backbone));
+            points.extend(backbone);
+        }
+        let notes = notes(data, &cycles, field);
+        Ok(Self { field, division, losses: losses(&cycles), cycles, backbone: points, notes })
+    }
+
+    /// The rows of complete cycles.
+    pub fn complete(&self) -> impl Iterator<Item = &CycleRow> + Clone {
+        self.cycles.iter().filter(|row| row.complete)
+    }
+}
+
+/// The rows of a record.
+fn rows_of(
+    survey: &BranchSet,
+    record: usize,
+    (field, division): (Field, Division),
+    backbone: &[BackbonePoint],
+) -> Vec<CycleRow> {
+    let branches = survey.of_record(record);
+    let holds = if field.has_actuators() { holds(survey, record) } else { Vec::new() };
+    let spans = divide(survey, record, division);
+    let mut cumulative = Some(0.0);
+    let mut rows = Vec::new();
+    for (place, span) in spans.iter().enumerate() {
+        let reader =
+            Reader { survey, record: &survey.data.records()[record], branches, span, field, division };
+        let mut row = reader.row(place + 1);
+        mark_backbone(&mut row, backbone);
+        if row.complete {
+            cumulative = cumulative.zip(row.energy).map(|(sum, energy)| sum + energy);
+            row.cumulative_energy = cumulative;
+        }
+        let next = spans.get(place + 1).map_or(f64::INFINITY, |next| next.from);
+        let first = if place == 0 { 0.0 } else { span.from };
+        let is_within = |hold: &&Hold| (first..next).contains(&(hold.rows.0 as f64));
+        let longest = holds.iter().filter(is_within).max_by(|a, b| a.duration.total_cmp(&b.duration));
+        if let Some(hold) = longest {
+            set_creep(&mut row, hold, survey.height());
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+/// A turning point where a cycle ends belongs to the next one.
+fn mark_backbone(row: &mut CycleRow, backbone: &[BackbonePoint]) {
+    let rows = row.rows.0..row.rows.1;
+    let has =
+        |direction| backbone.iter().any(|point| point.direction == direction && rows.contains(&point.row));
+    (row.backbone_peak, row.backbone_valley) = (has(Direction::Up), has(Direction::Down));
+}
+
+fn set_creep(row: &mut CycleRow, hold: &Hold, height: f64) {
+    row.hold_duration = Some(hold.duration);
+    row.creep = Some(hold.drift);
+    row.creep_percent = Some(100.0 * hold.drift / height);
+    row.creep_per_decade = hold.per_decade;
+    if hold.per_decade.is_none() {
+        row.notes.push("the hold is shorter than a decade of its time steps: no creep per decade".into());
+    }
+}
+
+/// Reads one part of a record.
+struct Reader<'r> {
+    survey: &'r BranchSet<'r>,
+    record: &'r Record,
+    branches: &'r [Branch],
+    span: &'r Span,
+    field: Field,
+    division: Division,
+}
+
+impl Reader<'_> {
+    fn row(&self, cycle: usize) -> CycleRow {
+        let Span { from, to, part, ref branches } = *self.span;
+        let (first, last) = (branches.start, branches.end - 1);
+        let turns = (self.branches[first].rows.end - 1, self.branches[last].rows.start);
+        let path = Path::between(self.record, (from, to), turns);
+        let (low, high) = range(&path.x);
+        let outputs: Vec<f64> = path.y.iter().copied().filter(|y| !y.is_nan()).collect();
+        let measured = (!outputs.is_empty()).then(|| range(&outputs));
+        let complete = part == SpanPart::Cycle;
+        let time = self.record.time().map(|time| (at(time, from), at(time, to)));
+        let mut row = CycleRow {
+            record: self.record.name().into(),
+            cycle,
+            rows: (from.ceil() as usize, to.floor() as usize),
+            complete,
+            start_time: time.map(|(start, _)| start),
+            period: time.filter(|_| complete).map(|(start, end)| end - start + self.missing_time()),
+            input_min: Some(low),
+            input_max: Some(high),
+            output_min: measured.map(|range| range.0),
+            output_max: measured.map(|range| range.1),
+            ..CycleRow::default()
+        };
+        row.frequency = row.period.map(f64::recip);
+        let tips = self.tips();
+        row.peak_input = tips.peak.map(|tip| tip.input);
+        row.valley_input = tips.valley.map(|tip| tip.input);
+        row.peak_output = tips.peak.and_then(|tip| tip.output);
+        row.valley_output = tips.valley.and_then(|tip| tip.output);
+        match part {
+            SpanPart::Cycle => self.read_loop(&mut row, path, &tips),
+            SpanPart::Beginning => row.notes.push("incomplete: the record begins within a cycle".into()),
+            SpanPart::End => row.notes.push("incomplete: the record ends within a cycle".into()),
+            SpanPart::All => row.notes.push("incomplete: the record has no whole cycle".into()),
+        }
+        row
+    }
+
+    /// The time that a cycle lacks because its record ends a step before the level is passed: at the speed with which it was
+    /// passed at the beginning.
+    fn missing_time(&self) -> f64 {
+        let (x, last) = (&self.record.inputs()[0], self.record.len() - 1);
+        let ends_there = self.span.to == last as f64 && self.division != Division::Reversals;
+        let Some(time) = self.record.time().filter(|_| ends_there) else { return 0.0 };
+        let first = self.span.from.floor() as usize;
+        let steps = (at(x, self.span.from) - x[last]) / (x[first + 1] - x[first]);
+        if (0.0..=LAST_STEP).contains(&steps) { steps * (time[first + 1] - time[first]) } else { 0.0 }
+    }
+
+    /// Everything that needs the whole loop.
+    fn read_loop(&self, row: &mut CycleRow, path: Path, tips: &Tips) {
+        let (lowest, highest) = range(&path.x);
+        let (path, closure) = path.without_blank_ends(CLOSED).closed();
+        let (low, high) = range(&path.x);
+        row.amplitude = Some(0.5 * (high - low));
+        // Ends that differ in sign only by rounding have the mean 0.
+        row.mean_input = Some(0.5 * (high + low))
+            .map(|mean| if mean.abs() < ROUNDING * (high - low) { 0.0 } else { mean });
+        match path.blanks() {
+            0 => {}
+            1 => row.notes.push("1 row of the cycle has no output".into()),
+            blanks => row.notes.push(format!("{blanks} rows of the cycle have no output")),
+        }
+        let longest = path.x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        let is_coarse = longest > FAR_APART * (high - low);
+        if is_coarse {
+            let percent = 100.0 * longest / (high - low);
+            row.notes.push(format!(
+                "rows are up to {percent:.0} % of the swing apart: what lies between is interpolated"
+            ));
+        }
+        let branches = tips.falling(self.branches).zip(tips.rising(self.branches));
+        if let Some((falling, rising)) = branches
+            && self.field != Field::Actuator
+        {
+            self.read_zero_output(row, falling, rising);
+        }
+        if high - low < COMES_BACK * (highest - lowest) {
+            row.notes.push(match closure {
+                Closure::BeginningCut => {
+                    "no loop: the input does not come back to where the cycle began".into()
+                }
+                _ => "the input goes beyond where the cycle began: the loop is the part before".into(),
+            });
+            if closure == Closure::BeginningCut {
+                row.coercive_input = None;
+                return;
+            }
+        }
+        let valley = row.valley_input.zip(row.valley_output);
+        let peak = row.peak_input.zip(row.peak_output);
+        if let (true, Some((valley, peak))) = (self.field.has_structures(), valley.zip(peak)) {
+            row.secant_stiffness = Some(secant(valley, peak)).filter(|slope| slope.is_finite());
+        }
+        if self.field != Field::Actuator && path.blanks() == 0 {
+            self.read_area(row, &path, high - low);
+        }
+        if let Some((falling, rising)) = branches
+            && self.field.has_magnets()
+        {
+            read_zero_input(row, falling, rising);
+        }
+        if self.field.has_actuators() && is_coarse {
+            row.notes.push("no width: the rows are too far apart".into());
+        } else if self.field.has_actuators() {
+            self.read_width(row, &path, high - low);
+        }
+    }
+
+    /// Energy, loss per time and damping.
+    fn read_area(&self, row: &mut CycleRow, path: &Path, swing: f64) {
+        // A loop without area has no sign.
+        let energy = self.field.sense_of_energy() * area(&path.x, &path.y) + 0.0;
+        let deviation = self.survey.output_noise.of_sum(&weights(&path.x));
+        row.energy = Some(energy);
+        row.energy_deviation = Some(deviation);
+        if self.field.has_magnets() {
+            row.power = row.frequency.map(|frequency| frequency * energy);
+        }
+        if energy.abs() < SURE * deviation {
+            row.notes.push("the energy is within three deviations of the noise".into());
+        }
+        let Some(stiffness) = row.secant_stiffness else { return };
+        match damping(energy, stiffness, swing) {
+            Some(ratio) => row.damping_percent = Some(100.0 * ratio),
+            None if energy < 0.0 => {
+                row.notes.push("no equivalent damping: the loop is passed anticlockwise".into());
+            }
+            None => row.notes.push("no equivalent damping: the secant stiffness is not positive".into()),
+        }
+    }
+
+    /// Where both branches pass the output 0.
+    fn read_zero_output(&self, row: &mut CycleRow, falling: &Branch, rising: &Branch) {
+        let (after_peak, after_valley) = (crossing(falling, 0.0), crossing(rising, 0.0));
+        let which = match (after_peak, after_valley) {
+            (None, None) => Some("neither branch passes"),
+            (None, _) => Some("the branch after the peak does not pass"),
+            (_, None) => Some("the branch after the valley does not pass"),
+            _ => None,
+        };
+        row.notes.extend(which.map(|which| format!("{which} the output 0")));
+        if self.field.has_structures() {
+            (row.residual_after_peak, row.residual_after_valley) = (after_peak, after_valley);
+        }
+        if self.field.has_magnets() {
+            row.coercive_input = after_peak.zip(after_valley).map(|(down, up)| 0.5 * (up - down).abs());
+        }
+    }
+
+    /// The largest distance of the rising and the falling parts of the cycle, if they have outputs over its swing.
+    fn read_width(&self, row: &mut CycleRow, path: &Path, swing: f64) {
+        let numbers = self.span.branches.clone();
+        let (rising, falling): (Vec<usize>, Vec<usize>) =
+            numbers.partition(|&number| self.branches[number].rises());
+        let (mut covered, mut widest_of_all): (f64, Option<Widest>) = (0.0, None);
+        for (&up, &down) in rising.iter().flat_map(|up| falling.iter().map(move |down| (up, down))) {
+            let (a, b) = (self.inputs_within(up), self.inputs_within(down));
+            let common = (a.0.max(b.0), a.1.min(b.1));
+            if common.1 > common.0
+                && let Some(found) = widest(&self.branches[up], &self.branches[down], common)
+            {
+                covered += common.1 - common.0;
+                if widest_of_all.is_none_or(|known| found.apart > known.apart) {
+                    widest_of_all = Some(found);
+                }
+            }
+        }
+        let Some(widest) = widest_of_all.filter(|_| covered >= COMES_BACK * swing) else {
+            row.notes.push("no width: both branches have outputs over a part of the swing only".into());
+            return;
+        };
+        if widest.apart < SURE * widest.deviation {
+            row.notes.push("no width: it is within three deviations of the noise".into());
+            return;
+        }
+        row.width = Some(widest.apart);
+        row.width_at_input = Some(widest.x);
+        let (low, high) = range(&path.y);
+        row.width_percent = Some(100.0 * widest.apart / (high - low)).filter(|percent| percent.is_finite());
+    }
+
+    /// Smallest and largest input of the part of a branch that belongs to the cycle and has outputs.
+    fn inputs_within(&self, number: usize) -> (f64, f64) {
+        let branch = &self.branches[number];
+        let x = &self.record.inputs()[0];
+        let begin = at(x, self.span.from.max(branch.rows.start as f64));
+        let end = at(x, self.span.to.min((branch.rows.end - 1) as f64));
+        let (low, high) = branch.curve.range();
+        (begin.min(end).max(low), begin.max(end).min(high))
+    }
+
+    /// Peak and valley, and the branches that begin there.
+    fn tips(&self) -> Tips {
+        let Span { from, to, part, ref branches } = *self.span;
+        let mut tips = Tips::default();
+        for number in branches.clone() {
+            let branch = &self.branches[number];
+            let (start, end) = (branch.rows.start as f64, (branch.rows.end - 1) as f64);
+            // A cycle from turning point to turning point begins at one; what it ends at is that of the next.
+            let begins_here =
+                self.division == Division::Reversals && part == SpanPart::Cycle && start == from;
+            if begins_here {
+                let (input, output) = self.end_of_loop(number);
+                tips.take(Tip { input, output, leaves: number }, !branch.rises());
+            }
+            if end > from && end < to {
+                let output = output_at_end(branch, branch.to);
+                tips.take(Tip { input: branch.to, output, leaves: number + 1 }, branch.rises());
+            }
+        }
+        tips
+    }
+
+    /// The end of the loop of a cycle from turning point to turning point: the mean of its beginning and its end where both
+    /// are the same input, otherwise that of the shorter branch.
+    fn end_of_loop(&self, first: usize) -> (f64, Option<f64>) {
+        let begin = &self.branches[first];
+        let own = (begin.from, output_at_end(begin, begin.from));
+        let Some(end) =
+            self.branches.get(self.span.branches.end - 1).filter(|end| end.rises() != begin.rises())
+        else {
+            return own;
+        };
+        let back = (end.to, output_at_end(end, end.to));
+        if (back.0 - own.0).abs() <= CLOSED * begin.travel() {
+            let mean = |a: f64, b: f64| 0.5 * (a + b);
+            return (mean(own.0, back.0), own.1.zip(back.1).map(|(a, b)| mean(a, b)).or(own.1));
+        }
+        if end.travel() < begin.travel() { back } else { own }
+    }
+}
+
+/// The distance of the branches at the input 0.
+fn read_zero_input(row: &mut CycleRow, falling: &Branch, rising: &Branch) {
+    let passes = |branch: &Branch| {
+        let (low, high) = branch.curve.range();
+        low <= 0.0 && high >= 0.0
+    };
+    if passes(falling) && passes(rising) {
+        row.remanent_output = apart_along_output(falling, rising, 0.0).map(|apart| 0.5 * apart);
+    } else {
+        row.notes.push("a branch does not pass the input 0: no remanence".into());
+    }
+}
+
+/// A turning point of a cycle.
+#[derive(Debug, Clone, Copy)]
+struct Tip {
+    input: f64,
+    output: Option<f64>,
+    /// Number of the branch that begins there.
+    leaves: usize,
+}
+
+/// The highest peak and the deepest valley of a cycle.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tips {
+    peak: Option<Tip>,
+    valley: Option<Tip>,
+}
+
+impl Tips {
+    fn take(&mut self, tip: Tip, is_peak: bool) {
+        let side = if is_peak { &mut self.peak } else { &mut self.valley };
+        let further = |known: &Tip| if is_peak { tip.input > known.input } else { tip.input < known.input };
+        if side.as_ref().is_none_or(further) {
+            *side = Some(tip);
+        }
+    }
+
+    fn falling<'b>(&self, branches: &'b [Branch]) -> Option<&'b Branch> {
+        branches.get(self.peak?.leaves).filter(|branch| !branch.rises())
+    }
+
+    fn rising<'b>(&self, branches: &'b [Branch]) -> Option<&'b Branch> {
+        branches.get(self.valley?.leaves).filter(|branch| branch.rises())
+    }
+}
+
+/// Equivalent viscous damping ratio: that of the viscous damper which loses as much energy in a cycle of the same amplitude
+/// at resonance; `None` if the energy or the stiffness is not positive.
+///
+/// ```text
+/// ζ = E_D / (4π E_S),    E_S = ½ K a²,    a half the swing                (Jacobsen 1930; ASCE/SEI 7-16, eq. 17.8-2)
+/// ```
+fn damping(energy: f64, stiffness: f64, swing: f64) -> Option<f64> {
+    let stored = 0.5 * stiffness * (0.5 * swing).powi(2);
+    (stored > 0.0 && energy >= 0.0).then(|| energy / (4.0 * PI * stored))
+}
+
+/// What every row lacks, and why.
+fn notes(data: &Dataset, cycles: &[CycleRow], field: Field) -> Vec<String> {
+    let mut notes = Vec::new();
+    let complete = cycles.iter().filter(|row| row.complete).count();
+    if complete == 0 {
+        notes.push(
+            "no whole cycle: the input must come back to where a cycle began; smaller reversals count with a \
+             smaller smallest reversal"
+                .to_string(),
+        );
+    }
+    if !data.has_time() {
+        let missing = match field {
+            Field::Structure => "period and frequency",
+            Field::Magnet => "period, frequency and loss per time",
+            Field::Actuator => "period, frequency and creep",
+            Field::General => "period, frequency, loss per time and creep",
+        };
+        notes.push(format!("no time: no {missing}"));
+    } else if field == Field::Actuator && cycles.iter().all(|row| row.creep.is_none()) {
+        notes.push("no creep: the input rests nowhere long enough".into());
+    }
+    notes
+}

@@ -1,0 +1,126 @@
+//! Densities that are known in closed form.
+
+use approx::assert_relative_eq;
+use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::random::mix;
+
+use super::*;
+
+/// `E(x, r) = (tanh x - tanh r)²/2`, whose density is `sech² x sech² r`.
+fn everett(x: f64, r: f64) -> f64 {
+    0.5 * (x.tanh() - r.tanh()).powi(2)
+}
+
+fn density(x: f64, r: f64) -> f64 {
+    (x.cosh() * r.cosh()).powi(-2)
+}
+
+const END: f64 = 2.0;
+
+/// The output at `x` of the curve from `r`, of the Preisach model with this Everett function.
+fn output(r: f64, x: f64) -> f64 {
+    1.0 - 2.0 * everett(END, r) + 2.0 * everett(x, r)
+}
+
+/// Down from the end to each reversal and back, in steps of 0.02; reversals 0.1 apart.
+fn curves(noise: f64) -> Dataset {
+    let (mut x, mut y) = (vec![END], vec![1.0]);
+    let mut seed = 0;
+    let mut normal = || {
+        seed += 1;
+        (0..12).map(|k| mix(12 * seed + k) as f64 / u64::MAX as f64 - 0.5).sum::<f64>()
+    };
+    for reversal in 1..=40 {
+        let r = END - 0.1 * f64::from(reversal);
+        let rows = 5 * reversal;
+        let place = |row: i32| END - 0.02 * f64::from(row);
+        for row in 1..=rows {
+            x.push(place(row));
+            y.push(1.0 - 2.0 * everett(END, place(row)) + noise * normal());
+        }
+        for row in (0..rows).rev() {
+            x.push(place(row));
+            y.push(output(r, place(row)) + noise * normal());
+        }
+    }
+    Dataset::from_slices(&x, &y).unwrap()
+}
+
+fn found(data: &Dataset) -> ReversalCurves {
+    ReversalCurves::of(data, &ReversalCurveOptions::default()).unwrap().expect("reversal curves")
+}
+
+#[test]
+fn a_known_density_is_found_within_four_percent_of_its_largest_value() {
+    let curves = found(&curves(0.0));
+    assert!(curves.rising);
+    assert_eq!((curves.curves.len(), curves.smoothing_factor), (40, 2));
+    assert_relative_eq!(curves.step, 0.1, epsilon = 1e-9);
+    assert_eq!(curves.nodes.len(), (1..=40).map(|k| k + 1).sum::<usize>());
+    let mut known = 0;
+    for node in &curves.nodes {
+        let (x, r) = (node.input, node.reversal_input);
+        assert_relative_eq!(node.everett, everett(x, r), epsilon = 1e-9);
+        assert_relative_eq!(node.output, output(r, x), epsilon = 1e-9);
+        if let Some(found) = node.density {
+            known += 1;
+            assert!((found - density(x, r)).abs() < 0.04, "{r} {x}: {found} {}", density(x, r));
+        }
+    }
+    assert!(known as f64 > 0.95 * curves.nodes.len() as f64, "{known} of {}", curves.nodes.len());
+}
+
+#[test]
+fn noise_chooses_more_smoothing_and_the_deviation_is_that_of_the_errors() {
+    let curves = found(&curves(0.03));
+    assert!(curves.smoothing_factor > 2, "{}", curves.smoothing_factor);
+    let errors: Vec<f64> = curves
+        .nodes
+        .iter()
+        .filter_map(|node| {
+            let error = node.density? - density(node.input, node.reversal_input);
+            Some(error / node.density_deviation?)
+        })
+        .collect();
+    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+    assert!((0.6..2.0).contains(&rms), "{rms}");
+}
+
+/// A density that is the same everywhere makes the output a parabola of both, which is fitted exactly.
+#[test]
+fn an_even_density_is_exact_also_for_curves_that_fall_and_for_records_of_single_curves() {
+    let curve = |r: f64| -> (Vec<f64>, Vec<f64>) {
+        let rows = ((r + 1.0) / 0.05).round() as i32;
+        let x: Vec<f64> = (0..=rows).map(|row| r - 0.05 * f64::from(row)).collect();
+        let y = x.iter().map(|x| 0.7 * (r + 1.0).powi(2) - 0.7 * (r - x).powi(2)).collect();
+        (x, y)
+    };
+    let records = (0..12).map(|k| {
+        let (x, y) = curve(1.0 - 0.1 * f64::from(k));
+        Record::new(format!("curve {k}"), vec![x], y).unwrap()
+    });
+    let data = Dataset::new(ColumnNames::plain(1), records.collect()).unwrap();
+    let curves = found(&data);
+    assert!(!curves.rising);
+    assert_relative_eq!(curves.end, -1.0, epsilon = 1e-12);
+    assert_eq!(curves.curves.len(), 12);
+    for node in &curves.nodes {
+        let lag = node.reversal_input - node.input;
+        assert_relative_eq!(node.everett, 0.35 * lag * lag, epsilon = 1e-9);
+        node.density.iter().for_each(|density| assert_relative_eq!(*density, 0.7, epsilon = 1e-6));
+    }
+    assert!(curves.nodes.iter().filter(|node| node.density.is_some()).count() > 100);
+}
+
+#[test]
+fn cycles_are_no_reversal_curves() {
+    let cycles = |amplitude: &dyn Fn(usize) -> f64| {
+        let x: Vec<f64> = (0..3000).map(|k| amplitude(k) * (0.02 * k as f64).sin()).collect();
+        let y: Vec<f64> = x.iter().map(|x| x.tanh()).collect();
+        let data = Dataset::from_slices(&x, &y).unwrap();
+        ReversalCurves::of(&data, &ReversalCurveOptions::default()).unwrap()
+    };
+    assert_eq!(cycles(&|_| 2.0), None, "all alike");
+    assert_eq!(cycles(&|k| k as f64), None, "growing");
+    assert_eq!(cycles(&|k| 3000.0 - k as f64), None, "shrinking");
+}

@@ -1,0 +1,133 @@
+//! Heat maps: values over two axes, as areas in the colours of classes of values.
+//!
+//! The classes have round limits, which the legend names, so that the values can be read without the colours. The class
+//! around 0 is next to the page's colour; positive values get darker on a light page and lighter on a dark one, and
+//! negative values have another hue.
+
+use super::thin::Point;
+use super::{Chart, Colour, Curve, LEVELS};
+use crate::number::number;
+
+/// A cell of a heat map: a range along each of two coordinates, and the value in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeatCell {
+    /// From where to where along the first coordinate.
+    pub u: (f64, f64),
+    /// From where to where along the second coordinate.
+    pub v: (f64, f64),
+    /// The value.
+    pub value: f64,
+}
+
+/// A heat map of cells, which are in rows along the first coordinate. `place` gives the point of the chart at two coordinates.
+/// Cells without a finite value are left out. `x` and `y` are the labels of the axes, `description` is for readers who cannot
+/// see the chart.
+///
+/// ```
+/// use hysid_document::chart::{HeatCell, heat_map};
+/// let cell = |k: f64| HeatCell { u: (k, k + 1.0), v: (0.0, 1.0), value: k };
+/// let chart = heat_map("values from 0 to 4", "x", "y", &[0.0, 1.0, 2.0, 3.0, 4.0].map(cell), |u, v| (u, v));
+/// assert_eq!(chart.legend.last().unwrap().1, "3.75 to 4.25");
+/// ```
+pub fn heat_map(
+    description: impl Into<String>,
+    x: &str,
+    y: &str,
+    cells: &[HeatCell],
+    place: impl Fn(f64, f64) -> Point,
+) -> Chart {
+    let step = class_width(cells);
+    let class = |value: f64| {
+        ((value / step).round() as i64).clamp((*LEVELS.start()).into(), (*LEVELS.end()).into()) as i8
+    };
+    let mut areas: Vec<(i8, HeatCell)> = Vec::new();
+    for cell in cells.iter().filter(|cell| cell.value.is_finite()) {
+        let level = class(cell.value);
+        let width = cell.u.1 - cell.u.0;
+        let goes_on = |(last, area): &&mut (i8, HeatCell)| {
+            *last == level && area.v == cell.v && (area.u.1 - cell.u.0).abs() <= 1e-6 * width.abs()
+        };
+        match areas.last_mut().filter(|area| goes_on(area)) {
+            Some((_, area)) => area.u.1 = cell.u.1,
+            None => areas.push((level, *cell)),
+        }
+    }
+    let outline = |(level, area): &(i8, HeatCell)| {
+        let (u, v) = (area.u, area.v);
+        let corners = [(u.0, v.0), (u.1, v.0), (u.1, v.1), (u.0, v.1)];
+        Curve::new(corners.map(|(u, v)| place(u, v)).to_vec(), Colour::Level(*level), 1.0)
+    };
+    let curves = areas.iter().map(outline).collect();
+    let used = LEVELS.filter(|level| areas.iter().any(|(used, _)| used == level));
+    let legend: Vec<(Colour, String)> =
+        used.map(|level| (Colour::Level(level), limits(level, step))).collect();
+    Chart::new(description, x, y, curves).with_height(560.0).with_legend(legend)
+}
+
+/// The width of a class: round, and such that the values have at most as many classes as there are levels.
+fn class_width(cells: &[HeatCell]) -> f64 {
+    let largest =
+        cells.iter().map(|cell| cell.value.abs()).filter(|value| value.is_finite()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 1.0;
+    }
+    let most = f64::from(*LEVELS.end());
+    let needed = largest / (most + 0.5);
+    let power = 10f64.powf(needed.log10().floor());
+    let widths = [1.0, 2.0, 2.5, 5.0, 10.0].map(|factor| factor * power);
+    widths.into_iter().find(|width| *width >= needed).unwrap_or(needed)
+}
+
+/// The values of a class in words; the last class of each sign has all beyond it.
+fn limits(level: i8, step: f64) -> String {
+    let middle = f64::from(level) * step;
+    let (low, high) = (number(middle - 0.5 * step, 4), number(middle + 0.5 * step, 4));
+    if level == *LEVELS.start() { format!("below {high}") } else { format!("{low} to {high}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::balance::assert_balanced;
+
+    fn row(values: &[f64], v: f64) -> Vec<HeatCell> {
+        let cell = |(k, &value): (usize, &f64)| {
+            let u = k as f64;
+            HeatCell { u: (u, u + 1.0), v: (v, v + 1.0), value }
+        };
+        values.iter().enumerate().map(cell).collect()
+    }
+
+    #[test]
+    fn neighbours_of_one_class_are_one_area_and_blanks_are_none() {
+        let cells = [row(&[0.0, 0.01, 8.0, 8.1], 0.0), row(&[f64::NAN, -8.0, 4.0], 1.0)].concat();
+        let chart = heat_map("d", "x", "y", &cells, |u, v| (u, v));
+        let colours: Vec<Colour> = chart.curves.iter().map(|curve| curve.colour).collect();
+        assert_eq!(colours, [0, 8, -3, 4].map(Colour::Level));
+        assert_eq!(chart.curves[0].points, [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)]);
+        let names: Vec<&str> = chart.legend.iter().map(|(_, name)| name.as_str()).collect();
+        assert_eq!(names, ["below −2.5", "−0.5 to 0.5", "3.5 to 4.5", "7.5 to 8.5"]);
+        let svg = chart.svg();
+        assert_balanced(&svg);
+        for marker in ["#102038", "#102133", "#102034", "#102030"] {
+            assert!(svg.contains(&format!("fill=\"{marker}\"")), "{marker}");
+            assert!(super::super::STYLE.contains(&format!("[fill=\"{marker}\"]")), "{marker}");
+        }
+    }
+
+    #[test]
+    fn classes_have_round_limits_and_hold_every_value() {
+        for largest in [1e-9, 0.37, 1.0, 8.5, 8.6, 99.0, 3.7e12] {
+            let cells = row(&[largest, -0.2 * largest], 0.0);
+            let step = class_width(&cells);
+            assert!((3.0..=8.5).contains(&(largest / step)), "{largest} {step}");
+        }
+        assert_eq!(class_width(&row(&[0.0], 0.0)), 1.0);
+    }
+
+    #[test]
+    fn coordinates_can_be_turned() {
+        let chart = heat_map("d", "x", "y", &row(&[1.0], 0.0), |u, v| (u - v, u + v));
+        assert_eq!(chart.curves[0].points, [(0.0, 0.0), (1.0, 1.0), (0.0, 2.0), (-1.0, 1.0)]);
+    }
+}

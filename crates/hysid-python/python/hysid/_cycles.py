@@ -1,0 +1,205 @@
+"""Tables of what engineers read from hysteresis loops."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hysid import _hysid
+from hysid._arguments import name_of, real, truth, whole
+from hysid._data import columns
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from hysid._data import Values
+
+
+FIRST = ("record", "cycle", "first_row", "last_row", "complete")
+LAST = ("backbone_peak", "backbone_valley", "notes")
+
+BACKBONE = ("record", "row", "direction", "input", "output")
+LOSSES = ("amplitude", "frequency", "energy", "power", "cycles")
+NODES = ("reversal_input", "input", "output", "everett", "density", "density_deviation")
+
+
+@dataclass(frozen=True, eq=False)
+class Cycles(Mapping[str, np.ndarray]):
+    """Cycles in figures: a mapping from the name of a column to an array with a value for each cycle.
+
+    The columns are ``record``, ``cycle``, ``first_row`` and ``last_row`` (counted from 0 in the record), ``complete``, the
+    figures that docs/cycles.md defines, such as ``energy``, and ``backbone_peak``, ``backbone_valley`` and ``notes``. A
+    figure that the data do not give, or that another field reads, is NaN.
+
+    Attributes
+    ----------
+    field : str
+        The field of engineering: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"``.
+    division : str
+        Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``.
+    rows : dict of arrays
+        The columns.
+    backbone : dict of arrays
+        The turning points of the first cycle of each amplitude: record, row, direction, input, output.
+    losses : dict of arrays
+        Means by amplitude and frequency: amplitude, frequency, energy, power, and the number of cycles.
+    reversal_curves : dict of arrays or None
+        The nodes of first-order reversal curves, if there are any: reversal_input, input, output, everett, density,
+        density_deviation.
+    smoothing_factor : int or None
+        The smoothing factor of their density.
+    notes : list of str
+        What concerns the whole table.
+    """
+
+    field: str
+    division: str
+    rows: dict[str, np.ndarray]
+    backbone: dict[str, np.ndarray]
+    losses: dict[str, np.ndarray]
+    reversal_curves: dict[str, np.ndarray] | None
+    smoothing_factor: int | None
+    notes: list[str]
+
+    @classmethod
+    def _of(cls, text: str) -> Cycles:
+        told = json.loads(text)
+        table, curves = told["table"], told["reversal_curves"]
+        cycles = [
+            {**row, "first_row": row["rows"][0], "last_row": row["rows"][1], "notes": "; ".join(row["notes"])}
+            for row in table["cycles"]
+        ]
+        return cls(
+            field=table["field"],
+            division=table["division"],
+            rows=_arrays(cycles, (*FIRST, *_hysid.figure_names(), *LAST)),
+            backbone=_arrays(table["backbone"], BACKBONE),
+            losses=_arrays(table["losses"], LOSSES),
+            reversal_curves=_arrays(curves["nodes"], NODES) if curves else None,
+            smoothing_factor=curves["smoothing_factor"] if curves else None,
+            notes=table["notes"],
+        )
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.rows[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.rows)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __repr__(self) -> str:
+        complete = int(self.rows["complete"].sum())
+        parts = len(self.rows["complete"]) - complete
+        curves = ", with first-order reversal curves" if self.reversal_curves else ""
+        return f"<{complete} cycles and {parts} incomplete parts, {self.field}, from {self.division}{curves}>"
+
+    def to_frame(self) -> Any:
+        """Give the cycles as a pandas table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each cycle.
+        """
+        import pandas
+
+        return pandas.DataFrame(self.rows)
+
+
+def _arrays(rows: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Columns of rows; None is NaN."""
+    whole_numbers = {"cycle", "first_row", "last_row", "row", "cycles"}
+    truths = {"complete", "backbone_peak", "backbone_valley"}
+    texts = {"record", "direction", "notes"}
+
+    def column(name: str) -> np.ndarray:
+        values = [row[name] for row in rows]
+        if name in texts:
+            return np.array(values, dtype=object)
+        if name in truths:
+            return np.array(values, dtype=bool)
+        if name in whole_numbers:
+            return np.array(values, dtype=np.int64)
+        return np.array([np.nan if value is None else value for value in values], dtype=np.float64)
+
+    return {name: column(name) for name in names}
+
+
+def named_options(
+    division: str | None, field: str | None, smoothing_factor: int | None
+) -> tuple[str | None, str | None, int | None]:
+    """What the native module takes."""
+    factor = None if smoothing_factor is None else whole("smoothing_factor", smoothing_factor, 1, 10)
+    return name_of("division", division), name_of("field", field), factor
+
+
+def cycles(
+    x: Values,
+    y: Values,
+    time: ArrayLike | None = None,
+    records: ArrayLike | None = None,
+    *,
+    division: str | None = None,
+    field: str | None = None,
+    smallest_reversal: float = 0.02,
+    smoothing: bool = True,
+    smoothing_factor: int | None = None,
+) -> Cycles:
+    """Read the figures of each cycle in measured data: energy, damping, stiffness, coercive field, losses, width, creep.
+
+    Parameters
+    ----------
+    x : array of shape (n,) or (n, inputs)
+        The inputs in the user's units; the loops are those of the output over the first input.
+    y : array of shape (n,)
+        The measured output; NaN for no measurement.
+    time : array of shape (n,), optional
+        Time stamps, increasing within each record.
+    records : array of shape (n,), optional
+        A label for each row.
+    division : str, optional
+        Where cycles begin: ``"zero"``, ``"mean"`` or ``"reversals"``; as suits the data by default.
+    field : str, optional
+        What is read: ``"structure"``, ``"magnet"``, ``"actuator"`` or ``"general"`` (all); by default as names and units
+        of pandas objects indicate.
+    smallest_reversal : float
+        Reversals of the input below this share of its range are ignored.
+    smoothing : bool
+        Smooth branches before outputs are read from them.
+    smoothing_factor : int, optional
+        Smoothing factor of the density of first-order reversal curves, 1 to 10; chosen by the noise by default.
+
+    Returns
+    -------
+    Cycles
+        A column for each figure, and first-order reversal curves if the data have them.
+
+    Raises
+    ------
+    ValueError
+        Data without loops, or an unknown name.
+
+    Examples
+    --------
+    >>> import hysid
+    >>> import numpy as np
+    >>> x = 3 * np.sin(np.linspace(0, 6 * np.pi, 3001))
+    >>> table = hysid.cycles(x, hysid.operators.stop(x, 1.0), field="structure")
+    >>> table["energy"].round(2)
+    array([7.5, 8. , 8. ])
+    >>> table["residual_after_peak"].round(2)
+    array([2., 2., 2.])
+    """
+    smallest_reversal = real("smallest_reversal", smallest_reversal)
+    smoothing = truth("smoothing", smoothing)
+    if not 0.0 < smallest_reversal < 1.0:
+        raise ValueError(f"smallest_reversal {smallest_reversal}: a number between 0 and 1 is needed")
+    options = named_options(division, field, smoothing_factor)
+    arranged = columns(x, y, time, None, records)
+    return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options))

@@ -1,0 +1,131 @@
+"""Tests of the residual of a model, and confidence intervals of the parameters of a law."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from typing import Any
+
+
+@dataclass(frozen=True)
+class ResidualFinding:
+    """The result of a test of the residual.
+
+    Attributes
+    ----------
+    test : str
+        The test: ``"bias"``, ``"whiteness"``, ``"input"``, ``"rate"``, ``"turning-points"``, ``"speed"``,
+        ``"amplitude"``, ``"distance"``, ``"direction"`` or ``"time"``.
+    verdict : str
+        ``"found"`` (there is structure), ``"not found"`` or ``"not testable"``.
+    p_value, adjusted_p_value : float or None
+        Probability of as much without structure; the second is corrected for the number of tests, and decides.
+    statement : str
+        The result in a sentence.
+    advice : str or None
+        What helps; None if nothing was found.
+    input : str or None
+        The input that the test is about.
+    """
+
+    test: str
+    verdict: str
+    p_value: float | None
+    adjusted_p_value: float | None
+    statement: str
+    advice: str | None
+    input: str | None = None
+
+
+class Residuals:
+    """Tests of the residual of a model, measured minus simulated output, of `Model.residuals`.
+
+    Attributes
+    ----------
+    content : dict
+        All results, as of `hysid evaluate --residuals --json`: ``"whiteness"`` with the autocorrelation, its bound and
+        the statistic of Ljung and Box, ``"inputs"`` with correlations and their bounds, ``"places"`` with RMS and mean
+        by place, and others.
+    findings : list of ResidualFinding
+        One for each test.
+    rms, bias : float
+        Root mean square and mean of the residual, in the unit of the output.
+    """
+
+    def __init__(self, content: dict[str, Any]) -> None:
+        self.content = content
+
+    @cached_property
+    def findings(self) -> list[ResidualFinding]:
+        """One for each test."""
+        return [ResidualFinding(**finding) for finding in self.content["findings"]]
+
+    @property
+    def found(self) -> list[ResidualFinding]:
+        """The findings of structure."""
+        return [finding for finding in self.findings if finding.verdict == "found"]
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residual, in the unit of the output."""
+        rms: float = self.content["rms"]
+        return rms
+
+    @property
+    def bias(self) -> float:
+        """Mean of the residual, in the unit of the output."""
+        bias: float = self.content["bias"]
+        return bias
+
+    def __getitem__(self, test: str) -> ResidualFinding:
+        for finding in self.findings:
+            if finding.test == test:
+                return finding
+        names = ", ".join(dict.fromkeys(finding.test for finding in self.findings))
+        raise KeyError(f"there is no test {test!r}: the tests are {names}")
+
+    def __str__(self) -> str:
+        return "\n".join(f"{finding.test:<16}{finding.verdict}" for finding in self.findings)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f'<tr><td style="text-align: left">{escape(finding.test)}</td>'
+            f'<td style="text-align: left"><b>{escape(finding.verdict)}</b></td>'
+            f'<td style="text-align: left">{escape(finding.statement)} {escape(finding.advice or "")}</td></tr>'
+            for finding in self.findings
+        )
+        return f"<table><tbody>{rows}</tbody></table>"
+
+
+@dataclass(frozen=True)
+class ParameterInterval:
+    """The 95 % confidence interval of a parameter of a law.
+
+    Attributes
+    ----------
+    symbol : str
+        The field's symbol.
+    value : float
+        Its value, in the units of the data.
+    status : str
+        ``"determined"``, ``"at a kink"`` (the interval is approximate), ``"at its bound"``, ``"not determined by the
+        data"`` or ``"not fitted"``.
+    low, high : float or None
+        The ends of the interval; None without one.
+    standard_error : float or None
+        The standard error; None without an interval.
+    """
+
+    symbol: str
+    value: float
+    status: str
+    low: float | None
+    high: float | None
+    standard_error: float | None
+
+
+def intervals_of(printed: str) -> list[ParameterInterval]:
+    """Intervals from the JSON of the native module."""
+    return [ParameterInterval(**parameter) for parameter in json.loads(printed)["parameters"]]

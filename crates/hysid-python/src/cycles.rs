@@ -1,0 +1,69 @@
+//! Tables of cycles.
+
+use std::sync::Arc;
+
+use hysid::diagnosis::cycles::{CycleOptions, CycleTable};
+use hysid::diagnosis::model::ModelCycles;
+use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
+use hysid::model::Model;
+use pyo3::prelude::*;
+use serde::Serialize;
+
+use crate::data::Dataset;
+use crate::failure::refused;
+
+/// What Python reads.
+#[derive(Serialize)]
+struct Told<'a> {
+    table: &'a CycleTable,
+    reversal_curves: Option<&'a ReversalCurves>,
+}
+
+/// Names of the figures of a cycle, in the order of the columns.
+#[pyfunction]
+pub fn figure_names() -> Vec<&'static str> {
+    hysid::diagnosis::cycles::FIGURES.iter().map(|figure| figure.name).collect()
+}
+
+/// The cycles and first-order reversal curves of data, as JSON.
+#[pyfunction]
+#[pyo3(signature = (data, smallest_reversal, smoothing, division, field, smoothing_factor))]
+pub fn cycles(
+    py: Python<'_>,
+    data: &Dataset,
+    smallest_reversal: f64,
+    smoothing: bool,
+    division: Option<&str>,
+    field: Option<&str>,
+    smoothing_factor: Option<usize>,
+) -> PyResult<String> {
+    let options = CycleOptions { smallest_reversal, smoothing, ..options(division, field)? };
+    let of_curves = ReversalCurveOptions { branches: options.branches(), smoothing_factor };
+    let set = Arc::clone(&data.set);
+    let found = py.detach(|| Ok((CycleTable::of(&set, &options)?, ReversalCurves::of(&set, &of_curves)?)));
+    let (table, curves) = found.map_err(|error: hysid::Error| refused(error))?;
+    told(&table, curves.as_ref())
+}
+
+/// The cycles and first-order reversal curves that a model is driven through, as JSON.
+pub fn of_model(
+    model: &Model,
+    division: Option<&str>,
+    field: Option<&str>,
+    smoothing_factor: Option<usize>,
+) -> PyResult<String> {
+    let driven = ModelCycles::of(model, &options(division, field)?, smoothing_factor).map_err(refused)?;
+    told(&driven.table, driven.reversal_curves.as_ref())
+}
+
+fn options(division: Option<&str>, field: Option<&str>) -> PyResult<CycleOptions> {
+    Ok(CycleOptions {
+        division: division.map(str::parse).transpose().map_err(|error: hysid::Error| refused(error))?,
+        field: field.map(str::parse).transpose().map_err(|error: hysid::Error| refused(error))?,
+        ..CycleOptions::default()
+    })
+}
+
+fn told(table: &CycleTable, reversal_curves: Option<&ReversalCurves>) -> PyResult<String> {
+    serde_json::to_string(&Told { table, reversal_curves }).map_err(refused)
+}

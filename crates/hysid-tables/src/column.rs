@@ -1,0 +1,63 @@
+//! The numbers of a column, row by row.
+
+use hysid_document::visible::clipped;
+
+use crate::head::Head;
+use crate::number::{CellReader, ThousandsWatch, is_missing};
+use crate::stamp::{Stamp, StampReader};
+
+/// Reads the cells of a column: numbers, numbers with their unit, dates or clocks.
+#[derive(Debug, Clone)]
+pub struct ColumnReader {
+    place: usize,
+    /// Of a column of dates or clocks.
+    stamps: Option<StampReader>,
+    thousands: ThousandsWatch,
+}
+
+impl ColumnReader {
+    /// A reader of the column at this place.
+    pub fn new(head: &Head, place: usize) -> Self {
+        let stamps = head.has_stamps(place).then(StampReader::default);
+        Self { place, stamps, thousands: ThousandsWatch::default() }
+    }
+
+    /// True for a column of dates or clocks.
+    pub fn has_stamps(&self) -> bool {
+        self.stamps.is_some()
+    }
+
+    /// Place of the column.
+    pub fn place(&self) -> usize {
+        self.place
+    }
+
+    /// The number in a cell, NaN for a missing value; dates and clocks are seconds since the first one. `cells` reads all
+    /// columns of the file.
+    ///
+    /// # Errors
+    /// What is wrong with the cell, in words.
+    pub fn number(
+        &mut self,
+        head: &Head,
+        cells: &mut CellReader,
+        cell: &str,
+        line: u64,
+    ) -> Result<f64, String> {
+        if let Some(stamps) = &mut self.stamps {
+            return match Stamp::of(cell) {
+                Some(stamp) => Ok(stamps.seconds(stamp)),
+                None if is_missing(cell) => Ok(f64::NAN),
+                None => Err(format!("\"{}\" is no date with a clock and no clock", clipped(cell))),
+            };
+        }
+        let digits = head.bare(self.place, cell)?;
+        self.thousands.take(digits, line);
+        cells.number(digits, line)
+    }
+
+    /// What is wrong with the column as a whole, and the line that shows it first.
+    pub fn problem(&self, cells: &CellReader) -> Option<(u64, String)> {
+        self.thousands.problem(cells)
+    }
+}

@@ -1,0 +1,155 @@
+//! Variables of a MATLAB file as text: a header with their names, and a line for each row.
+
+mod version_5;
+
+use hdf5_pure::{DType, File, Group};
+
+use crate::number::shortest;
+
+/// Longest nesting of structures that is looked into.
+const DEEPEST: usize = 4;
+
+/// True for the beginning of a file that MATLAB wrote.
+pub fn is_one(first: &[u8]) -> bool {
+    first.starts_with(b"MATLAB 5.0 MAT-file") || first.starts_with(b"MATLAB 7.3 MAT-file") || is_hdf5(first)
+}
+
+fn is_hdf5(first: &[u8]) -> bool {
+    let signature = b"\x89HDF\r\n\x1a\n";
+    first.starts_with(signature) || first.get(512..520) == Some(signature)
+}
+
+/// A numeric variable: its name and its columns.
+struct Variable {
+    name: String,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Variable {
+    /// From values column by column; `None` for what is no column of a table.
+    fn new(name: String, sizes: &[usize], values: Vec<f64>) -> Option<Self> {
+        let [rows, columns] = sizes else { return None };
+        let (rows, columns) = if *rows == 1 { (*columns, 1) } else { (*rows, *columns) };
+        if rows < 2 || columns == 0 || values.len() != rows * columns {
+            return None;
+        }
+        Some(Self { name, columns: values.chunks(rows).map(<[f64]>::to_vec).collect() })
+    }
+
+    fn rows(&self) -> usize {
+        self.columns[0].len()
+    }
+}
+
+/// The variables of a MATLAB file as text, and what kind of file it is. Without a choice, all numeric variables of the
+/// most common length are the columns.
+///
+/// # Errors
+/// No file that can be read, no numbers in it, no such variable, in words.
+pub fn text(bytes: Vec<u8>, chosen: Option<&str>) -> Result<(String, String), String> {
+    let (mut variables, kind) = match is_hdf5(&bytes) {
+        true => (of_hdf5(bytes)?, "MATLAB file 7.3"),
+        false => (version_5::variables(&bytes)?, "MATLAB file 5"),
+    };
+    let names: Vec<String> = variables.iter().map(|variable| variable.name.clone()).collect();
+    if let Some(chosen) = chosen {
+        let inside = format!("{chosen}.");
+        variables.retain(|variable| variable.name == chosen || variable.name.starts_with(&inside));
+        if variables.is_empty() {
+            return Err(format!(
+                "there is no numeric variable \"{chosen}\" (variables: {})",
+                names.join(", ")
+            ));
+        }
+    }
+    if variables.is_empty() {
+        return Err("there is no numeric variable with more than one row (tables and timetables: save their columns as \
+                    vectors, or write a CSV file with writetable)"
+            .into());
+    }
+    let length = variables[0].rows();
+    if let Some(other) = variables.iter().find(|variable| variable.rows() != length) {
+        return Err(format!(
+            "its variables have different lengths, such as {length} of {} and {} of {} (choose one, or a structure, \
+             with --sheet; variables: {})",
+            variables[0].name,
+            other.rows(),
+            other.name,
+            names.join(", ")
+        ));
+    }
+    Ok((lines(&variables), format!("{kind}, {}", names_of(&variables))))
+}
+
+fn names_of(variables: &[Variable]) -> String {
+    match variables {
+        [one] => format!("variable {}", one.name),
+        several => format!("{} variables", several.len()),
+    }
+}
+
+fn lines(variables: &[Variable]) -> String {
+    let mut text = String::new();
+    let columns: Vec<(String, &Vec<f64>)> = variables.iter().flat_map(columns_of).collect();
+    for (place, (name, _)) in columns.iter().enumerate() {
+        text.push_str(if place == 0 { "" } else { "\t" });
+        text.push_str(name);
+    }
+    for row in 0..variables[0].rows() {
+        text.push('\n');
+        for (place, (_, values)) in columns.iter().enumerate() {
+            text.push_str(if place == 0 { "" } else { "\t" });
+            if values[row].is_finite() {
+                text.push_str(&shortest(values[row]));
+            }
+        }
+    }
+    text.push('\n');
+    text
+}
+
+/// The last part of a name says what it is; a matrix has numbered columns.
+fn columns_of(variable: &Variable) -> Vec<(String, &Vec<f64>)> {
+    let name = variable.name.rsplit('.').next().unwrap_or_default();
+    match variable.columns.as_slice() {
+        [one] => vec![(name.to_string(), one)],
+        several => {
+            several.iter().enumerate().map(|(k, values)| (format!("{name}_{}", k + 1), values)).collect()
+        }
+    }
+}
+
+fn of_hdf5(bytes: Vec<u8>) -> Result<Vec<Variable>, String> {
+    let file = File::from_bytes(bytes).map_err(|error| error.to_string())?;
+    let mut variables = Vec::new();
+    collect_group("", &file.root(), DEEPEST, &mut variables)?;
+    Ok(variables)
+}
+
+fn collect_group(path: &str, group: &Group, depth: usize, found: &mut Vec<Variable>) -> Result<(), String> {
+    let words = |error: hdf5_pure::Error| error.to_string();
+    for name in group.datasets().map_err(words)? {
+        let dataset = group.dataset(&name).map_err(words)?;
+        let is_numeric = matches!(
+            dataset.dtype(),
+            Ok(DType::F32 | DType::F64 | DType::I8 | DType::I16 | DType::I32 | DType::I64)
+                | Ok(DType::U8 | DType::U16 | DType::U32 | DType::U64)
+        );
+        if !is_numeric {
+            continue;
+        }
+        // MATLAB writes its columns as the rows of HDF5.
+        let mut sizes: Vec<usize> =
+            dataset.shape().map_err(words)?.iter().map(|&size| size as usize).collect();
+        sizes.reverse();
+        let values = dataset.read_f64().map_err(words)?;
+        found.extend(Variable::new(format!("{path}{name}"), &sizes, values));
+    }
+    // What MATLAB needs for itself begins with a number sign.
+    for name in group.groups().map_err(words)?.into_iter().filter(|name| !name.starts_with('#') && depth > 0)
+    {
+        let inner = group.group(&name).map_err(words)?;
+        collect_group(&format!("{path}{name}."), &inner, depth - 1, found)?;
+    }
+    Ok(())
+}

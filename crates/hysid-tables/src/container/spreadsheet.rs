@@ -1,0 +1,92 @@
+//! A sheet of a spreadsheet as text: a line for each row, cells separated by tabs.
+
+use std::io::Cursor;
+
+use calamine::{Data, ExcelDateTime, Range, Reader, open_workbook_auto_from_rs};
+
+use crate::number::shortest;
+
+/// The text of a sheet, its name, and the names of the others; the first that is not empty if none is chosen. Line `n` is row `n` of the sheet.
+///
+/// # Errors
+/// No spreadsheet, no such sheet, in words.
+pub fn text(bytes: &[u8], chosen: Option<&str>) -> Result<(String, String, Vec<String>), String> {
+    let mut book =
+        open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| "it is of an unknown kind".to_string())?;
+    let names = book.sheet_names();
+    let listed = || names.join(", ");
+    let mut sheet = |name: &str| book.worksheet_range(name).map_err(|error| format!("sheet {name}: {error}"));
+    if let Some(chosen) = chosen {
+        let by_number = chosen.parse::<usize>().ok().and_then(|number| names.get(number.checked_sub(1)?));
+        let name = names.iter().find(|name| *name == chosen).or(by_number);
+        let name = name.ok_or_else(|| format!("there is no sheet \"{chosen}\" (sheets: {})", listed()))?;
+        return Ok((lines(&sheet(name)?), name.clone(), others(&names, name)));
+    }
+    for name in &names {
+        let range = sheet(name)?;
+        if !range.is_empty() {
+            return Ok((lines(&range), name.clone(), others(&names, name)));
+        }
+    }
+    Err("all its sheets are empty".into())
+}
+
+fn others(names: &[String], chosen: &str) -> Vec<String> {
+    names.iter().filter(|name| *name != chosen).cloned().collect()
+}
+
+fn lines(range: &Range<Data>) -> String {
+    let (row, _) = range.start().unwrap_or_default();
+    let mut text = "\n".repeat(row as usize);
+    for cells in range.rows() {
+        for (place, cell) in cells.iter().enumerate() {
+            if place > 0 {
+                text.push('\t');
+            }
+            push(&mut text, cell);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn push(text: &mut String, cell: &Data) {
+    match cell {
+        Data::Empty => {}
+        Data::Int(number) => text.push_str(&number.to_string()),
+        Data::Float(number) => text.push_str(&shortest(*number)),
+        Data::Bool(truth) => text.push(if *truth { '1' } else { '0' }),
+        Data::DateTime(date) => text.push_str(&stamp(date)),
+        Data::Error(_) => text.push_str("#N/A"),
+        Data::String(words) | Data::DateTimeIso(words) | Data::DurationIso(words) => push_words(text, words),
+    }
+}
+
+/// Words in quotation marks where they have a character that divides.
+fn push_words(text: &mut String, words: &str) {
+    if words.contains(['\t', '\n', '\r', '"']) {
+        text.push('"');
+        text.push_str(&words.replace('"', "\"\""));
+        text.push('"');
+    } else {
+        text.push_str(words);
+    }
+}
+
+/// A date with a clock, or a clock alone for a time of day or a duration.
+fn stamp(date: &ExcelDateTime) -> String {
+    let days = date.as_f64();
+    let seconds = (days - days.floor()) * 86_400.0;
+    // Spreadsheets store days with fifteen digits: microseconds are beyond them.
+    let whole = (seconds * 1e5).round() / 1e5;
+    let clock = |hours: f64| {
+        let minutes = (whole / 60.0).floor();
+        let within_hour = minutes - 60.0 * (minutes / 60.0).floor();
+        format!("{:.0}:{within_hour:02.0}:{:08.5}", hours + (minutes / 60.0).floor(), whole - 60.0 * minutes)
+    };
+    if date.is_duration() || days < 1.0 {
+        return clock(24.0 * days.floor());
+    }
+    let (year, month, day, ..) = date.to_ymd_hms_milli();
+    format!("{year:04}-{month:02}-{day:02} {}", clock(0.0))
+}

@@ -1,0 +1,158 @@
+//! What is known of a table before its rows are read.
+
+use std::collections::HashMap;
+
+use anyhow::{Result, bail};
+use hysid_core::data::unit;
+use hysid_document::visible::clipped;
+
+use crate::layout::{Layout, bare};
+use crate::number::{DecimalSign, NumberFormat};
+use crate::reading::{Delimiter, Reading};
+
+/// A file and the layout of its table.
+#[derive(Debug)]
+pub struct Head {
+    /// The file, as the user named it.
+    pub file: String,
+    /// How the file is stored, in words, such as `text, UTF-8`.
+    pub stored: String,
+    /// Sheets of a spreadsheet that were not chosen.
+    pub other_sheets: Vec<String>,
+    /// Names of the columns, without surrounding blanks.
+    pub header: Vec<String>,
+    /// What the table looks like.
+    pub layout: Layout,
+    /// How the user wants it to be read.
+    pub reading: Reading,
+    places: HashMap<String, usize>,
+}
+
+impl Head {
+    /// Of a table with this layout.
+    pub fn new(file: String, stored: String, layout: Layout, reading: Reading) -> Self {
+        let header = layout.names.clone();
+        let places = header.iter().enumerate().map(|(place, name)| (name.clone(), place)).collect();
+        Self { file, stored, other_sheets: Vec::new(), header, layout, reading, places }
+    }
+
+    /// With the names of the sheets that were not chosen.
+    pub fn with_other_sheets(mut self, names: Vec<String>) -> Self {
+        self.other_sheets = names;
+        self
+    }
+
+    /// What separates the cells.
+    pub fn delimiter(&self) -> Delimiter {
+        self.layout.delimiter
+    }
+
+    /// How the numbers are written.
+    pub fn numbers(&self) -> &NumberFormat {
+        &self.layout.numbers
+    }
+
+    /// How the table was read, in words: how it is stored, what separates its cells, where its names stand.
+    pub fn described(&self) -> String {
+        let layout = &self.layout;
+        let mut words = vec![self.stored.clone()];
+        if !self.stored.starts_with("MATLAB") && !self.stored.starts_with("spreadsheet") {
+            words.push(format!("columns separated by {}", layout.delimiter.plural()));
+        }
+        match layout.numbers.decimal {
+            Some(DecimalSign::Point) => words.push("decimal point".into()),
+            Some(DecimalSign::Comma) => words.push("decimal comma".into()),
+            None => {}
+        }
+        if layout.preamble > 0 {
+            words.push(counted(layout.preamble as u64, "line", "before the table"));
+        }
+        match layout.header_lines.as_slice() {
+            [] => words.push("no names of columns".into()),
+            [line] => words.push(format!("names in line {line}")),
+            [first, .., last] => words.push(format!("names in lines {first} to {last}")),
+        }
+        if let Some(line) = layout.units_line {
+            words.push(format!("units in line {line}"));
+        }
+        let [first, others @ ..] = words.as_slice() else { return String::new() };
+        if others.is_empty() { first.clone() } else { format!("{first}; {}", others.join(", ")) }
+    }
+
+    /// What is said of a table without rows.
+    pub fn no_rows(&self) -> String {
+        let file = &self.file;
+        match self.other_sheets.as_slice() {
+            _ if !self.reading.rows.is_all() => format!("{file}: has no row that --rows selects"),
+            [] => format!("{file}: has a header but no rows"),
+            others => format!(
+                "{file}: has no rows of numbers in {} (choose another sheet with --sheet: {})",
+                self.stored.rsplit(", ").next().unwrap_or_default(),
+                others.iter().map(|name| clipped(name)).collect::<Vec<_>>().join(", ")
+            ),
+        }
+    }
+
+    /// Refuses a single column where more are needed: it is likely to be several, separated by something else.
+    ///
+    /// # Errors
+    /// The table has one column.
+    pub fn require_columns(&self) -> Result<()> {
+        if let [name] = self.header.as_slice() {
+            bail!(
+                "{}, line {}: there is only one column, \"{}\" (what separates the columns? name it with --delimiter)",
+                self.file,
+                self.layout.header_lines.first().unwrap_or(&self.layout.line),
+                clipped(name)
+            );
+        }
+        Ok(())
+    }
+
+    /// Place of a column: that of this name, or the only one of this name and a unit that the file gives elsewhere.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        let exact = self.places.get(name).copied();
+        exact.or_else(|| {
+            let is_it = |full: &&String| {
+                full.strip_prefix(name).is_some_and(|rest| rest.starts_with(" ["))
+                    && unit::split(full).0 == name
+            };
+            let mut found = self.header.iter().filter(is_it);
+            let only = found.next().filter(|_| found.next().is_none())?;
+            self.places.get(only).copied()
+        })
+    }
+
+    /// The full name of a column.
+    pub fn full_name(&self, name: &str) -> Option<&str> {
+        self.column(name).map(|place| self.header[place].as_str())
+    }
+
+    /// A cell without the unit that all numbers of its column have.
+    ///
+    /// # Errors
+    /// A number with another unit, in words.
+    pub fn bare<'c>(&self, place: usize, cell: &'c str) -> Result<&'c str, String> {
+        let Some(unit) = self.layout.cell_units.get(place).and_then(Option::as_deref) else {
+            return Ok(cell);
+        };
+        match bare(cell) {
+            (digits, Some(found)) if found == unit => Ok(digits),
+            (_, Some(found)) => {
+                Err(format!("\"{}\" is in {}, other cells are in {unit}", clipped(cell), clipped(found)))
+            }
+            (text, None) => Ok(text),
+        }
+    }
+
+    /// True for a column of dates or clocks.
+    pub fn has_stamps(&self, place: usize) -> bool {
+        self.layout.stamps.get(place) == Some(&true)
+    }
+}
+
+/// A count of something, in words.
+pub fn counted(count: u64, one: &str, where_it_is: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {one}{plural} {where_it_is}")
+}

@@ -1,0 +1,304 @@
+//! What a table in a text looks like: where it begins, what separates its cells, what its columns are called, and how its
+//! numbers are written. The table begins where columns of numbers begin; what stands above them with as many cells are
+//! their names and units, and everything before is a preamble.
+
+mod cells;
+mod header;
+mod lines;
+mod numbers;
+mod run;
+
+use anyhow::{Result, bail, ensure};
+
+use crate::number::NumberFormat;
+use crate::reading::{Delimiter, Reading};
+use header::Header;
+use lines::Line;
+use run::Run;
+
+pub use cells::{bare, split};
+pub use lines::is_comment;
+pub use run::is_row;
+
+/// Lines that a layout is found from.
+const MOST_LINES: usize = 300;
+
+/// Names of the column that tells records apart.
+const RECORDS: [&str; 2] = ["record", "segment"];
+
+/// True for the name of a column that tells records apart.
+pub fn is_record(name: &str) -> bool {
+    RECORDS.iter().any(|record| name.eq_ignore_ascii_case(record))
+}
+
+/// Rows with names that are a table, and no part of a preamble.
+const FEWEST_ROWS: usize = 3;
+
+/// Characters that may separate cells if the user names none.
+const DELIMITERS: [Delimiter; 5] = [
+    Delimiter::Character(b'\t'),
+    Delimiter::Character(b';'),
+    Delimiter::Character(b','),
+    Delimiter::Character(b'|'),
+    Delimiter::Blanks,
+];
+
+/// What a table looks like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// What separates the cells.
+    pub delimiter: Delimiter,
+    /// How the numbers are written.
+    pub numbers: NumberFormat,
+    /// Names of the columns, with the units that stand in a line of their own or in the cells.
+    pub names: Vec<String>,
+    /// Lines with the names; none for a table without names.
+    pub header_lines: Vec<u64>,
+    /// The line with the units, if there is one.
+    pub units_line: Option<u64>,
+    /// Lines before the header.
+    pub preamble: usize,
+    /// The unit that stands behind the numbers of each column.
+    pub cell_units: Vec<Option<String>>,
+    /// Columns of dates or clocks.
+    pub stamps: Vec<bool>,
+    /// Where the first row begins, in bytes, and its line.
+    pub start: usize,
+    /// Its line.
+    pub line: u64,
+}
+
+impl Layout {
+    /// The layout of a text of which the beginning is known; `is_all` if that is all.
+    ///
+    /// # Errors
+    /// An empty text, a line that the names do not fit.
+    pub fn find(file: &str, text: &str, is_all: bool, reading: &Reading) -> Result<Self> {
+        let lines = lines::lines(text, is_all, reading.skip);
+        ensure!(
+            lines.iter().any(|line| !line.is_blank()),
+            "{file}: is empty (expected a header line and rows of numbers)"
+        );
+        let delimiters = reading.delimiter.as_ref().map_or(&DELIMITERS[..], std::slice::from_ref);
+        let runs: Vec<Vec<Run>> = delimiters.iter().map(|&delimiter| Run::all(&lines, delimiter)).collect();
+        let best = |runs: &Vec<Run>| {
+            let all = runs.iter().cloned();
+            all.reduce(|best, run| if run.score() > best.score() { run } else { best })
+        };
+        let best_of_all = runs.iter().filter_map(|runs| Some((best(runs)?, runs)));
+        let Some((run, runs)) =
+            best_of_all.reduce(|best, other| if other.0.score() > best.0.score() { other } else { best })
+        else {
+            return Self::without_rows(file, &lines, reading);
+        };
+        let settled = |run: &Run| settled(file, &lines, run, reading);
+        let (run, header) = match first_with_names(runs, &run, settled) {
+            Some(found) => found,
+            None => settled(&run)?,
+        };
+        let first = &lines[run.lines.start];
+        let mut layout = Self {
+            delimiter: if run.width == 1 {
+                reading.delimiter.unwrap_or(Delimiter::COMMA)
+            } else {
+                run.delimiter
+            },
+            numbers: numbers::format(&lines, &run, reading),
+            preamble: (header.lines.first().copied().unwrap_or(first.number) - 1) as usize,
+            cell_units: run.units(),
+            stamps: run.stamps(),
+            names: header.names,
+            header_lines: header.lines,
+            units_line: header.units_line,
+            start: first.start,
+            line: first.number,
+        };
+        layout.name_units();
+        Ok(layout)
+    }
+
+    /// Of a text without a row of numbers: its first line is the header, and what follows is told where it is read.
+    fn without_rows(file: &str, lines: &[Line<'_>], reading: &Reading) -> Result<Self> {
+        let Some(place) = lines.iter().position(|line| !line.is_blank() && !line.is_comment) else {
+            bail!("{file}: is empty (expected a header line and rows of numbers)");
+        };
+        let line = &lines[place];
+        let most = |&delimiter: &Delimiter| cells::split(line.text, delimiter).len();
+        let delimiter = reading.delimiter.unwrap_or_else(|| {
+            let characters = DELIMITERS.iter().filter(|delimiter| **delimiter != Delimiter::Blanks);
+            let best = characters.rev().max_by_key(|delimiter| most(delimiter));
+            best.copied().filter(|delimiter| most(delimiter) > 1).unwrap_or(Delimiter::COMMA)
+        });
+        let names: Vec<String> =
+            cells::split(line.text, delimiter).iter().map(|cell| cell.text.trim().to_string()).collect();
+        let width = names.len();
+        Ok(Self {
+            delimiter,
+            numbers: numbers::chosen(reading),
+            names: header::distinct(names),
+            header_lines: vec![line.number],
+            units_line: None,
+            preamble: 0,
+            cell_units: vec![None; width],
+            stamps: vec![false; width],
+            start: line.end,
+            line: line.number + 1,
+        })
+    }
+
+    /// Adds units to names that have none: those in the cells, and the seconds that dates and clocks become.
+    fn name_units(&mut self) {
+        for (place, name) in self.names.iter_mut().enumerate() {
+            // Records have names, such as those of frequencies.
+            if is_record(name) {
+                self.cell_units[place] = None;
+                continue;
+            }
+            let unit = match (&self.cell_units[place], self.stamps[place]) {
+                (Some(unit), _) => unit.as_str(),
+                (None, true) => "s",
+                (None, false) => continue,
+            };
+            header::add_unit(name, unit);
+        }
+    }
+}
+
+/// A run with its first rows and its header. The last cell of every row may be empty: it is a column if it has a name.
+fn settled(file: &str, lines: &[Line<'_>], run: &Run, reading: &Reading) -> Result<(Run, Header)> {
+    let run = run.clone().with_rows_above(lines);
+    let header = |run: &Run| match reading.no_header {
+        true => Ok(Header::none(run.width)),
+        false => Header::above(file, lines, run, reading.units_row),
+    };
+    if let Some(trimmed) = run.trimmed() {
+        let whole = header(&run).ok().filter(|header| header.names_last);
+        if whole.is_none() {
+            let header = header(&trimmed)?;
+            return Ok((trimmed, header));
+        }
+    }
+    let header = header(&run)?;
+    Ok((run, header))
+}
+
+/// A run before the best one that is a table with names too: what follows it is told where it is read, and nothing is
+/// passed over in silence.
+fn first_with_names(
+    runs: &[Run],
+    best: &Run,
+    settled: impl Fn(&Run) -> Result<(Run, Header)>,
+) -> Option<(Run, Header)> {
+    let has_names = |run: &Run| settled(run).is_ok_and(|(_, header)| !header.lines.is_empty());
+    let is_table =
+        |run: &&Run| run.is_pure() && has_names(run) && (run.rows() >= FEWEST_ROWS || !has_names(best));
+    let before = runs.iter().take_while(|run| run.lines.start < best.lines.start);
+    let first = before.into_iter().find(is_table)?;
+    settled(first).ok()
+}
+
+/// What is said of a row with more or fewer cells than the table has columns.
+pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Delimiter) -> String {
+    let hint = match delimiter {
+        _ if row.iter().any(|cell| cell.contains(['\n', '\r'])) => " (is a quotation mark not closed?)",
+        Delimiter::COMMA if found > expected => " (decimal commas? separate the columns by semicolons)",
+        _ => "",
+    };
+    let cells = if found == 1 { "1 cell".to_string() } else { format!("{found} cells") };
+    format!("has {cells} where the header has {expected}{hint}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::DecimalSign;
+
+    fn layout(text: &str) -> Layout {
+        Layout::find("f", text, true, &Reading::default()).unwrap()
+    }
+
+    fn names(text: &str) -> Vec<String> {
+        layout(text).names
+    }
+
+    #[test]
+    fn delimiters_and_decimal_signs_are_found() {
+        use DecimalSign::{Comma, Point};
+        for (text, delimiter, decimal) in [
+            ("t;x;y\n0;1,5;2,5\n", "semicolon", Some(Comma)),
+            ("Force, kN;Travel, mm\n1,5;2,5\n", "semicolon", Some(Comma)),
+            ("t\tx, mm\n0\t1,5\n", "tab", Some(Comma)),
+            ("t,\"x;1\"\n0,1\n", "comma", None),
+            ("t,x\n0,1.5\n1,2.5\n", "comma", Some(Point)),
+            ("t x y\n 0.0  1.5 2.5\n 0.1  1.6 2.7\n", "blanks", Some(Point)),
+            ("0,0  1,5 2,5\n0,1  1,6 2,7\n", "blanks", Some(Comma)),
+            ("t|x\n0|1.5\n", "bar", Some(Point)),
+            ("x,y\n\"1,234.5\",\"2,000.25\"\n", "comma", Some(Point)),
+            ("x;y\n850;1\n920;2\n990;3\n1.012;4\n1.234;5\n-1.100;6\n", "semicolon", Some(Comma)),
+            ("t,x\n2024-03-01 12:00:00.5,1.25\n2024-03-01 12:00:01,1.5\n", "comma", Some(Point)),
+        ] {
+            let found = layout(text);
+            assert_eq!(
+                (found.delimiter.name().as_str(), found.numbers.decimal),
+                (delimiter, decimal),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_table_begins_where_columns_begin() {
+        let text = "Instrument: X-12\nDate;2024-03-01\nRate;1000;Hz\n\nTime;Displacement;Force\ns;mm;kN\n0;1,5;2\n1;2,5;3\n2;3;4\n";
+        let found = layout(text);
+        assert_eq!(found.names, ["Time [s]", "Displacement [mm]", "Force [kN]"]);
+        assert_eq!((found.preamble, found.line), (4, 7));
+        assert_eq!((found.header_lines, found.units_line), (vec![5], Some(6)));
+        assert_eq!(&text[found.start..found.start + 5], "0;1,5");
+    }
+
+    #[test]
+    fn tables_without_names_have_numbered_columns() {
+        assert_eq!(names("0 1.5 2\n1 2.5 3\n"), ["c1", "c2", "c3"]);
+        assert_eq!(names("# measured on Monday\n0,1.5\n1,2.5\n"), ["c1", "c2"]);
+        assert_eq!(names("0,1\n"), ["c1", "c2"]);
+    }
+
+    #[test]
+    fn names_may_stand_in_a_comment_or_lack_that_of_an_index() {
+        assert_eq!(names("# t x y\n0 1.5 2\n1 2.5 3\n"), ["t", "x", "y"]);
+        assert_eq!(names("\"x\" \"y\"\n\"1\" 0.5 2\n\"2\" 0.7 3\n"), ["c1", "x", "y"]);
+        assert_eq!(names(",x,y\n0,1.5,2\n1,2.5,3\n"), ["c1", "x", "y"]);
+        assert_eq!(names("X_Value\tForce\tComment\n0\t1.5\t\n1\t2.5\n2\t3.5\n"), ["X_Value", "Force"]);
+        assert_eq!(names("t,x,\n0,1.5,\n1,2.5,\n"), ["t", "x"]);
+    }
+
+    #[test]
+    fn units_stand_in_their_own_line_or_in_the_cells() {
+        assert_eq!(names("x,y\n1.5 mm,2 kN\n2.5 mm,3 kN\n"), ["x [mm]", "y [kN]"]);
+        assert_eq!(names("x\ty\n[mm]\t[kN]\n1\t2\n3\t4\n"), ["x [mm]", "y [kN]"]);
+        assert_eq!(names("x [mm],y\n1,2 N\n3,4 N\n"), ["x [mm]", "y [N]"]);
+        assert_eq!(names("clock,y\n12:00:00.5,2\n12:00:01,4\n"), ["clock [s]", "y"]);
+        // Names that are units too, over numbers.
+        assert_eq!(names("s,N\n1,2\n3,4\n"), ["s", "N"]);
+    }
+
+    #[test]
+    fn equal_names_are_numbered_or_told_by_the_line_above() {
+        assert_eq!(names("t,x,x\n0,1,2\n1,2,3\n"), ["t", "x", "x (2)"]);
+        assert_eq!(names("Left,Left,Right\nx,F,x\n0,1,2\n1,2,3\n"), ["Left x", "Left F", "Right x"]);
+    }
+
+    #[test]
+    fn a_line_of_text_among_rows_does_not_end_the_search() {
+        let found = layout("t,x,state\n0,1.5,ok\n1,2.5,ok\n2,n/a,fault\n3,4,ok\n");
+        assert_eq!((found.names.len(), found.line), (3, 2));
+    }
+
+    #[test]
+    fn text_without_rows_has_the_first_line_as_its_header() {
+        assert_eq!(names("t;x;y\n"), ["t", "x", "y"]);
+        assert_eq!(names("# remark\nt,x\na,b\n"), ["t", "x"]);
+        let error = Layout::find("f", " \n\n", true, &Reading::default()).unwrap_err().to_string();
+        assert!(error.starts_with("f: is empty"), "{error}");
+    }
+}

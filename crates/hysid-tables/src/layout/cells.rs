@@ -1,0 +1,135 @@
+//! The cells of a line, and what each of them is.
+
+use std::borrow::Cow;
+
+use hysid_core::data::unit;
+
+use crate::number::{self, NumberProblem};
+use crate::reading::Delimiter;
+use crate::stamp::Stamp;
+
+/// A cell of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell<'t> {
+    /// Without quotation marks.
+    pub text: Cow<'t, str>,
+    /// It stands in quotation marks.
+    pub is_quoted: bool,
+}
+
+/// What a cell is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Kind {
+    /// Empty, or a word for a missing value.
+    Missing,
+    /// A number, perhaps with a unit behind it.
+    Number(Option<String>),
+    /// A date with a clock, or a clock.
+    Stamp,
+    /// Anything else.
+    Text,
+}
+
+impl Cell<'_> {
+    /// What the cell is.
+    pub fn kind(&self) -> Kind {
+        let text = self.text.trim();
+        if number::is_missing(text) {
+            return Kind::Missing;
+        }
+        let (digits, unit) = bare(text);
+        match number::parsed(digits, None) {
+            Ok(_) | Err(NumberProblem::TooLarge) => Kind::Number(unit.map(String::from)),
+            Err(_) if Stamp::of(text).is_some() => Kind::Stamp,
+            Err(_) => Kind::Text,
+        }
+    }
+}
+
+/// A number without the known unit behind it, and that unit.
+pub fn bare(text: &str) -> (&str, Option<&str>) {
+    let text = text.trim();
+    let digits = text.trim_end_matches(|c: char| !(c.is_ascii_digit() || c == '.' || c == ','));
+    let unit = text[digits.len()..].trim();
+    match unit.is_empty() || digits.is_empty() {
+        false if unit::is_unit(unit) => (digits, Some(unit)),
+        _ => (text, None),
+    }
+}
+
+/// The cells of a line.
+pub fn split(line: &str, delimiter: Delimiter) -> Vec<Cell<'_>> {
+    let mut cells = Vec::new();
+    let is_end = |letter: char| match delimiter {
+        Delimiter::Character(character) => letter == char::from(character),
+        Delimiter::Blanks => letter == ' ' || letter == '\t',
+    };
+    let is_blanks = delimiter == Delimiter::Blanks;
+    let mut rest = if is_blanks { line.trim_matches([' ', '\t']) } else { line };
+    loop {
+        let (cell, length) = match rest.strip_prefix('"').and_then(|inner| quoted(inner, is_end)) {
+            Some((text, length)) => (Cell { text, is_quoted: true }, length + 1),
+            None => {
+                let length = rest.find(is_end).unwrap_or(rest.len());
+                (Cell { text: rest[..length].into(), is_quoted: false }, length)
+            }
+        };
+        cells.push(cell);
+        if length >= rest.len() {
+            return cells;
+        }
+        rest = &rest[length + 1..];
+        if is_blanks {
+            rest = rest.trim_start_matches([' ', '\t']);
+        }
+    }
+}
+
+/// The text up to the closing quotation mark, behind which the cell ends, and the length of both.
+fn quoted(inner: &str, is_end: impl Fn(char) -> bool) -> Option<(Cow<'_, str>, usize)> {
+    let mut from = 0;
+    loop {
+        let close = from + inner[from..].find('"')?;
+        let behind = &inner[close + 1..];
+        match behind.chars().next() {
+            Some('"') => from = close + 2,
+            Some(letter) if !is_end(letter) => return None,
+            _ => {
+                let text = &inner[..close];
+                let text = if text.contains('"') { text.replace("\"\"", "\"").into() } else { text.into() };
+                return Some((text, close + 1));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(line: &str, delimiter: Delimiter) -> Vec<String> {
+        split(line, delimiter).into_iter().map(|cell| cell.text.into_owned()).collect()
+    }
+
+    #[test]
+    fn lines_are_cut_at_delimiters_outside_quotation_marks() {
+        assert_eq!(texts("a,\"b,\"\"c\"\"\",,d", Delimiter::COMMA), ["a", "b,\"c\"", "", "d"]);
+        assert_eq!(texts("5\",6", Delimiter::COMMA), ["5\"", "6"]);
+        assert_eq!(texts("a,", Delimiter::COMMA), ["a", ""]);
+        assert_eq!(texts("  0.5 \t \"x y\"  2 ", Delimiter::Blanks), ["0.5", "x y", "2"]);
+    }
+
+    #[test]
+    fn cells_are_numbers_stamps_or_text() {
+        let kind = |text: &str| Cell { text: text.into(), is_quoted: false }.kind();
+        assert_eq!(kind("-1,5"), Kind::Number(None));
+        assert_eq!(kind(" 12.5 kN "), Kind::Number(Some("kN".into())));
+        assert_eq!(kind("3°"), Kind::Number(Some("°".into())));
+        assert_eq!(kind("20 °C"), Kind::Number(Some("°C".into())));
+        assert_eq!(kind("#N/A"), Kind::Missing);
+        assert_eq!(kind("12:00:00"), Kind::Stamp);
+        for text in ["force", "2024-03-01", "1.2.3", "5 apples", "mm"] {
+            assert_eq!(kind(text), Kind::Text, "{text}");
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The names and units above the rows of a table.
+
+use std::collections::HashSet;
+
+use anyhow::{Result, bail};
+use hysid_core::data::unit;
+
+use super::cells::{Cell, Kind, split};
+use super::lines::Line;
+use super::run::Run;
+use crate::number::is_missing;
+use crate::reading::Delimiter;
+
+/// Lines with names above a table.
+const MOST_LINES: usize = 4;
+
+/// Names of a column at the end that has no cell in any row.
+const REMARKS: [&str; 6] = ["comment", "comments", "remark", "remarks", "kommentar", "bemerkung"];
+
+/// Names of columns, and where they stand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// A name for each column.
+    pub names: Vec<String>,
+    /// Numbers of the lines with names.
+    pub lines: Vec<u64>,
+    /// Number of the line with units.
+    pub units_line: Option<u64>,
+    /// The last column has a name of its own.
+    pub names_last: bool,
+}
+
+/// A line above the rows.
+struct Row {
+    line: u64,
+    cells: Vec<String>,
+}
+
+impl Header {
+    /// That of a table without names: `c1`, `c2` and so on.
+    pub fn none(width: usize) -> Self {
+        Self {
+            names: distinct(vec![String::new(); width]),
+            lines: Vec::new(),
+            units_line: None,
+            names_last: false,
+        }
+    }
+
+    /// The names and units above a run of rows.
+    ///
+    /// # Errors
+    /// Names that do not fit the rows.
+    pub fn above(file: &str, lines: &[Line<'_>], run: &Run, has_units: bool) -> Result<Self> {
+        let mut rows: Vec<Row> = Vec::new();
+        for (place, line) in lines[..run.lines.start].iter().enumerate().rev() {
+            if line.is_blank() && rows.is_empty() {
+                continue;
+            }
+            let is_comment_above = line.is_comment && !rows.is_empty();
+            if line.is_blank() || is_comment_above || rows.len() == MOST_LINES {
+                break;
+            }
+            let cells = split(line.content(), run.delimiter);
+            match row(line, &cells, run, is_first(lines, place)) {
+                Fit::Row(row) => rows.push(row),
+                Fit::Nothing => break,
+                Fit::OtherWidth if rows.is_empty() && !line.is_comment && is_first(lines, place) => {
+                    return Err(other_width(file, line, &cells, run, &lines[run.lines.start]));
+                }
+                Fit::OtherWidth => break,
+            }
+        }
+        if rows.is_empty() && is_quoted_header(lines, run) {
+            bail!(
+                "{file}, line {}: the names of the columns are numbers in quotation marks (rename them)",
+                lines[run.lines.start].number
+            );
+        }
+        rows.reverse();
+        Ok(Self::of(rows, run.width, has_units))
+    }
+
+    fn of(mut rows: Vec<Row>, width: usize, has_units: bool) -> Self {
+        if rows.is_empty() {
+            return Self::none(width);
+        }
+        let units = match has_units {
+            true => Some(rows.len() - 1),
+            // A single line has the names, even if they are units too.
+            false => (1..rows.len()).rev().find(|&place| are_units(&rows[place].cells)),
+        };
+        let units = units.map(|place| (place, rows[place].line, rows[place].cells.clone()));
+        if let Some((place, ..)) = units {
+            // What stands below the units is a remark.
+            rows.truncate(place);
+        }
+        let lines = rows.iter().map(|row| row.line).collect();
+        let mut names = rows.pop().map_or_else(|| vec![String::new(); width], |row| row.cells);
+        if !are_distinct(&names)
+            && let Some(above) = rows.pop()
+        {
+            names = joined(&above.cells, &names);
+        }
+        if let Some((.., cells)) = &units {
+            names.iter_mut().zip(cells).for_each(|(name, unit)| add_unit(name, unit));
+        }
+        let names_last = names.last().is_some_and(|last| !is_remark(last));
+        Self { names: distinct(names), lines, units_line: units.map(|(_, line, _)| line), names_last }
+    }
+}
+
+/// Whether a line belongs to the header.
+enum Fit {
+    Row(Row),
+    /// It has names, but not as many as the rows have cells.
+    OtherWidth,
+    Nothing,
+}
+
+fn row(line: &Line<'_>, cells: &[Cell<'_>], run: &Run, is_first: bool) -> Fit {
+    let mut texts: Vec<String> = cells.iter().map(|cell| cell.text.trim().to_string()).collect();
+    let width = run.width;
+    if texts.len() == width + 1 && texts.last().is_some_and(|last| is_remark(last)) {
+        texts.pop();
+    } else if run.delimiter == Delimiter::Blanks && texts.len() != width {
+        texts = with_their_units(line.content()).filter(|texts| texts.len() == width).unwrap_or(texts);
+    }
+    // Tools for statistics leave out the name of the index.
+    if texts.len() + 1 == width && width > 2 && texts.iter().all(|text| is_name(text)) && run.counts {
+        texts.insert(0, String::new());
+    }
+    let names = texts.iter().filter(|text| is_name(text)).count();
+    if texts.len() != width {
+        let is_like_names = 2 * names > texts.len() && texts.len() > 1;
+        return if is_like_names { Fit::OtherWidth } else { Fit::Nothing };
+    }
+    // Over a column of numbers stands a name, or nothing; in the first line of a file, some names may be numbers.
+    let numbers =
+        texts.iter().zip(&run.columns).filter(|(text, column)| column.is_numeric() && is_number(text));
+    let filled = texts.iter().filter(|text| !text.is_empty()).count();
+    let numbers = numbers.count();
+    let has_names = names > 0 && 2 * names >= filled && (numbers == 0 || is_first && names > numbers);
+    if has_names && 2 * filled >= width {
+        Fit::Row(Row { line: line.number, cells: texts })
+    } else {
+        Fit::Nothing
+    }
+}
+
+fn is_remark(name: &str) -> bool {
+    name.is_empty() || REMARKS.contains(&name.to_lowercase().as_str())
+}
+
+fn is_number(text: &str) -> bool {
+    matches!(Cell { text: text.into(), is_quoted: false }.kind(), Kind::Number(None) | Kind::Stamp)
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && !is_number(text)
+}
+
+/// Names separated by blanks, of which some have their unit in brackets behind a blank, or that are separated by several
+/// blanks.
+fn with_their_units(line: &str) -> Option<Vec<String>> {
+    let mut names: Vec<String> = Vec::new();
+    for word in line.split_whitespace() {
+        match names.last_mut() {
+            Some(name) if word.starts_with(['(', '[']) => {
+                name.push(' ');
+                name.push_str(word);
+            }
+            _ => names.push(word.to_string()),
+        }
+    }
+    let by_gaps: Vec<String> =
+        line.split("  ").map(str::trim).filter(|name| !name.is_empty()).map(String::from).collect();
+    let has_units = names.iter().any(|name| name.contains(' '));
+    if has_units { Some(names) } else { Some(by_gaps).filter(|names| names.len() > 1) }
+}
+
+/// The first line that is neither blank nor a comment.
+fn is_first(lines: &[Line<'_>], place: usize) -> bool {
+    lines[..place].iter().all(|line| line.is_blank() || line.is_comment)
+}
+
+fn other_width(
+    file: &str,
+    line: &Line<'_>,
+    cells: &[Cell<'_>],
+    run: &Run,
+    first: &Line<'_>,
+) -> anyhow::Error {
+    let (names, width) = (cells.len(), run.width);
+    let hint = match run.delimiter {
+        Delimiter::Character(b',') if width == 2 * names => {
+            " (decimal commas? separate the columns by semicolons)".to_string()
+        }
+        _ => format!(" (skip the header with --skip {} --no-header)", line.number),
+    };
+    let width = if width == 1 { "1 cell".to_string() } else { format!("{width} cells") };
+    anyhow::anyhow!("{file}, line {}: has {width} where the header has {names}{hint}", first.number)
+}
+
+/// True if the first row is in quotation marks and the others are not: its numbers are names.
+fn is_quoted_header(lines: &[Line<'_>], run: &Run) -> bool {
+    let first = split(lines[run.lines.start].text, run.delimiter);
+    first.iter().all(|cell| cell.is_quoted) && run.columns.iter().all(|column| !column.is_quoted)
+}
+
+/// True for a line of units: in brackets, known, or none.
+fn are_units(cells: &[String]) -> bool {
+    let filled: Vec<&String> = cells.iter().filter(|cell| !is_missing(cell)).collect();
+    let is_one = |cell: &&&String| in_brackets(cell).is_some() || unit::is_unit(cell);
+    let units = filled.iter().filter(is_one).count();
+    units > 0 && units == filled.len() || units > 1 && 2 * units > filled.len()
+}
+
+fn in_brackets(text: &str) -> Option<&str> {
+    let inner = |open, close| text.strip_prefix(open)?.strip_suffix(close);
+    inner('[', ']').or_else(|| inner('(', ')'))
+}
+
+/// Adds a unit to a name that has none.
+pub fn add_unit(name: &mut String, unit: &str) {
+    let unit = in_brackets(unit).unwrap_or(unit).trim();
+    if !unit.is_empty() && !is_missing(unit) && unit::of_column(name).is_none() {
+        name.push_str(&format!(" [{unit}]"));
+    }
+}
+
+fn are_distinct(names: &[String]) -> bool {
+    let mut seen = HashSet::new();
+    names.iter().all(|name| seen.insert(name))
+}
+
+/// Each name behind the one above it; an empty cell above stands for the one to its left.
+fn joined(above: &[String], names: &[String]) -> Vec<String> {
+    let mut group = "";
+    let both = above.iter().zip(names).map(|(above, name)| {
+        group = if above.is_empty() { group } else { above };
+        format!("{group} {name}").trim().to_string()
+    });
+    both.collect()
+}
+
+/// Names of which none is empty and no two are equal.
+pub fn distinct(names: Vec<String>) -> Vec<String> {
+    let mut seen: HashSet<String> = HashSet::new();
+    let mut all = Vec::with_capacity(names.len());
+    for (place, name) in names.into_iter().enumerate() {
+        let name = if name.is_empty() { format!("c{}", place + 1) } else { name };
+        let numbered = (2..).map(|count| format!("{name} ({count})"));
+        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !seen.contains(name));
+        let free = free.unwrap_or(name);
+        seen.insert(free.clone());
+        all.push(free);
+    }
+    all
+}

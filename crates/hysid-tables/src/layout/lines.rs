@@ -1,0 +1,114 @@
+//! The lines of a text, those in quotation marks joined.
+
+use super::MOST_LINES;
+
+/// Lines that one pair of quotation marks may span.
+const LONGEST_QUOTE: usize = 8;
+
+/// A line.
+#[derive(Debug, Clone, Copy)]
+pub struct Line<'t> {
+    /// Without its end.
+    pub text: &'t str,
+    /// Where it begins, in bytes.
+    pub start: usize,
+    /// Where the next one begins.
+    pub end: usize,
+    /// Its number in the file, counted from 1.
+    pub number: u64,
+    /// It begins like a comment.
+    pub is_comment: bool,
+}
+
+impl<'t> Line<'t> {
+    /// True for a line without letters.
+    pub fn is_blank(&self) -> bool {
+        self.text.trim().is_empty()
+    }
+
+    /// A comment without its mark, any other line as it is.
+    pub fn content(&self) -> &'t str {
+        let text = self.text.trim_start();
+        match COMMENTS.iter().find(|mark| self.is_comment && text.starts_with(**mark)) {
+            Some(_) => text.trim_start_matches(['#', '%', '/', '!']).trim_start(),
+            None => self.text,
+        }
+    }
+}
+
+/// What comments begin with.
+const COMMENTS: [&str; 4] = ["#", "%", "//", "!"];
+
+/// True for a line that begins like a comment.
+pub fn is_comment(line: &str) -> bool {
+    let text = line.trim_start();
+    COMMENTS.iter().any(|mark| text.starts_with(mark))
+}
+
+/// The first lines of a text behind those that are skipped. A last line that may go on is left out unless the text is
+/// all there is.
+pub fn lines(text: &str, is_all: bool, skip: usize) -> Vec<Line<'_>> {
+    let mut physical = Vec::new();
+    let (mut start, mut number) = (0, 1);
+    while start < text.len() && physical.len() < MOST_LINES + skip + LONGEST_QUOTE {
+        let rest = &text[start..];
+        let end = rest.find(['\n', '\r']);
+        if end.is_none() && !is_all {
+            break;
+        }
+        let length = end.unwrap_or(rest.len());
+        let both = usize::from(rest[length..].starts_with("\r\n"));
+        let next = start + length + both + usize::from(end.is_some());
+        physical.push((start, start + length, next, number));
+        start = next;
+        number += 1;
+    }
+    let mut physical = physical.into_iter().skip(skip).peekable();
+    let mut lines = Vec::new();
+    while let Some((start, mut end, mut next, number)) = physical.next() {
+        if opens_quote(&text[start..end]) {
+            let mut ahead = physical.clone().take(LONGEST_QUOTE);
+            if let Some(closing) = ahead.position(|(_, end, ..)| is_balanced(&text[start..end])) {
+                (end, next) = physical.nth(closing).map_or((end, next), |(_, end, next, _)| (end, next));
+            }
+        }
+        let content = &text[start..end];
+        lines.push(Line { text: content, start, end: next, number, is_comment: is_comment(content) });
+    }
+    lines
+}
+
+fn is_balanced(text: &str) -> bool {
+    text.bytes().filter(|&byte| byte == b'"').count().is_multiple_of(2)
+}
+
+/// True for a line with a quotation mark at the beginning of a cell that is not closed.
+fn opens_quote(line: &str) -> bool {
+    let begins = |place: usize| {
+        line[..place].trim_end_matches(' ').chars().next_back().is_none_or(|before| "\t;,|".contains(before))
+    };
+    !is_balanced(line) && line.rfind('"').is_some_and(begins)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_have_numbers_and_places_whatever_ends_them() {
+        let text = "a\r\nb\rc\n\nd";
+        let found: Vec<(u64, &str)> =
+            lines(text, true, 0).iter().map(|line| (line.number, line.text)).collect();
+        assert_eq!(found, [(1, "a"), (2, "b"), (3, "c"), (4, ""), (5, "d")]);
+        assert_eq!(lines(text, false, 0).len(), 4);
+        assert_eq!(lines(text, true, 2)[0].start, 5);
+    }
+
+    #[test]
+    fn quotation_marks_join_lines_only_around_a_cell() {
+        let count = |text: &str| lines(text, true, 0).len();
+        assert_eq!(count("a,\"b\nc\"\n1,2\n"), 2);
+        assert_eq!(count("x (\")\n1\n2\n"), 3);
+        assert_eq!(count("a,\"b\n1,2\n3,4\n"), 3);
+    }
+}

@@ -1,0 +1,33 @@
+//! Tables of measurements as instruments and tools write them.
+//!
+//! ```text
+//! file, standard input ─► container ─► layout ─► rows ─► numbers
+//!                         gzip, encoding, spreadsheet, MATLAB
+//! ```
+//!
+//! A container gives text in UTF-8, whatever a file is. The layout of its first lines tells the delimiter, the names and
+//! units of the columns, and how numbers are written. Rows are read one after another, so that memory does not grow
+//! with the file. [`Reading`] says what a user knows better.
+
+mod blanks;
+mod column;
+mod container;
+mod head;
+mod layout;
+mod line_counter;
+mod number;
+mod reading;
+mod rows;
+mod stamp;
+mod table;
+mod time;
+
+pub use column::ColumnReader;
+pub use container::is_json;
+pub use head::Head;
+pub use layout::{Layout, is_record};
+pub use number::{CellReader, DecimalSign, NumberFormat, is_missing, push_shortest, shortest};
+pub use reading::{Delimiter, Encoding, Reading, RowSelection};
+pub use rows::{LeftOut, Row, Rows};
+pub use table::{Origin, Table};
+pub use time::{spread_equal, starts_again};

@@ -1,0 +1,457 @@
+//! The rows of a table one after another: memory does not grow with the file.
+
+use std::io::{Cursor, ErrorKind, Read};
+use std::path::Path;
+
+use anyhow::{Result, anyhow, bail, ensure};
+use csv_core::ReadRecordResult;
+
+use crate::blanks::TabsForBlanks;
+use crate::container::{BINARY, Text, reason};
+use crate::head::{Head, counted};
+use crate::layout::{Layout, is_comment, is_row, split, width_problem};
+use crate::line_counter::LineCounter;
+use crate::reading::{Delimiter, Reading};
+
+/// Bytes that are read at a time.
+const BLOCK: usize = 1 << 18;
+
+/// A row longer than this is no row, but a quotation mark that is not closed.
+const LONGEST_ROW: usize = 1 << 29;
+
+/// Lines from which a layout can be found.
+const FEWEST_LINES: usize = 6;
+
+/// Bytes at the end of a file that are looked through for rows, if they begin like none.
+const LONGEST_END: usize = 1 << 16;
+
+/// Reads the rows of a table.
+pub struct Rows {
+    /// File, layout and names of the columns.
+    pub head: Head,
+    reader: Box<dyn Read>,
+    parser: csv_core::Reader,
+    /// Bytes that were read; those of the present row are `start..start + parsed`, and `end` is where they end.
+    buffer: Vec<u8>,
+    start: usize,
+    parsed: usize,
+    end: usize,
+    is_all_read: bool,
+    /// The place before the present row.
+    lines: LineCounter,
+    /// The cells of the present row without quotation marks, one after the other, and where they end.
+    text: Vec<u8>,
+    ends: Vec<usize>,
+    cells: usize,
+    /// Rows behind the header so far, those that are not used among them.
+    read: u64,
+    /// Lines that are no rows: comments, and text behind the table.
+    pub left_out: LeftOut,
+}
+
+/// Lines that are no rows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Comments among the rows.
+    pub comments: u64,
+    /// Lines of text behind the table, and the first of them.
+    pub end: Option<(u64, u64)>,
+}
+
+impl LeftOut {
+    /// What was left out, in words; `None` if nothing was.
+    pub fn described(&self) -> Option<String> {
+        let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
+        let end = self.end.map(|(line, lines)| {
+            format!("{} (from line {line})", counted(lines, "line", "behind the table"))
+        });
+        let all: Vec<String> = comments.into_iter().chain(end).collect();
+        (!all.is_empty()).then(|| all.join(", "))
+    }
+}
+
+/// A row of a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'r> {
+    /// Its line in the file, counted from 1.
+    pub line: u64,
+    text: &'r str,
+    ends: &'r [usize],
+}
+
+impl<'r> Row<'r> {
+    /// Number of cells.
+    pub fn width(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// A cell, verbatim.
+    pub fn cell(&self, column: usize) -> &'r str {
+        let start = if column == 0 { 0 } else { self.ends[column - 1] };
+        &self.text[start..self.ends[column]]
+    }
+
+    /// All cells.
+    pub fn cells(self) -> impl Iterator<Item = &'r str> {
+        (0..self.width()).map(move |column| self.cell(column))
+    }
+
+    /// All cells one after the other, and where each ends.
+    pub fn parts(&self) -> (&'r str, &'r [usize]) {
+        (self.text, self.ends)
+    }
+
+    fn is_blank(&self) -> bool {
+        self.width() == 1 && self.text.trim().is_empty()
+    }
+}
+
+impl Rows {
+    /// Opens a file and finds the layout of its table.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no text, or has no table.
+    pub fn open(path: &Path, reading: &Reading) -> Result<Self> {
+        Self::of(Text::open(path, reading)?, reading)
+    }
+
+    /// Finds the layout of the table that a file with this content has.
+    ///
+    /// # Errors
+    /// As of [`Rows::open`].
+    pub fn from_bytes(path: &Path, bytes: &[u8], reading: &Reading) -> Result<Self> {
+        let reader = Box::new(Cursor::new(bytes.to_vec()));
+        Self::of(Text::new(path.display().to_string(), reader, reading)?, reading)
+    }
+
+    fn of(text: Text, reading: &Reading) -> Result<Self> {
+        let Text { file, mut reader, stored, other_sheets } = text;
+        let (first, is_all) = beginning(&file, &mut reader)?;
+        let valid = match std::str::from_utf8(&first) {
+            Ok(text) => text,
+            Err(error) => std::str::from_utf8(&first[..error.valid_up_to()])?,
+        };
+        let is_cut = first.len() - valid.len() < 4 && !is_all;
+        let layout = Layout::find(&file, valid, is_all || !is_cut && valid.len() < first.len(), reading)?;
+        let mut lines = LineCounter::new();
+        lines.pass(&first[..layout.start]);
+        let mut rest = Cursor::new(first);
+        rest.set_position(layout.start as u64);
+        let rest = rest.chain(reader);
+        let (reader, delimiter): (Box<dyn Read>, u8) = match layout.delimiter {
+            Delimiter::Character(delimiter) => (Box::new(rest), delimiter),
+            Delimiter::Blanks => (Box::new(TabsForBlanks::new(rest)), b'\t'),
+        };
+        Ok(Self {
+            head: Head::new(file, stored, layout, reading.clone()).with_other_sheets(other_sheets),
+            reader,
+            parser: csv_core::ReaderBuilder::new().delimiter(delimiter).build(),
+            buffer: Vec::new(),
+            start: 0,
+            parsed: 0,
+            end: 0,
+            is_all_read: false,
+            lines,
+            text: Vec::new(),
+            ends: Vec::new(),
+            cells: 0,
+            read: 0,
+            left_out: LeftOut::default(),
+        })
+    }
+
+    /// The next row that is used; `None` at the end.
+    ///
+    /// # Errors
+    /// A row with more or fewer cells than the table has columns, bytes that are no text, a file that cannot be read.
+    pub fn next_row(&mut self) -> Result<Option<Row<'_>>> {
+        Ok(self.next_row_of()?.map(|(_, row)| row))
+    }
+
+    /// As [`Rows::next_row`], with what is known of the table.
+    ///
+    /// # Errors
+    /// As of [`Rows::next_row`].
+    pub fn next_row_of(&mut self) -> Result<Option<(&Head, Row<'_>)>> {
+        let rows = self.head.reading.rows;
+        loop {
+            if rows.ends_before(self.read + 1) || !self.parse_row()? {
+                return Ok(None);
+            }
+            self.read += 1;
+            if rows.has(self.read) {
+                return Ok(Some((&self.head, self.row()?)));
+            }
+        }
+    }
+
+    /// Parses the next row that has as many cells as the table has columns; false at the end of the table.
+    fn parse_row(&mut self) -> Result<bool> {
+        loop {
+            if !self.parse()? {
+                return Ok(false);
+            }
+            let width = self.head.header.len();
+            if self.cells == width && width > 1 {
+                return Ok(true);
+            }
+            if self.cells == width + 1 && self.row()?.cell(width).trim().is_empty() {
+                self.cells = width;
+            }
+            let row = self.row()?;
+            if self.cells == width && (width > 1 || !row.is_blank()) {
+                return Ok(true);
+            }
+            if row.is_blank() {
+                continue;
+            }
+            if is_comment(row.cell(0)) {
+                self.left_out.comments += 1;
+                continue;
+            }
+            let (line, cells) = (row.line, row.cells().collect::<Vec<_>>());
+            let problem = width_problem(self.cells, width, &cells, self.head.delimiter());
+            let has_numbers = is_row(&cells);
+            if !has_numbers && let Some(lines) = self.lines_without_rows()? {
+                self.left_out.end = Some((line, lines));
+                return Ok(false);
+            }
+            let hint = match (has_numbers, self.read) {
+                (true, _) | (_, 0) => String::new(),
+                (false, rows) => format!(" (use the rows before it with --rows 1:{rows})"),
+            };
+            bail!("{}, line {line}: {problem}{hint}", self.head.file);
+        }
+    }
+
+    /// How many lines stand from the present row to the end of the file, if none of them is a row.
+    fn lines_without_rows(&mut self) -> Result<Option<u64>> {
+        while !self.is_all_read {
+            if self.end - self.start > LONGEST_END {
+                return Ok(None);
+            }
+            let (parsed, present) = (self.parsed, self.end - self.start);
+            self.fill()?;
+            // What is parsed stays: only the buffer moved.
+            debug_assert!(self.parsed == parsed && self.end - self.start >= present);
+        }
+        let Ok(rest) = std::str::from_utf8(&self.buffer[self.start..self.end]) else { return Ok(None) };
+        let delimiter = match self.head.delimiter() {
+            // Blanks are tabs by now.
+            Delimiter::Blanks => Delimiter::Character(b'\t'),
+            delimiter => delimiter,
+        };
+        let width = self.head.header.len();
+        let filled = || rest.lines().filter(|line| !line.trim().is_empty());
+        let is_row = |line: &str| {
+            let cells = split(line, delimiter);
+            let cells: Vec<&str> = cells.iter().map(|cell| &*cell.text).collect();
+            cells.len() == width && is_row(&cells)
+        };
+        Ok((!filled().any(is_row)).then(|| filled().count() as u64))
+    }
+
+    /// Parses the row behind the present one; false at the end.
+    fn parse(&mut self) -> Result<bool> {
+        self.lines.pass(&self.buffer[self.start..self.start + self.parsed]);
+        self.start += self.parsed;
+        (self.parsed, self.cells) = (0, 0);
+        let mut bytes = 0;
+        loop {
+            // An empty input would tell the parser that there is no more.
+            if self.start + self.parsed == self.end && !self.is_all_read {
+                self.fill_with_text()?;
+                continue;
+            }
+            let input = &self.buffer[self.start + self.parsed..self.end];
+            let (text, ends) = (&mut self.text[bytes..], &mut self.ends[self.cells..]);
+            let (result, read, written, ended) = self.parser.read_record(input, text, ends);
+            self.parsed += read;
+            bytes += written;
+            self.cells += ended;
+            match result {
+                ReadRecordResult::InputEmpty => self.fill_with_text()?,
+                ReadRecordResult::OutputFull => grow(&mut self.text),
+                ReadRecordResult::OutputEndsFull => grow(&mut self.ends),
+                ReadRecordResult::Record => return Ok(true),
+                ReadRecordResult::End => return Ok(false),
+            }
+        }
+    }
+
+    /// The present row.
+    fn row(&self) -> Result<Row<'_>> {
+        let ends = &self.ends[..self.cells];
+        let raw = &self.buffer[self.start..self.start + self.parsed];
+        match std::str::from_utf8(&self.text[..ends.last().copied().unwrap_or(0)]) {
+            // The end of one cell and the beginning of the next may make a letter that neither has.
+            Ok(text) if ends.iter().all(|&end| text.is_char_boundary(end)) => {
+                Ok(Row { line: self.lines.line_of(raw), text, ends })
+            }
+            _ => {
+                let valid = std::str::from_utf8(raw).map_or_else(|error| error.valid_up_to(), str::len);
+                let mut lines = self.lines;
+                lines.pass(&raw[..valid]);
+                bail!(
+                    "{}, line {}: is not {} text (name the encoding with --encoding, such as windows-1252, or save the \
+                     file as UTF-8)",
+                    self.head.file,
+                    lines.line(),
+                    encoding_rs::UTF_8.name()
+                )
+            }
+        }
+    }
+
+    /// As [`Rows::fill`], of a file that is known to begin as a table.
+    fn fill_with_text(&mut self) -> Result<()> {
+        let read = self.fill()?;
+        ensure!(!self.buffer[self.end - read..self.end].contains(&0), "{}: {BINARY}", self.head.file);
+        Ok(())
+    }
+
+    /// Reads on, behind what is not parsed yet; gives the number of bytes.
+    fn fill(&mut self) -> Result<usize> {
+        if self.start > 0 {
+            self.buffer.copy_within(self.start..self.end, 0);
+            (self.start, self.end) = (0, self.end - self.start);
+        }
+        if self.buffer.len() < self.end + BLOCK {
+            let (file, line) = (&self.head.file, self.lines.line_of(&self.buffer[..self.end]));
+            ensure!(
+                self.end < LONGEST_ROW,
+                "{file}, line {line}: the row is longer than {LONGEST_ROW} bytes (is a quotation mark not closed?)"
+            );
+            self.buffer.resize((2 * self.end).max(BLOCK), 0);
+        }
+        let read = loop {
+            match self.reader.read(&mut self.buffer[self.end..]) {
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                read => break read,
+            }
+        };
+        let read = read.map_err(|error| anyhow!("{}: cannot be read: {}", self.head.file, reason(&error)))?;
+        self.is_all_read = read == 0;
+        self.end += read;
+        Ok(read)
+    }
+}
+
+/// The beginning of a text, with enough lines to find the layout of its table; true if that is all.
+fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
+    let mut first = Vec::new();
+    let mut wanted = BLOCK;
+    loop {
+        let more = (wanted - first.len()) as u64;
+        let read = reader.take(more).read_to_end(&mut first);
+        read.map_err(|error| anyhow!("{file}: cannot be read: {}", reason(&error)))?;
+        let lines = first.iter().filter(|&&byte| byte == b'\n' || byte == b'\r').count();
+        if first.len() < wanted || lines >= FEWEST_LINES || wanted >= LONGEST_ROW {
+            let is_all = first.len() < wanted;
+            return Ok((first, is_all));
+        }
+        wanted *= 2;
+    }
+}
+
+fn grow<T: Default + Clone>(room: &mut Vec<T>) {
+    room.resize((2 * room.len()).max(256), T::default());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reading::RowSelection;
+
+    /// Gives a text in pieces of so many bytes.
+    struct Dripping(Vec<u8>, usize);
+
+    impl Read for Dripping {
+        fn read(&mut self, room: &mut [u8]) -> std::io::Result<usize> {
+            let some = self.1.min(self.0.len()).min(room.len());
+            let later = self.0.split_off(some);
+            room[..some].copy_from_slice(&self.0);
+            self.0 = later;
+            Ok(some)
+        }
+    }
+
+    fn rows(text: &[u8], piece: usize, reading: &Reading) -> Result<Rows> {
+        Rows::of(Text::new("f".into(), Box::new(Dripping(text.to_vec(), piece)), reading)?, reading)
+    }
+
+    fn read(text: &[u8], piece: usize) -> Result<Vec<(u64, Vec<String>)>> {
+        read_as(text, piece, &Reading::default())
+    }
+
+    fn read_as(text: &[u8], piece: usize, reading: &Reading) -> Result<Vec<(u64, Vec<String>)>> {
+        let mut rows = rows(text, piece, reading)?;
+        let mut all = vec![(0, rows.head.header.clone())];
+        while let Some(row) = rows.next_row()? {
+            all.push((row.line, row.cells().map(String::from).collect()));
+        }
+        Ok(all)
+    }
+
+    #[test]
+    fn rows_are_the_same_however_the_file_comes() {
+        let text =
+            "\u{feff}# a remark\r\n\r\nt;\"x; µ\"\n0;1,5\r\n\r\n1;\"a\r\n\"\"b\"\"\"\r2;\n   \n\"3\";µ";
+        let whole = read(text.as_bytes(), usize::MAX).unwrap();
+        let lines: Vec<u64> = whole.iter().map(|(line, _)| *line).collect();
+        assert_eq!(lines, [0, 4, 6, 8, 10]);
+        assert_eq!(whole[0].1, ["t", "x; µ"]);
+        assert_eq!(whole[2].1, ["1", "a\r\n\"b\""]);
+        for piece in 1..20 {
+            assert_eq!(read(text.as_bytes(), piece).unwrap(), whole, "{piece}");
+        }
+    }
+
+    #[test]
+    fn errors_are_the_same_however_the_file_comes() {
+        let cases: [(&[u8], &str); 4] = [
+            (
+                b"t,x\n0,1\n\n1,2,3\n",
+                "f, line 4: has 3 cells where the header has 2 (decimal commas? separate the columns by semicolons)",
+            ),
+            (b"t,x\n0,1\n1,2\n3,4\n5,\"\n\xb5\"\n", "f, line 6: is not UTF-8 text"),
+            (b"t,x\n0,1\n1,2\n3,4\n5,\0\n", "f: is a binary file, not a table of numbers"),
+            (b"t,x\n0,1\n1,2\n3,4\n5,\"6\n7,8\n", "f, line 5: has 2 cells where the header has 3"),
+        ];
+        for (text, expected) in &cases[..3] {
+            for piece in [1, 2, 3, 5, 7, 1000] {
+                let reading = Reading { encoding: "utf-8".parse().ok(), ..Reading::default() };
+                let error = read_as(text, piece, &reading).unwrap_err().to_string();
+                assert!(error.starts_with(expected), "{piece}: {error}");
+            }
+        }
+        // A quotation mark that is not closed swallows the rest.
+        let rest = read(cases[3].0, 3).unwrap();
+        assert_eq!(rest.last().unwrap().1, ["5", "6\n7,8\n"]);
+    }
+
+    #[test]
+    fn comments_and_text_behind_the_table_are_left_out_and_counted() {
+        let text = b"t x\n0 1\n# a pause\n1 2\n\nEnd of test\nOperator: N.N.\n";
+        let mut rows = rows(text, 1000, &Reading::default()).unwrap();
+        let mut lines = Vec::new();
+        while let Some(row) = rows.next_row().unwrap() {
+            lines.push(row.line);
+        }
+        assert_eq!(lines, [2, 4]);
+        assert_eq!(rows.left_out, LeftOut { comments: 1, end: Some((6, 2)) });
+        // Not if rows follow.
+        let error = read(b"t,x\n0,1\n1,2\nPart two\n2,3\n", 1000).unwrap_err().to_string();
+        assert!(error.starts_with("f, line 4: has 1 cell") && error.ends_with("--rows 1:2)"), "{error}");
+    }
+
+    #[test]
+    fn rows_are_selected() {
+        let text = "t,x\n0,1\n1,2\n2,3\n3,4\n4,5\n";
+        let rows: RowSelection = "2:5".parse().unwrap();
+        let reading = Reading { rows: RowSelection { every: 2, ..rows }, ..Reading::default() };
+        let found = read_as(text.as_bytes(), 100, &reading).unwrap();
+        let lines: Vec<u64> = found.iter().map(|(line, _)| *line).skip(1).collect();
+        assert_eq!(lines, [3, 5]);
+    }
+}

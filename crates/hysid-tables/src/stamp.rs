@@ -1,0 +1,233 @@
+//! Time stamps that are no plain numbers: a clock, or a date with a clock.
+
+use jiff::civil;
+
+/// Seconds of a day.
+const DAY: f64 = 86_400.0;
+
+/// A time stamp in a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stamp {
+    /// The date, if there is one.
+    date: Option<Date>,
+    /// Seconds since midnight.
+    seconds: f64,
+}
+
+/// A date as it is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Date {
+    /// Days since 1970.
+    Day(i64),
+    /// Two numbers of which one is the day and one the month, and the year.
+    Slashed(i16, i16, i16),
+}
+
+impl Stamp {
+    /// The time stamp in a cell: `12:30:05.25`, `2024-03-01T12:30:05Z`, `1.3.2024 12:30:05,25`, `3/1/2024 0:30:05 PM`;
+    /// `None` for anything else.
+    pub fn of(cell: &str) -> Option<Self> {
+        let cell = cell.trim();
+        // Most cells are numbers.
+        if !cell.contains(':') || !cell.starts_with(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        match cell.split_once(['T', ' ']) {
+            Some((date, clock)) if !date.contains(':') => {
+                Some(Self { date: Some(date_of(date)?), seconds: clock_of(clock.trim())? })
+            }
+            _ => Some(Self { date: None, seconds: clock_of(cell)? }),
+        }
+    }
+}
+
+/// The seconds of a clock, with an offset from universal time subtracted.
+fn clock_of(text: &str) -> Option<f64> {
+    let (text, half_day) = match text.char_indices().rev().find(|(_, c)| c.is_ascii_digit()) {
+        Some((last, _)) => match text[last + 1..].trim().to_ascii_uppercase().as_str() {
+            "" | "Z" => (&text[..=last], None),
+            "AM" | "A.M." => (&text[..=last], Some(0.0)),
+            "PM" | "P.M." => (&text[..=last], Some(0.5 * DAY)),
+            _ => return None,
+        },
+        None => return None,
+    };
+    let (clock, offset) = match text.rfind(['+', '-']) {
+        Some(place) => (text[..place].trim_end(), offset_of(&text[place..])?),
+        None => (text, 0.0),
+    };
+    let mut parts = clock.split(':');
+    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next()?);
+    if parts.next().is_some() || [hours, minutes].iter().any(|part| part.is_empty() || part.len() > 2) {
+        return None;
+    }
+    let is_plain = seconds.starts_with(|c: char| c.is_ascii_digit())
+        && seconds.chars().all(|c| c.is_ascii_digit() || c == '.' || c == ',');
+    let (hours, minutes): (u32, u32) = (hours.parse().ok()?, minutes.parse().ok()?);
+    let seconds: f64 = seconds.replace(',', ".").parse().ok().filter(|_| is_plain)?;
+    if minutes > 59 || seconds >= 61.0 {
+        return None;
+    }
+    let hours = match half_day {
+        Some(half) if (1..=12).contains(&hours) => f64::from(hours % 12) * 3600.0 + half,
+        Some(_) => return None,
+        None => f64::from(hours) * 3600.0,
+    };
+    Some(hours + f64::from(minutes) * 60.0 + seconds - offset)
+}
+
+/// `+01:00`, `-0530` or `+02` in seconds.
+fn offset_of(text: &str) -> Option<f64> {
+    let (sign, digits) = text.split_at(1);
+    let digits: String = digits.chars().filter(|&c| c != ':').collect();
+    let number = |part: &str| part.parse::<u32>().ok().map(f64::from);
+    let seconds = match digits.len() {
+        2 => 3600.0 * number(&digits)?,
+        4 => 3600.0 * number(&digits[..2])? + 60.0 * number(&digits[2..])?,
+        _ => return None,
+    };
+    Some(if sign == "-" { -seconds } else { seconds })
+}
+
+fn date_of(text: &str) -> Option<Date> {
+    let separator = text.chars().find(|c| !c.is_ascii_digit())?;
+    let parts: Vec<i16> =
+        text.split(separator).map(|part| part.parse().ok()).collect::<Option<Vec<i16>>>()?;
+    let [first, second, third] = parts[..] else { return None };
+    let long = |year: i16| if year < 100 { year + 2000 } else { year };
+    match separator {
+        '-' | '/' | '.' if first > 31 => day_of(first, second, third).map(Date::Day),
+        '.' => day_of(long(third), second, first).map(Date::Day),
+        '/' | '-' => {
+            let date = (day_of(long(third), first, second), day_of(long(third), second, first));
+            match date {
+                (None, None) => None,
+                (Some(day), None) | (None, Some(day)) => Some(Date::Day(day)),
+                _ => Some(Date::Slashed(first, second, long(third))),
+            }
+        }
+        _ => None,
+    }
+}
+
+/// Days since 1970.
+fn day_of(year: i16, month: i16, day: i16) -> Option<i64> {
+    let date = civil::Date::new(year, i8::try_from(month).ok()?, i8::try_from(day).ok()?).ok()?;
+    let since = date.since((jiff::Unit::Day, civil::date(1970, 1, 1))).ok()?;
+    Some(i64::from(since.get_days()))
+}
+
+/// Reads the time stamps of a column: seconds since the first one.
+#[derive(Debug, Clone, Default)]
+pub struct StampReader {
+    /// Day and seconds of the first stamp.
+    first: Option<(i64, f64)>,
+    /// Day of the stamp before, and its date as it is written.
+    day: i64,
+    date: Option<Date>,
+    seconds: f64,
+    /// Day and month stand in this order, once two dates have told it.
+    order: Option<DateOrder>,
+}
+
+/// The order of day and month in dates such as 3/4/2024.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum DateOrder {
+    MonthFirst,
+    DayFirst,
+}
+
+impl StampReader {
+    /// Seconds since the first stamp. A clock without a date that falls by more than half a day has passed midnight.
+    pub fn seconds(&mut self, stamp: Stamp) -> f64 {
+        let day = match stamp.date {
+            Some(date) if self.date == Some(date) => self.day,
+            Some(date) => match self.date {
+                Some(before) => self.day + self.days_between(before, date),
+                None => date.days().0,
+            },
+            None if self.first.is_some() && stamp.seconds < self.seconds - 0.5 * DAY => self.day + 1,
+            None => self.day,
+        };
+        (self.day, self.date, self.seconds) = (day, stamp.date, stamp.seconds);
+        let (first_day, first_seconds) = *self.first.get_or_insert((day, stamp.seconds));
+        (day - first_day) as f64 * DAY + (stamp.seconds - first_seconds)
+    }
+
+    /// Days from one date to another. The first two dates between which both orders of day and month give different
+    /// numbers of days decide for that with fewer.
+    fn days_between(&mut self, before: Date, now: Date) -> i64 {
+        let (before, now) = (before.days(), now.days());
+        let (month_first, day_first) = (now.0 - before.0, now.1 - before.1);
+        if month_first == day_first {
+            return month_first;
+        }
+        let order = *self.order.get_or_insert(match month_first.abs() < day_first.abs() {
+            true => DateOrder::MonthFirst,
+            false => DateOrder::DayFirst,
+        });
+        match order {
+            DateOrder::MonthFirst => month_first,
+            DateOrder::DayFirst => day_first,
+        }
+    }
+}
+
+impl Date {
+    /// The days since 1970 that the date may be: with the month first, and with the day first.
+    fn days(self) -> (i64, i64) {
+        match self {
+            Self::Day(day) => (day, day),
+            Self::Slashed(one, other, year) => {
+                (day_of(year, one, other).unwrap_or(0), day_of(year, other, one).unwrap_or(0))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(cells: &[&str]) -> Vec<f64> {
+        let mut reader = StampReader::default();
+        cells.iter().map(|cell| reader.seconds(Stamp::of(cell).unwrap_or_else(|| panic!("{cell}")))).collect()
+    }
+
+    #[test]
+    fn clocks_run_over_midnight() {
+        assert_eq!(seconds(&["23:59:59.5", "0:00:00.25", "00:00:01,0"]), [0.0, 0.75, 1.5]);
+        assert_eq!(seconds(&["11:59:59 AM", "12:00:01 PM", "1:00:00 PM"]), [0.0, 2.0, 3601.0]);
+    }
+
+    #[test]
+    fn dates_are_read_as_countries_write_them() {
+        for cells in [
+            ["2024-02-29T23:59:59.900Z", "2024-03-01T00:00:00.100Z"],
+            ["2024-02-29 23:59:59.900", "2024-03-01 00:00:00.100"],
+            ["29.02.2024 23:59:59,900", "01.03.2024 00:00:00,100"],
+            ["2/29/2024 11:59:59.900 PM", "3/1/2024 12:00:00.100 AM"],
+            ["29/02/24 23:59:59.900", "01/03/24 00:00:00.100"],
+            ["2024-02-29T23:59:59.900+01:00", "2024-03-01T01:00:00.100+02:00"],
+        ] {
+            let found = seconds(&cells);
+            assert!((found[1] - 0.2).abs() < 1e-9, "{cells:?} {found:?}");
+        }
+        // Either order of day and month: the next day, and no month later.
+        assert_eq!(seconds(&["3/4/2024 00:00:00", "3/5/2024 00:00:00", "3/6/2024 00:00:00"])[2], 2.0 * DAY);
+        assert_eq!(seconds(&["12/4/2024 00:00:00", "13/4/2024 00:00:00"])[1], DAY);
+        // The order that was found holds for later dates.
+        let days = ["1/8/2024 00:00:00", "1/9/2024 00:00:00", "1/1/2024 00:00:00", "2/3/2024 00:00:00"];
+        assert_eq!(seconds(&days)[3], 26.0 * DAY);
+        assert_eq!(seconds(&["3/4/2024 00:00:00", "4/4/2024 00:00:00", "5/4/2024 00:00:00"])[2], 2.0 * DAY);
+    }
+
+    #[test]
+    fn other_text_is_no_time_stamp() {
+        for cell in
+            ["1.5", "12:30", "25", "2024-03-01", "a:b:c", "1:75:00", "2024-13-01 00:00:00", "::", "1:2:3:4"]
+        {
+            assert_eq!(Stamp::of(cell), None, "{cell}");
+        }
+    }
+}

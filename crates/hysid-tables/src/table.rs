@@ -1,0 +1,128 @@
+//! A table as a whole: all its cells, each row with its line.
+
+use std::ops::Deref;
+use std::path::Path;
+
+use anyhow::{Result, ensure};
+
+use crate::head::Head;
+use crate::reading::Reading;
+use crate::rows::{LeftOut, Rows};
+
+/// A table as it stands in its file.
+#[derive(Debug)]
+pub struct Table {
+    origin: Origin,
+    /// The cells of all rows one after the other, verbatim.
+    text: String,
+    /// Where each cell ends in `text`.
+    ends: Vec<usize>,
+}
+
+/// Where the rows of a table stand: what is left of it when its cells have been read.
+#[derive(Debug)]
+pub struct Origin {
+    head: Head,
+    /// Line of each row in the file, counted from 1.
+    pub lines: Vec<u64>,
+    /// Lines that are no rows.
+    pub left_out: LeftOut,
+}
+
+impl Deref for Table {
+    type Target = Origin;
+
+    fn deref(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+impl Deref for Origin {
+    type Target = Head;
+
+    fn deref(&self) -> &Head {
+        &self.head
+    }
+}
+
+impl Table {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no text, or is no table with a header and at least one row.
+    pub fn read(path: &Path, reading: &Reading) -> Result<Self> {
+        Self::of(Rows::open(path, reading)?)
+    }
+
+    /// The table that a file with this content holds.
+    ///
+    /// # Errors
+    /// As of [`Table::read`].
+    pub fn from_bytes(path: &Path, bytes: &[u8], reading: &Reading) -> Result<Self> {
+        Self::of(Rows::from_bytes(path, bytes, reading)?)
+    }
+
+    fn of(mut rows: Rows) -> Result<Self> {
+        let (mut lines, mut all, mut all_ends) = (Vec::new(), String::new(), Vec::new());
+        while let Some(row) = rows.next_row()? {
+            let (text, ends) = row.parts();
+            lines.push(row.line);
+            all_ends.extend(ends.iter().map(|end| all.len() + end));
+            all.push_str(text);
+        }
+        let origin = Origin { left_out: rows.left_out, head: rows.head, lines };
+        let table = Self { origin, text: all, ends: all_ends };
+        ensure!(!table.lines.is_empty(), "{}", table.no_rows());
+        Ok(table)
+    }
+
+    /// The table without its cells, which need several times the memory of their numbers.
+    pub fn into_origin(self) -> Origin {
+        self.origin
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// A cell, verbatim.
+    pub fn cell(&self, row: usize, column: usize) -> &str {
+        let index = row * self.header.len() + column;
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        &self.text[start..self.ends[index]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<u64> {
+        Table::from_bytes(Path::new("f"), text.as_bytes(), &Reading::default()).unwrap().into_origin().lines
+    }
+
+    /// The last byte of one cell and the first of the next make a letter together, and nothing alone.
+    #[test]
+    fn a_letter_cut_in_two_by_a_delimiter_is_no_text() {
+        for text in [b"x,y\n1\xc9,\xb72\n".as_slice(), b"x\xc9,\xb7y\n1,2\n"] {
+            let error = Table::from_bytes(
+                Path::new("f"),
+                text,
+                &Reading { encoding: "utf-8".parse().ok(), ..Reading::default() },
+            )
+            .unwrap_err()
+            .to_string();
+            assert!(error.contains("f, line"), "{error}");
+        }
+    }
+
+    #[test]
+    fn rows_know_their_lines() {
+        assert_eq!(lines("a,b\n1,2\n3,4\n"), [2, 3]);
+        assert_eq!(lines("a,b\r\n1,2\r\n\r\n3,4"), [2, 4]);
+        assert_eq!(lines("a,b\r1,2\r3,4\r"), [2, 3]);
+        assert_eq!(lines("# a remark\n\n#\na,b\n\n1,2\n   \n3,4\n"), [6, 8]);
+        assert_eq!(lines("a,\"b\nc\"\n1,2\n"), [3]);
+    }
+}
