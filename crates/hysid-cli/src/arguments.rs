@@ -33,6 +33,12 @@ pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 #[derive(Debug, Parser)]
 #[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
 pub struct Arguments {
+    /// Say only warnings and errors on stderr
+    ///
+    /// What was understood of the data, progress and the names of written files are left out. Results on stdout stay, and
+    /// so do the lines after Ctrl-C.
+    #[arg(short, long, global = true, display_order = 1000)]
+    pub quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -426,7 +432,7 @@ pub struct Invert {
     /// reference best.
     #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, hide_short_help = true)]
     pub preview: Preview,
-    /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
+    /// Add the inputs whose band of this probability, such as 0.9, contains the wanted output
     ///
     /// The columns with `_low` and `_high` behind the name of the drive are the lowest and the highest of them.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]

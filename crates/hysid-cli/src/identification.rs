@@ -23,7 +23,7 @@ use rayon::ThreadPool;
 use crate::checkpoint::Keeper;
 use crate::data::Data;
 use crate::errors_table::AFTER_WARM_UP;
-use crate::messages::{note, summarised, warning};
+use crate::messages::{insist, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
 use crate::{errors_table, files, interrupt, understanding};
@@ -296,5 +296,5 @@ pub fn report_path(model: &Path) -> PathBuf {
 
 /// Says that Ctrl-C or a signal was obeyed.
 pub fn note_interrupted(path: &Path) {
-    note(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
+    insist(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
 }

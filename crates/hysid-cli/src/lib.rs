@@ -16,6 +16,7 @@ mod date;
 mod diagnosis;
 mod errors_table;
 mod files;
+mod help;
 mod identification;
 mod interrupt;
 mod inversion;
@@ -45,7 +46,7 @@ use data::Data;
 use hysid::data::record::Dataset;
 use hysid::options::chosen::RateChoice;
 use hysid_tables::{Reading, Table};
-use messages::{StdoutClosed, Usage, note};
+use messages::{StdoutClosed, Usage, insist};
 
 /// How a command ended when nothing went wrong.
 enum Outcome {
@@ -61,6 +62,9 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return refuse(error),
     };
+    if arguments.quiet {
+        messages::be_quiet();
+    }
     let outcome = match arguments.command {
         Command::Demo(arguments) => commands::demo::run(&arguments),
         Command::Fit(arguments) => commands::fit::run(&arguments),
@@ -83,7 +87,7 @@ pub fn run() -> ExitCode {
         // Whoever read the results has seen enough.
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
-            note(format_args!("error: {error:#}"));
+            insist(format_args!("error: {error:#}{}", help::pointer(&error)));
             if interrupt::requested() && matches!(error.downcast_ref(), Some(hysid::Error::Stopped)) {
                 return ExitCode::from(interrupt::exit_status());
             }
@@ -127,7 +131,7 @@ fn refuse(error: clap::Error) -> ExitCode {
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
             let said = said.join(" ");
             let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
-            note(format_args!("{said} (see `hysid --help`)"));
+            insist(format_args!("{said} (see `{}`)", help::of_typed_command()));
             ExitCode::from(2)
         }
     }
