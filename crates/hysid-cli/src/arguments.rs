@@ -4,6 +4,7 @@ mod cycles;
 mod examples;
 mod limits;
 mod model_options;
+mod program;
 mod reading;
 
 use std::ops::RangeInclusive;
@@ -27,6 +28,7 @@ pub use cycles::Cycles;
 use examples::*;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
+pub use program::{Completions, Man, Models};
 pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
@@ -66,8 +68,13 @@ impl Arguments {
                 _ => option,
             }
         };
-        let command = Self::command().mut_subcommands(|command| command.mut_args(takes_numbers));
+        let command = Self::whole().mut_subcommands(|command| command.mut_args(takes_numbers));
         Self::from_arg_matches(&command.try_get_matches()?)
+    }
+
+    /// The definition of the whole command line.
+    pub fn whole() -> clap::Command {
+        Self::command()
     }
 }
 
@@ -102,6 +109,12 @@ pub enum Command {
     Export(Export),
     /// Measure the speed of Hysid on this machine
     Bench(Bench),
+    /// List all models, or show what a model file holds
+    Models(Models),
+    /// Print a script by which a shell completes commands and options
+    Completions(Completions),
+    /// Write manual pages
+    Man(Man),
 }
 
 /// Arguments of `demo`.

@@ -18,10 +18,12 @@ mod errors_table;
 mod files;
 mod help;
 mod identification;
+mod inspection;
 mod interrupt;
 mod inversion;
 mod looked;
 mod messages;
+mod model_list;
 mod progress;
 mod quantities;
 mod record_names;
@@ -80,6 +82,9 @@ pub fn run() -> ExitCode {
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
+        Command::Models(arguments) => commands::models::run(&arguments),
+        Command::Completions(arguments) => commands::completions::run(&arguments),
+        Command::Man(arguments) => commands::man::run(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

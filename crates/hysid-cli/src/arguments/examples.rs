@@ -80,5 +80,5 @@ Examples:
 
 pub(super) const BENCH_EXAMPLES: &str = "\
 Examples:
-  hysid bench                    a table
+  hysid bench                    a table: median, lowest and highest of several runs
   hysid bench --json             one JSON object, for scripts";
