@@ -4,6 +4,7 @@ mod cycles;
 mod examples;
 mod limits;
 mod model_options;
+mod program;
 mod reading;
 
 use std::ops::RangeInclusive;
@@ -27,12 +28,19 @@ pub use cycles::Cycles;
 use examples::*;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
+pub use program::{Completions, Man, Models};
 pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
 #[command(name = "hysid", version, arg_required_else_help = true, max_term_width = 80)]
 pub struct Arguments {
+    /// Say only warnings and errors on stderr
+    ///
+    /// What was understood of the data, progress and the names of written files are left out. Results on stdout stay, and
+    /// so do the lines after Ctrl-C.
+    #[arg(short, long, global = true, display_order = 1000)]
+    pub quiet: bool,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -60,8 +68,13 @@ impl Arguments {
                 _ => option,
             }
         };
-        let command = Self::command().mut_subcommands(|command| command.mut_args(takes_numbers));
+        let command = Self::whole().mut_subcommands(|command| command.mut_args(takes_numbers));
         Self::from_arg_matches(&command.try_get_matches()?)
+    }
+
+    /// The definition of the whole command line.
+    pub fn whole() -> clap::Command {
+        Self::command()
     }
 }
 
@@ -96,6 +109,12 @@ pub enum Command {
     Export(Export),
     /// Measure the speed of Hysid on this machine
     Bench(Bench),
+    /// List all models, or show what a model file holds
+    Models(Models),
+    /// Print a script by which a shell completes commands and options
+    Completions(Completions),
+    /// Write manual pages
+    Man(Man),
 }
 
 /// Arguments of `demo`.
@@ -426,7 +445,7 @@ pub struct Invert {
     /// reference best.
     #[arg(long, value_name = "TIME", default_value = "auto", value_parser = limits::preview, hide_default_value = true, hide_short_help = true)]
     pub preview: Preview,
-    /// Add the inputs whose prediction band of this probability, such as 0.9, contains the wanted output
+    /// Add the inputs whose band of this probability, such as 0.9, contains the wanted output
     ///
     /// The columns with `_low` and `_high` behind the name of the drive are the lowest and the highest of them.
     #[arg(long, value_name = "PROBABILITY", value_parser = probability)]

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod compare;
+pub mod completions;
 pub mod cycles;
 pub mod demo;
 pub mod diagnose;
@@ -11,6 +12,8 @@ pub mod fit;
 pub mod generate;
 pub mod invert;
 pub mod look;
+pub mod man;
+pub mod models;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

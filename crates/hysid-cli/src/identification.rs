@@ -22,8 +22,8 @@ use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
 use crate::data::Data;
-use crate::errors_table::AFTER_WARM_UP;
-use crate::messages::{note, summarised, warning};
+use crate::inspection::stored_errors;
+use crate::messages::{insist, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet};
 use crate::{errors_table, files, interrupt, understanding};
@@ -231,9 +231,7 @@ impl Identified {
     /// Errors, size, time and files, for stdout.
     pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
         let provenance = self.model.provenance();
-        let mut sets = vec![("train", &provenance.train)];
-        sets.extend(provenance.train_after_warm_up.as_ref().map(|errors| (AFTER_WARM_UP, errors)));
-        sets.extend(provenance.validation.as_ref().map(|errors| ("validation", errors)));
+        let mut sets = stored_errors(provenance);
         sets.extend(unseen.map(|errors| ("unseen test", errors)));
         let mut text = errors_table::errors_table(&sets);
         if let Some(selection) = &provenance.selection {
@@ -296,5 +294,5 @@ pub fn report_path(model: &Path) -> PathBuf {
 
 /// Says that Ctrl-C or a signal was obeyed.
 pub fn note_interrupted(path: &Path) {
-    note(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
+    insist(format_args!("interrupted: the best model so far is in {}", files::shown(path)));
 }

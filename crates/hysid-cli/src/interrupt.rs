@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use anyhow::{Context, Result};
 
-use crate::messages::note;
+use crate::messages::insist;
 
 /// What is added to a signal's number to give the exit status, as shells do.
 const SIGNALLED: u8 = 128;
@@ -34,7 +34,7 @@ fn hear(signal: u8, answer: &str) {
     if HEARD.compare_exchange(0, signal, Ordering::SeqCst, Ordering::SeqCst).is_err() {
         std::process::exit((SIGNALLED + signal).into());
     }
-    note(format_args!("{answer} (Ctrl-C again stops at once)"));
+    insist(format_args!("{answer} (Ctrl-C again stops at once)"));
 }
 
 #[cfg(unix)]

@@ -16,11 +16,14 @@ mod date;
 mod diagnosis;
 mod errors_table;
 mod files;
+mod help;
 mod identification;
+mod inspection;
 mod interrupt;
 mod inversion;
 mod looked;
 mod messages;
+mod model_list;
 mod progress;
 mod quantities;
 mod record_names;
@@ -45,7 +48,7 @@ use data::Data;
 use hysid::data::record::Dataset;
 use hysid::options::chosen::RateChoice;
 use hysid_tables::{Reading, Table};
-use messages::{StdoutClosed, Usage, note};
+use messages::{StdoutClosed, Usage, insist};
 
 /// How a command ended when nothing went wrong.
 enum Outcome {
@@ -61,6 +64,9 @@ pub fn run() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return refuse(error),
     };
+    if arguments.quiet {
+        messages::be_quiet();
+    }
     let outcome = match arguments.command {
         Command::Demo(arguments) => commands::demo::run(&arguments),
         Command::Fit(arguments) => commands::fit::run(&arguments),
@@ -76,6 +82,9 @@ pub fn run() -> ExitCode {
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),
         Command::Bench(arguments) => commands::bench::run(&arguments),
+        Command::Models(arguments) => commands::models::run(&arguments),
+        Command::Completions(arguments) => commands::completions::run(&arguments),
+        Command::Man(arguments) => commands::man::run(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
@@ -83,7 +92,7 @@ pub fn run() -> ExitCode {
         // Whoever read the results has seen enough.
         Err(error) if error.is::<StdoutClosed>() => ExitCode::SUCCESS,
         Err(error) => {
-            note(format_args!("error: {error:#}"));
+            insist(format_args!("error: {error:#}{}", help::pointer(&error)));
             if interrupt::requested() && matches!(error.downcast_ref(), Some(hysid::Error::Stopped)) {
                 return ExitCode::from(interrupt::exit_status());
             }
@@ -127,7 +136,7 @@ fn refuse(error: clap::Error) -> ExitCode {
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
             let said = said.join(" ");
             let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
-            note(format_args!("{said} (see `hysid --help`)"));
+            insist(format_args!("{said} (see `{}`)", help::of_typed_command()));
             ExitCode::from(2)
         }
     }

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
 use std::mem::{self, Discriminant};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
 use hysid::data::warning::Warning;
@@ -61,8 +62,28 @@ pub fn stdout_failed(error: io::Error) -> anyhow::Error {
     }
 }
 
-/// Says one line on stderr.
+/// True after `--quiet`.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on stderr gets only warnings, errors and what a signal caused.
+pub fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// True if only warnings and errors are wanted.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Says one line on stderr, unless only warnings and errors are wanted: what was understood, progress, where files are.
 pub fn note(text: fmt::Arguments) {
+    if !is_quiet() {
+        insist(text);
+    }
+}
+
+/// Says one line on stderr, whether or not the program is to be quiet: an error, or what a signal caused.
+pub fn insist(text: fmt::Arguments) {
     // Nobody is left to be told if this fails.
     let _ = writeln!(io::stderr().lock(), "{}", terminal::line(&text.to_string()));
 }
@@ -90,5 +111,5 @@ pub fn summarised(warnings: &[Warning]) -> Vec<String> {
 
 /// Warns on stderr.
 pub fn warning(text: impl fmt::Display) {
-    note(format_args!("warning: {text}"));
+    insist(format_args!("warning: {text}"));
 }

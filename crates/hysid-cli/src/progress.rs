@@ -1,5 +1,8 @@
 //! The observer of a fit: a bar on a terminal, now and then a line elsewhere; Ctrl-C and time limit.
 
+mod line;
+mod remaining;
+
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -8,17 +11,17 @@ use hysid::fit::network::Progress;
 use hysid::model::history::Phase;
 use hysid::options::network::Method;
 use hysid::significant::Significant;
+use hysid_document::plain::WIDTH;
 use indicatif::{ProgressBar, ProgressStyle};
+use line::Line;
+use remaining::Remaining;
 
 use crate::checkpoint::Keeper;
 use crate::interrupt;
-use crate::messages::{note, warning};
+use crate::messages::{is_quiet, note, warning};
 
 /// Without a terminal, one line in this time at most.
 const BETWEEN_LINES: Duration = Duration::from_secs(2);
-
-/// Steps of the bar.
-const STEPS: f64 = 1000.0;
 
 /// Follows a fit, or the fits to several folds one after the other.
 pub struct Follower {
@@ -35,16 +38,18 @@ pub struct Follower {
     /// Smallest training error so far.
     best: f64,
     bar: Option<ProgressBar>,
+    remaining: Remaining,
     last_line: Instant,
 }
 
 impl Follower {
     /// Begins now, and ends at the limit, if any.
     pub fn new(starts: usize, time_limit: Option<f64>, keeper: Option<Keeper>) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::new(STEPS as u64);
-            let style = ProgressStyle::with_template("[{bar:24}] {percent:>3} % {msg}");
-            bar.set_style(style.expect("the template is sound").progress_chars("=> "));
+        let bar = (std::io::stderr().is_terminal() && !is_quiet()).then(|| {
+            let bar = ProgressBar::new_spinner();
+            // What is wider than the terminal is cut: it may have been made narrower since.
+            let style = ProgressStyle::with_template("{wide_msg}");
+            bar.set_style(style.expect("the template is sound"));
             bar
         });
         let now = Instant::now();
@@ -59,6 +64,7 @@ impl Follower {
             failed: false,
             best: f64::INFINITY,
             bar,
+            remaining: Remaining::default(),
             last_line: now,
         }
     }
@@ -80,12 +86,15 @@ impl Follower {
         };
         let (place, of) = self.fold;
         let done = (place as f64 + progress.done) / of as f64;
+        let line = self.line(progress, done);
         if let Some(bar) = &self.bar {
-            bar.set_position((done * STEPS) as u64);
-            bar.set_message(self.text(progress, done));
+            // The last column stays free: some terminals wrap when it is filled.
+            let columns = columns().saturating_sub(1);
+            bar.set_message(line.in_columns(columns));
+            bar.tick();
         } else if self.last_line.elapsed() >= BETWEEN_LINES {
             self.last_line = Instant::now();
-            note(format_args!("{:3.0} % {}", 100.0 * done, self.text(progress, done)));
+            note(format_args!("{}", line.without_bar(WIDTH)));
         }
         let over =
             self.limit.is_some_and(|limit| self.fold_started.elapsed() >= limit) || interrupt::requested();
@@ -94,7 +103,7 @@ impl Follower {
             && !std::mem::replace(&mut self.failed, true)
         {
             // The fit is worth more than its checkpoint.
-            warning(format_args!("the fit continues without a checkpoint: {error}"));
+            self.warn(&format!("the fit continues without a checkpoint: {error}"));
         }
         if over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -107,6 +116,14 @@ impl Follower {
         }
     }
 
+    /// Warns without disturbing the bar.
+    pub fn warn(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| warning(text)),
+            None => warning(text),
+        }
+    }
+
     /// Takes the bar away; tells the seconds spent.
     pub fn finish(self) -> f64 {
         if let Some(bar) = &self.bar {
@@ -115,21 +132,36 @@ impl Follower {
         self.started.elapsed().as_secs_f64()
     }
 
-    fn text(&self, progress: &Progress, done: f64) -> String {
+    fn line(&mut self, progress: &Progress, done: f64) -> Line {
         let (place, of) = self.fold;
-        let fold = if of > 1 { format!("fold {} of {of}, ", place + 1) } else { String::new() };
-        format!("{fold}{}, {:.0} s left", part(progress, self.starts, self.best), self.seconds_left(done))
+        let left = self.remaining.after(self.started.elapsed().as_secs_f64(), done, self.limit_left());
+        Line {
+            done,
+            fold: (of > 1).then_some((place + 1, of)),
+            part: part(progress, self.starts, self.best),
+            error: error(progress, self.best),
+            left: left.map(remaining::in_words),
+        }
     }
 
-    /// As far as the work done so far tells, and at most what the limit leaves.
-    fn seconds_left(&self, done: f64) -> f64 {
-        let elapsed = self.started.elapsed().as_secs_f64();
-        let left = elapsed / done.max(1e-3) * (1.0 - done);
-        let Some(limit) = self.limit.map(|limit| limit.as_secs_f64()) else { return left };
+    /// Seconds that the time limit leaves to this fold and those behind it.
+    fn limit_left(&self) -> Option<f64> {
+        let limit = self.limit?.as_secs_f64();
         let (place, of) = self.fold;
         let of_this = (limit - self.fold_started.elapsed().as_secs_f64()).max(0.0);
-        left.min(of_this + (of - place - 1) as f64 * limit)
+        Some(of_this + (of - place - 1) as f64 * limit)
     }
+}
+
+/// Columns of the terminal behind stderr.
+fn columns() -> usize {
+    terminal_size::terminal_size_of(std::io::stderr()).map_or(WIDTH, |(width, _)| usize::from(width.0))
+}
+
+/// The training error so far, if the work has one.
+fn error(progress: &Progress, best: f64) -> Option<String> {
+    let has_none = progress.is_part || progress.phase == Phase::Starts || best == f64::INFINITY;
+    (!has_none).then(|| format!("{:.3}", Significant(best)))
 }
 
 /// What is being done, in words.
@@ -143,7 +175,7 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
     }
     let is_first = best == f64::INFINITY;
     let epoch = progress.epoch;
-    let part = match progress.method {
+    match progress.method {
         // Several starts at a time have no epoch in common.
         Method::LevenbergMarquardt | Method::Subgradient if starts > 1 => format!("{starts} starts"),
         Method::LevenbergMarquardt | Method::Subgradient | Method::Genetic if is_first => {
@@ -154,9 +186,5 @@ fn part(progress: &Progress, starts: usize, best: f64) -> String {
         Method::Genetic => format!("generation {epoch}"),
         Method::LeastSquares if is_first && epoch == 0 => "least squares".into(),
         Method::LeastSquares => format!("round {epoch}"),
-    };
-    if is_first {
-        return part;
     }
-    format!("{part}, error {:.3} % of std", Significant(best))
 }

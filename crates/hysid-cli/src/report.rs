@@ -6,8 +6,8 @@ mod errors;
 mod figures;
 pub mod histories;
 mod neurons;
-mod parameters;
-mod provenance;
+pub mod parameters;
+pub mod provenance;
 mod residuals;
 mod usage;
 
@@ -94,9 +94,9 @@ pub fn time_label(data: &Dataset) -> String {
 }
 
 /// The first input as the model sees it, with its unit: spread about zero, maybe.
-fn seen_label(report: &Report) -> String {
-    let input = &report.model.names().inputs[0];
-    match report.model.input_transform().companding {
+fn seen_label(model: &Model) -> String {
+    let input = &model.names().inputs[0];
+    match model.input_transform().companding {
         None => unit::label(input),
         Some(scale) => {
             let scale = unit::with(&number(scale, 3), input);

@@ -361,7 +361,7 @@ fn bench_tells_value_unit_and_setting() {
     ];
     assert_eq!(sorted(keys(&bench)), sorted(promised.to_vec()));
     for speed in bench.as_object().unwrap().values() {
-        assert_eq!(sorted(keys(speed)), ["setting", "unit", "value"]);
+        assert_eq!(sorted(keys(speed)), ["highest", "lowest", "runs", "setting", "unit", "value"]);
         assert!(speed["value"].as_f64().unwrap() > 0.0);
     }
     // A generation is 50 evaluations on all threads, and a gradient takes longer than a value: progress reports within an

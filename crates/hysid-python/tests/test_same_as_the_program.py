@@ -160,7 +160,7 @@ def test_options_have_the_program_s_names(program, tmp_path):
     files = {"record", "time", "input", "output", "inverse", "out", "json", "no_report", "help", "checkpoint"}
     # How a file is read: Python takes arrays.
     files |= {"delimiter", "decimal", "skip", "no_header", "units_row", "missing", "encoding", "sheet"}
-    files |= {"rows", "every", "zero"}
+    files |= {"rows", "every", "zero", "quiet"}
     files |= {"resume", "force"}
     assert offered - files == keywords - {"x", "y", "time", "records", "progress"}
 

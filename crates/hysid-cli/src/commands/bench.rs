@@ -1,6 +1,7 @@
 //! `hysid bench`: speed on this machine.
 
 mod duhem_nn;
+mod spread;
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -17,10 +18,13 @@ use hysid::network::scaling::Scaling;
 use hysid::network::{Family, Network, Sizes};
 use hysid::operator::{Operator, Stop};
 use hysid::options::network::{FitOptions, Method, Trainer};
+use hysid::significant::Significant;
+use hysid_document::plain::indented;
 
 use crate::Outcome;
 use crate::arguments::Bench;
 use crate::messages::{json_results, note, results};
+use spread::Spread;
 
 /// Samples of the simulation.
 const SAMPLES: usize = 1_000_000;
@@ -34,29 +38,41 @@ const EVALUATIONS: usize = 200;
 /// A speed is the median of this many runs.
 const RUNS: usize = 9;
 
+/// The time of a whole fit is the median of this many fits.
+const FITS: usize = 3;
+
 /// One measured speed.
 #[derive(serde::Serialize)]
 struct Speed {
-    value: f64,
+    #[serde(flatten)]
+    spread: Spread,
     unit: &'static str,
     setting: String,
 }
 
-fn speed(value: f64, unit: &'static str, setting: String) -> Speed {
-    Speed { value, unit, setting }
+fn speed(spread: Spread, unit: &'static str, setting: String) -> Speed {
+    Speed { spread, unit, setting }
+}
+
+impl Speed {
+    /// Name, median and spread in a line of at most 80 columns, then the setting.
+    fn text(&self, name: &str) -> String {
+        let Spread { value, lowest, highest, runs } = self.spread;
+        let number = |value| format!("{:.4}", Significant(value));
+        let spread = format!("{} to {} in {runs} runs", number(lowest), number(highest));
+        format!("{name:<39} {:>7} {:<2} ({spread})\n{}", number(value), self.unit, indented(&self.setting, 4))
+    }
 }
 
 /// Runs the command.
 pub fn run(arguments: &Bench) -> Result<Outcome> {
     let instructions = hysid::simd::instruction_set();
     if !arguments.json {
-        note(format_args!("measuring, a few seconds (instruction set: {instructions})"));
+        note(format_args!("measuring, a minute or two (instruction set: {instructions})"));
         note(format_args!(""));
     }
     let speeds = speeds(instructions)?;
-    let line = |(name, speed): (&&str, &Speed)| {
-        format!("{name:<32} {:>10.4} {}\n    {}\n", speed.value, speed.unit, speed.setting)
-    };
+    let line = |(name, speed): (&&str, &Speed)| speed.text(name);
     match arguments.json {
         true => json_results(&speeds)?,
         false => results(&speeds.iter().map(line).collect::<String>())?,
@@ -74,9 +90,11 @@ fn speeds(instructions: &str) -> Result<BTreeMap<&'static str, Speed>> {
     };
     let network = format!("xpnn, 10 stops, 10 hidden, rate, deterioration, {instructions}");
 
-    let began = Instant::now();
-    fit(&data, &options, &mut |_| ControlFlow::Continue(()))?;
-    let fit_s = began.elapsed().as_secs_f64();
+    let fit_s = Spread::over(FITS, || {
+        let began = Instant::now();
+        fit(&data, &options, &mut |_| ControlFlow::Continue(()))?;
+        Ok(began.elapsed().as_secs_f64())
+    })?;
     let one_thread =
         rayon::ThreadPoolBuilder::new().num_threads(1).build().context("cannot start a thread")?;
     let (fitted, iteration_ms) = one_thread.install(|| one_start(&data, &options))?;
@@ -207,27 +225,31 @@ fn record(samples: usize) -> Result<Record> {
     Ok(Record::new("bench", vec![x], y)?.with_time(time)?)
 }
 
-/// A fit by Levenberg-Marquardt from one start, and the milliseconds of an iteration.
-fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fitted, f64)> {
+/// A fit by Levenberg-Marquardt from one start, and the milliseconds of an iteration, fit by fit.
+fn one_start(data: &Dataset, options: &FitOptions) -> Result<(Fitted, Spread)> {
     let defaults = FitOptions::of(Trainer::LevenbergMarquardt);
     let options =
         FitOptions { starts: 1, training: defaults.training, epochs: defaults.epochs, ..options.clone() };
-    let mut iterations = 0usize;
-    let began = Instant::now();
-    let fitted = fit(data, &options, &mut |progress| {
-        iterations = progress.epoch;
-        ControlFlow::Continue(())
+    let mut fitted = None;
+    let spread = Spread::over(FITS, || {
+        let mut iterations = 0usize;
+        let began = Instant::now();
+        fitted = Some(fit(data, &options, &mut |progress| {
+            iterations = progress.epoch;
+            ControlFlow::Continue(())
+        })?);
+        Ok(1e3 * began.elapsed().as_secs_f64() / iterations.max(1) as f64)
     })?;
-    Ok((fitted, 1e3 * began.elapsed().as_secs_f64() / iterations.max(1) as f64))
+    Ok((fitted.context("there was a fit")?, spread))
 }
 
 /// Speeds of the paper's training.
 struct PaperTrainer {
-    evaluation_us: f64,
-    generation_ms: f64,
-    subgradient_us: f64,
-    iteration_us: f64,
-    hybrid_s: f64,
+    evaluation_us: Spread,
+    generation_ms: Spread,
+    subgradient_us: Spread,
+    iteration_us: Spread,
+    hybrid_s: Spread,
 }
 
 fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fitted) -> Result<PaperTrainer> {
@@ -235,26 +257,37 @@ fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fitted) -> Resul
     let objective = Objective::new(data, &scaling, options.architecture(data)?, options)?;
     let parameters = network(fitted)?.parameters();
     let value = objective.value(parameters);
-    let evaluation_us = 1e-3
-        * median(|| {
-            for _ in 0..EVALUATIONS {
-                black_box(objective.value(black_box(parameters)));
-            }
-            Ok(EVALUATIONS)
-        })?;
-    let subgradient_us = 1e-3
-        * median(|| {
-            for _ in 0..EVALUATIONS {
-                black_box(objective.gradient(black_box(parameters), &value));
-            }
-            Ok(EVALUATIONS)
-        })?;
+    let evaluation_us = ns_of_one(|| {
+        for _ in 0..EVALUATIONS {
+            black_box(objective.value(black_box(parameters)));
+        }
+        Ok(EVALUATIONS)
+    })?
+    .times(1e-3);
+    let subgradient_us = ns_of_one(|| {
+        for _ in 0..EVALUATIONS {
+            black_box(objective.gradient(black_box(parameters), &value));
+        }
+        Ok(EVALUATIONS)
+    })?
+    .times(1e-3);
     // The whole training tells the rest: when its first phase ended, and when its second.
     let hybrid = FitOptions { stall: 0, starts: 1, ..FitOptions::of(Trainer::Hybrid) };
     let hybrid = FitOptions { model: options.model, sizes: options.sizes, rate: options.rate, ..hybrid };
+    let mut measured: [Vec<f64>; 3] = Default::default();
+    for _ in 0..FITS {
+        let times = hybrid_training(data, &hybrid)?;
+        measured.iter_mut().zip(times).for_each(|(all, one)| all.push(one));
+    }
+    let [generation_ms, iteration_us, hybrid_s] = measured.map(Spread::of);
+    Ok(PaperTrainer { evaluation_us, generation_ms, subgradient_us, iteration_us, hybrid_s })
+}
+
+/// A whole training: milliseconds of a generation, microseconds of an outer iteration, seconds of all.
+fn hybrid_training(data: &Dataset, hybrid: &FitOptions) -> Result<[f64; 3]> {
     let began = Instant::now();
     let (mut genetic_s, mut generations, mut epochs) = (0.0, 0usize, 0usize);
-    fit(data, &hybrid, &mut |progress| {
+    fit(data, hybrid, &mut |progress| {
         // Progress is also reported within an epoch.
         epochs = progress.epoch;
         if progress.method == Method::Genetic {
@@ -264,13 +297,11 @@ fn paper_trainer(data: &Dataset, options: &FitOptions, fitted: &Fitted) -> Resul
         ControlFlow::Continue(())
     })?;
     let hybrid_s = began.elapsed().as_secs_f64();
-    Ok(PaperTrainer {
-        evaluation_us,
-        subgradient_us,
-        generation_ms: 1e3 * genetic_s / generations.max(1) as f64,
-        iteration_us: 1e6 * (hybrid_s - genetic_s) / (epochs - generations).max(1) as f64,
+    Ok([
+        1e3 * genetic_s / generations.max(1) as f64,
+        1e6 * (hybrid_s - genetic_s) / (epochs - generations).max(1) as f64,
         hybrid_s,
-    })
+    ])
 }
 
 fn network(fitted: &Fitted) -> Result<&Network> {
@@ -278,7 +309,7 @@ fn network(fitted: &Fitted) -> Result<&Network> {
 }
 
 /// The network alone: scaled inputs and rates in, scaled outputs out.
-fn network_ns(fitted: &Fitted) -> Result<f64> {
+fn network_ns(fitted: &Fitted) -> Result<Spread> {
     let mut simulator = network(fitted)?.simulator();
     free_run_ns(|u, y| {
         simulator.reset();
@@ -286,7 +317,7 @@ fn network_ns(fitted: &Fitted) -> Result<f64> {
     })
 }
 
-fn single_precision_ns(fitted: &Fitted) -> Result<f64> {
+fn single_precision_ns(fitted: &Fitted) -> Result<Spread> {
     let mut simulator = network(fitted)?.simulator_in_single_precision();
     free_run_ns(|u, y| {
         simulator.reset();
@@ -295,11 +326,11 @@ fn single_precision_ns(fitted: &Fitted) -> Result<f64> {
 }
 
 /// Time of one sample of a free run, which takes scaled inputs.
-fn free_run_ns(mut run: impl FnMut(&[&[f64]], &mut [f64])) -> Result<f64> {
+fn free_run_ns(mut run: impl FnMut(&[&[f64]], &mut [f64])) -> Result<Spread> {
     let x = record(SAMPLES)?.inputs()[0].to_vec();
     let rate: Vec<f64> = x.iter().map(|x| 1.0 - x * x).collect();
     let mut y = vec![0.0; SAMPLES];
-    median(|| {
+    ns_of_one(|| {
         run(black_box(&[&x, &rate]), &mut y);
         black_box(&y);
         Ok(SAMPLES)
@@ -307,18 +338,18 @@ fn free_run_ns(mut run: impl FnMut(&[&[f64]], &mut [f64])) -> Result<f64> {
 }
 
 /// All that a record takes: rates by central differences, units, a new output.
-fn record_ns(model: &Model) -> Result<f64> {
+fn record_ns(model: &Model) -> Result<Spread> {
     let record = record(SAMPLES)?;
-    median(|| {
+    ns_of_one(|| {
         black_box(model.simulate(black_box(&record))?);
         Ok(SAMPLES)
     })
 }
 
-fn step_ns(fitted: &Fitted) -> Result<f64> {
+fn step_ns(fitted: &Fitted) -> Result<Spread> {
     let record = record(SAMPLES / 10)?;
     let time = record.time().context("the record has time stamps")?;
-    median(|| {
+    ns_of_one(|| {
         let mut stepper = fitted.model.stepper();
         for (x, t) in record.inputs()[0].iter().zip(time) {
             black_box(stepper.step(&[*x], *t, None)?);
@@ -327,14 +358,11 @@ fn step_ns(fitted: &Fitted) -> Result<f64> {
     })
 }
 
-/// Median over several runs of the nanoseconds for one sample; a run tells its samples.
-fn median(mut run: impl FnMut() -> Result<usize>) -> Result<f64> {
-    let mut times = Vec::with_capacity(RUNS);
-    for _ in 0..RUNS {
+/// Nanoseconds for one sample, over several runs; a run tells its samples.
+fn ns_of_one(mut run: impl FnMut() -> Result<usize>) -> Result<Spread> {
+    Spread::over(RUNS, || {
         let began = Instant::now();
         let samples = run()?;
-        times.push(1e9 * began.elapsed().as_secs_f64() / samples as f64);
-    }
-    times.sort_by(f64::total_cmp);
-    Ok(times[RUNS / 2])
+        Ok(1e9 * began.elapsed().as_secs_f64() / samples as f64)
+    })
 }

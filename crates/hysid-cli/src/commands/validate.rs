@@ -17,7 +17,7 @@ use crate::commands::fit::{request, warn_of_ignored};
 use crate::data::{Data, read_tables};
 use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
-use crate::messages::{json_results, note, results};
+use crate::messages::{insist, json_results, results};
 use crate::progress::Follower;
 
 /// What came of the folds, and how it came about.
@@ -59,8 +59,10 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
             if interrupt::requested() {
                 break;
             }
-            follower
-                .say(&format!("fold {} of {all}: stopped by the time limit before a first model", place + 1));
+            follower.warn(&format!(
+                "fold {} of {all}: stopped by the time limit before a first model",
+                place + 1
+            ));
             continue;
         }
         let model = fitted.map_err(|error| data.explain(error))?.model;
@@ -85,7 +87,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         if !interrupt::requested() {
             return Err(hysid::Error::Stopped.into());
         }
-        note(format_args!("interrupted before the first fold was finished"));
+        insist(format_args!("interrupted before the first fold was finished"));
         return Ok(Outcome::Interrupted);
     };
     let model = request.model().name();
@@ -95,7 +97,7 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         false => results(&validated.text())?,
     }
     if interrupt::requested() {
-        note(format_args!("interrupted: {} of {all} folds are finished", validated.errors.folds.len()));
+        insist(format_args!("interrupted: {} of {all} folds are finished", validated.errors.folds.len()));
         return Ok(Outcome::Interrupted);
     }
     Ok(Outcome::Done)

@@ -91,7 +91,7 @@ fn stops(report: &Report) -> Vec<Stop> {
 fn stop_table(report: &Report, stops: &[Stop]) -> Table {
     let a = network(report).architecture();
     let channels = a.channels().min(MOST_CHANNELS);
-    let mut headings = vec!["stop".to_string(), format!("threshold of {}", seen_label(report))];
+    let mut headings = vec!["stop".to_string(), format!("threshold of {}", seen_label(report.model))];
     headings.extend((0..channels).map(|channel| format!("weight of {}", channel_name(report, channel))));
     if a.deterioration {
         headings.push("capacity β".into());
@@ -147,7 +147,7 @@ fn input_name(report: &Report, input: usize) -> String {
     let names = &report.model.names().inputs;
     let name = |input: usize| unit::split(&names[input]).0;
     match input.checked_sub(names.len()) {
-        None if input == 0 && report.model.input_transform().companding.is_some() => seen_label(report),
+        None if input == 0 && report.model.input_transform().companding.is_some() => seen_label(report.model),
         None => name(input),
         Some(0) => format!("largest |{}| so far", name(0)),
         Some(_) => format!("path of {} so far", name(0)),
@@ -184,7 +184,7 @@ fn threshold_chart(report: &Report, stops: &[Stop]) -> Chart {
         Curve::new(vec![(shown(stop), index as f64 + 1.0)], colour, 4.0)
     }));
     let thresholds = stops.iter().map(shown).chain([largest]);
-    let x = Axis::logarithmic(format!("threshold of {}", seen_label(report)), thresholds);
+    let x = Axis::logarithmic(format!("threshold of {}", seen_label(report.model)), thresholds);
     let y = Axis::linear("stops by threshold", [0.5, top].into_iter());
     let description = format!("Thresholds of the {} stops", stops.len());
     Chart::on_axes(description, x, y, curves).with_height(240.0).with_legend([

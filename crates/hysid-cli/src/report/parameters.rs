@@ -2,7 +2,8 @@
 
 use hysid::data::unit::of_column;
 use hysid::fit::intervals::{IntervalStatus, ParameterInterval, ParameterIntervals};
-use hysid::model::Predictor;
+use hysid::law::Parameter;
+use hysid::model::Model;
 use hysid_document::{Cell, Part, Table, count, number};
 
 use super::{Report, seen_label};
@@ -40,47 +41,60 @@ fn explanation(intervals: &ParameterIntervals) -> Part {
     ))
 }
 
-/// The section on the parameters; `None` for a network, whose neurons are shown.
-pub fn section(report: &Report) -> Option<Part> {
-    let Predictor::Law(law) = report.model.predictor() else { return None };
-    let names = report.model.names();
-    let is_companded = report.model.input_transform().companding.is_some();
+/// The unit of a parameter, from those of the columns; empty if it has none or one is not known.
+pub fn unit(model: &Model, parameter: &Parameter) -> String {
+    let names = model.names();
+    let is_companded = model.input_transform().companding.is_some();
     let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
     let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
-    let parameters = law.parameters();
+    parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref())
+}
+
+/// The parameters of a law, with their intervals where there are any; `None` for another model.
+pub fn table(model: &Model, intervals: Option<&ParameterIntervals>) -> Option<Table> {
+    let parameters = model.law()?.parameters();
     let bound = |value: f64| match value.abs() >= 1e50 {
         true if value < 0.0 => "−∞".to_string(),
         true => "∞".to_string(),
         false => number(value, 3),
     };
     let mut columns = vec!["parameter", "value", "unit", "meaning", "bounds"];
-    if report.intervals.is_some() {
+    if intervals.is_some() {
         columns.insert(2, INTERVAL);
     }
     let mut table = Table::new(columns);
     for (index, parameter) in parameters.iter().enumerate().take(MOST_ROWS) {
         let (low, high) = parameter.bounds;
-        let interval = report.intervals.and_then(|intervals| intervals.parameters.get(index)).map(interval);
         let mut row = vec![
             parameter.symbol.as_str().into(),
             Cell::number(parameter.value, 5),
-            parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref()).into(),
+            unit(model, parameter).into(),
             parameter.meaning.into(),
             format!("{} to {}", bound(low), bound(high)).into(),
         ];
-        if report.intervals.is_some() {
+        if let Some(intervals) = intervals {
+            let interval = intervals.parameters.get(index).map(interval);
             row.insert(2, interval.unwrap_or_default().into());
         }
         table.push(row);
     }
-    let mut parts = vec![Part::Table(table)];
-    if parameters.len() > MOST_ROWS {
-        let more = count(parameters.len() - MOST_ROWS, "more parameter");
-        parts.push(Part::note(format!("{more} are in the model file.")));
-    }
+    Some(table)
+}
+
+/// How many parameters the table leaves out, if any, in words.
+pub fn left_out(model: &Model) -> Option<String> {
+    let all = model.law()?.parameters().len();
+    (all > MOST_ROWS).then(|| format!("{} are in the model file.", count(all - MOST_ROWS, "more parameter")))
+}
+
+/// The section on the parameters; `None` for a network, whose neurons are shown.
+pub fn section(report: &Report) -> Option<Part> {
+    let model = report.model;
+    let mut parts = vec![Part::Table(table(model, report.intervals)?)];
+    parts.extend(left_out(model).map(Part::note));
     parts.extend(report.intervals.map(explanation));
-    if is_companded {
-        let seen = seen_label(report);
+    if model.input_transform().companding.is_some() {
+        let seen = seen_label(model);
         parts.push(Part::note(format!(
             "The input of the law is {seen}, which has no unit; its parameters refer to this input."
         )));

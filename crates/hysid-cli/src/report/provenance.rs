@@ -1,6 +1,7 @@
 //! What was understood of the data, warnings, and how the model came about.
 
 use hysid::data::rate::RateMethod;
+use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::options::classical::ClassicalOptions;
@@ -32,8 +33,17 @@ pub fn notes(report: &Report) -> Option<Part> {
 
 /// Options and provenance.
 pub fn section(report: &Report) -> Part {
-    let provenance = report.model.provenance();
-    let rate = match report.model.rate() {
+    let mut pairs = of_model(report.model);
+    pairs.push(pair("Time taken", format!("{} s", number(report.seconds, 3))));
+    pairs.push(pair("Model file", &*report.model_file));
+    pairs.push(pair("Version", format!("hysid {}", env!("CARGO_PKG_VERSION"))));
+    Part::section("Options and provenance", [Part::Definitions(pairs)])
+}
+
+/// Options and provenance as a model stores them, name and value.
+pub fn of_model(model: &Model) -> Vec<(String, String)> {
+    let provenance = model.provenance();
+    let rate = match model.rate() {
         None => "none",
         Some(RateMethod::Given) => "a column",
         Some(RateMethod::Central) => "central differences",
@@ -41,17 +51,17 @@ pub fn section(report: &Report) -> Part {
         Some(RateMethod::SavitzkyGolay) => "Savitzky-Golay",
     };
     let mut pairs = match &provenance.options {
-        FitSpec::Network(options) => of_network(report, options),
+        FitSpec::Network(options) => of_network(model, options),
         FitSpec::Classical(options) => of_rival(options),
-        FitSpec::Auto(options) => of_auto(report, options),
+        FitSpec::Auto(options) => of_auto(model, options),
     };
     let mut say = |name: &str, value: String| pairs.push((name.to_string(), value));
-    let preprocessing = report.model.input_transform();
-    for (input, origin) in report.model.names().inputs.iter().zip(&preprocessing.origins) {
+    let preprocessing = model.input_transform();
+    for (input, origin) in model.names().inputs.iter().zip(&preprocessing.origins) {
         say(&format!("Offset of {input}"), number(*origin, 6));
     }
     if preprocessing.companding.is_some() {
-        say("Transformed input", seen_label(report));
+        say("Transformed input", seen_label(model));
     }
     if let Some(scale) = preprocessing.rate_companding {
         say("Transformed rate", format!("asinh(rate / {})", number(scale, 3)));
@@ -59,7 +69,7 @@ pub fn section(report: &Report) -> Part {
     if preprocessing.history.is_some() {
         say("Further inputs", "running peak and travelled path".into());
     }
-    if let Some(state) = super::initial_state(report.model) {
+    if let Some(state) = super::initial_state(model) {
         say("Initial state", state);
     }
     say("Rate", rate.into());
@@ -68,18 +78,15 @@ pub fn section(report: &Report) -> Part {
         format!("{} in {}", count(provenance.samples, "sample"), count(provenance.records, "record")),
     );
     say("Ended", provenance.termination.to_string());
-    say("Time taken", format!("{} s", number(report.seconds, 3)));
-    say("Model file", report.model_file.clone());
-    say("Version", format!("hysid {}", env!("CARGO_PKG_VERSION")));
-    Part::section("Options and provenance", [Part::Definitions(pairs)])
+    pairs
 }
 
 fn pair(name: &str, value: impl Into<String>) -> (String, String) {
     (name.to_string(), value.into())
 }
 
-fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
-    let provenance = report.model.provenance();
+fn of_network(model: &Model, options: &FitOptions) -> Vec<(String, String)> {
+    let provenance = model.provenance();
     let held_out = match (&provenance.validation, &provenance.selection) {
         (_, Some(selection)) => {
             format!("{} in turn, to choose this model", count(selection.folds.len(), "part"))
@@ -101,7 +108,7 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
         ),
     };
     let mut pairs = Vec::new();
-    if let Some(network) = report.model.network() {
+    if let Some(network) = model.network() {
         let a = network.architecture();
         let mut sizes = count(a.stops, "stop");
         if a.hidden > 0 {
@@ -127,8 +134,8 @@ fn of_network(report: &Report, options: &FitOptions) -> Vec<(String, String)> {
     pairs
 }
 
-fn of_auto(report: &Report, options: &AutoOptions) -> Vec<(String, String)> {
-    let members = report.model.ensemble().map_or(1, |ensemble| ensemble.members().len());
+fn of_auto(model: &Model, options: &AutoOptions) -> Vec<(String, String)> {
+    let members = model.ensemble().map_or(1, |ensemble| ensemble.members().len());
     let (of, candidates) = match &options.only {
         Some(request) => (format!(" of {}", request.model().name()), "the model"),
         None => (String::new(), "each candidate"),

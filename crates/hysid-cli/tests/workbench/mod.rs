@@ -99,6 +99,23 @@ impl Workbench {
     }
 }
 
+/// How errors begin that the parser of the command line finds.
+const OF_THE_PARSER: [&str; 5] =
+    ["invalid value", "unexpected argument", "the argument", "the following", "unrecognized"];
+
+/// The line of an error as the program says it. A wrong command line (status 2) points to the help of its command, unless
+/// the program itself names an option or a command that helps.
+pub fn error_line(arguments: &str, status: i32, said: &str) -> String {
+    let is_of_the_parser = OF_THE_PARSER.iter().any(|beginning| said.starts_with(beginning));
+    let names_help = said.contains("--") || said.contains("hysid ");
+    let help = match arguments.split(' ').next() {
+        _ if status != 2 || (names_help && !is_of_the_parser) => String::new(),
+        Some("fot") => " (see `hysid --help`)".into(),
+        command => format!(" (see `hysid {} --help`)", command.unwrap_or_default()),
+    };
+    format!("error: {said}{help}")
+}
+
 /// Rows of [`table`].
 pub const ROWS: usize = 60;
 

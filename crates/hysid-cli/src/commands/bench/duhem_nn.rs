@@ -16,13 +16,14 @@ use hysid::options::FitSpec;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::stop_check::StopCheck;
 
-use super::median;
+use super::spread::Spread;
+use super::{FITS, RUNS};
 
 /// A network of the default sizes with rate and time.
 pub(super) struct Network {
     model: Model,
     /// Seconds of the fit from one start.
-    pub fit_s: f64,
+    pub fit_s: Spread,
 }
 
 impl Network {
@@ -32,9 +33,14 @@ impl Network {
             starts: Some(1),
             ..ClassicalOptions::of(ClassicalModel::DuhemNn)
         };
-        let began = Instant::now();
-        let fitted = identify(data, &FitSpec::Classical(options), &mut |_| ControlFlow::Continue(()))?;
-        Ok(Self { model: fitted.model, fit_s: began.elapsed().as_secs_f64() })
+        let mut model = None;
+        let fit_s = Spread::over(FITS, || {
+            let began = Instant::now();
+            let spec = FitSpec::Classical(options.clone());
+            model = Some(identify(data, &spec, &mut |_| ControlFlow::Continue(()))?.model);
+            Ok(began.elapsed().as_secs_f64())
+        })?;
+        Ok(Self { model: model.context("there was a fit")?, fit_s })
     }
 
     pub fn model(&self) -> &Model {
@@ -61,7 +67,7 @@ impl Network {
 
     /// Nanoseconds a sample of the exact derivatives by all searched parameters, and of their Gram matrix over all
     /// samples besides.
-    pub fn jacobian_ns(&self, data: &Dataset) -> Result<(f64, f64)> {
+    pub fn jacobian_ns(&self, data: &Dataset) -> Result<(Spread, Spread)> {
         let law = self.law()?;
         let series = Series::all(data, Some(RateMethod::Central))?;
         let drives: Vec<Vec<_>> = series
@@ -78,12 +84,16 @@ impl Network {
                 with_jacobian: true,
                 stop: StopCheck::never(),
             };
-            median(|| {
-                black_box(black_box(run).gram());
-                Ok(data.rows())
-            })
+            let began = Instant::now();
+            black_box(black_box(run).gram());
+            1e9 * began.elapsed().as_secs_f64() / data.rows() as f64
         };
-        let derivatives = pass(&none)?;
-        Ok((derivatives, pass(&all)? - derivatives))
+        let (mut derivatives, mut gram) = (Vec::new(), Vec::new());
+        for _ in 0..RUNS {
+            let without = pass(&none);
+            derivatives.push(without);
+            gram.push(pass(&all) - without);
+        }
+        Ok((Spread::of(derivatives), Spread::of(gram)))
     }
 }

@@ -1,0 +1,34 @@
+//! `hysid models`: all models that a fit can use, or what a model file holds.
+
+use anyhow::Result;
+
+use crate::Outcome;
+use crate::arguments::Models;
+use crate::commands::model_from_bytes;
+use crate::files;
+use crate::inspection::Inspected;
+use crate::messages::{json_results, results};
+use crate::model_list;
+
+/// Runs the command.
+pub fn run(arguments: &Models) -> Result<Outcome> {
+    match &arguments.model {
+        None => {
+            let models = model_list::all();
+            match arguments.json {
+                true => json_results(&models)?,
+                false => results(&model_list::text(&models))?,
+            }
+        }
+        Some(path) => {
+            let content = files::read(path)?;
+            let model = model_from_bytes(path, content.clone())?;
+            let inspected = Inspected::of(path, &content, &model)?;
+            match arguments.json {
+                true => json_results(&inspected.printed())?,
+                false => results(&inspected.text())?,
+            }
+        }
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,157 @@
+//! All models that a fit can use, each with what it is.
+
+use hysid::law::facts::Rate;
+use hysid::network::Family;
+use hysid::options::ModelName;
+use hysid::options::classical::ClassicalModel;
+use hysid::options::network::Trainer;
+use hysid::options::table::OPTIONS;
+use hysid_document::plain::{aligned, indented};
+use serde::Serialize;
+
+/// A model in the list.
+#[derive(Debug, Serialize)]
+pub struct Listed {
+    /// Its name, as `--model` takes it.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub what: &'static str,
+    /// `network`, `law` or `ensemble`.
+    pub kind: &'static str,
+    /// How its parameters are found.
+    pub identified_by: &'static str,
+    /// Whether it uses the rate of the input, which needs time stamps: `no`, `optional` or `needed`.
+    pub rate: &'static str,
+    /// Whether it takes more than one input.
+    pub several_inputs: bool,
+    /// Options of a fit that are for it and not for all models, such as `operators`.
+    pub options: Vec<&'static str>,
+}
+
+/// All models, `auto` first.
+pub fn all() -> Vec<Listed> {
+    std::iter::once(ModelName::AUTO).chain(ModelName::all()).map(Listed::of).collect()
+}
+
+/// The list as text within 80 columns.
+pub fn text(models: &[Listed]) -> String {
+    let heading = ["model", "rate", "inputs", "identified by"].map(String::from).to_vec();
+    let row = |model: &Listed| {
+        let inputs = if model.several_inputs { "several" } else { "one" };
+        [model.name, model.rate, inputs, model.identified_by].map(String::from).to_vec()
+    };
+    let rows: Vec<Vec<String>> = std::iter::once(heading).chain(models.iter().map(row)).collect();
+    let lines = aligned(&rows);
+    let mut text = format!("{}\n", lines[0]);
+    for (line, model) in lines[1..].iter().zip(models) {
+        text += &format!("{line}\n{}", indented(model.what, 4));
+    }
+    text + "\nfit one: hysid fit DATA.csv --model NAME; compare all: hysid compare\n"
+}
+
+impl Listed {
+    fn of(model: ModelName) -> Self {
+        let (kind, identified_by) = match model {
+            ModelName::Auto(_) => ("ensemble", "cross-validation"),
+            ModelName::Network(_) => ("network", "search"),
+            // Its equations are those of the networks.
+            ModelName::Classical(ClassicalModel::RandomStops) => ("network", "least squares"),
+            ModelName::Classical(law) if law.is_searched() => ("law", "search"),
+            ModelName::Classical(_) => ("law", "least squares"),
+        };
+        let rate = match model {
+            ModelName::Classical(law) => match law.facts().rate {
+                Rate::Ignored => "no",
+                Rate::Optional => "optional",
+                Rate::Needed => "needed",
+            },
+            other if other.uses_rate() => "optional",
+            _ => "no",
+        };
+        Self {
+            name: model.name(),
+            what: what(model),
+            kind,
+            identified_by,
+            rate,
+            several_inputs: model.takes_further_inputs(),
+            options: own_options(model),
+        }
+    }
+}
+
+/// Options that this model uses and some other does not.
+fn own_options(model: ModelName) -> Vec<&'static str> {
+    let is_used = |model: ModelName, option: &hysid::options::table::FitOption| {
+        Trainer::ALL.iter().any(|trainer| option.is_used_by(model, *trainer))
+    };
+    let own = OPTIONS
+        .iter()
+        .filter(|option| is_used(model, option) && !ModelName::all().all(|other| is_used(other, option)));
+    own.map(|option| option.name).collect()
+}
+
+/// What a model is, in a few words; docs/models.md says more.
+fn what(model: ModelName) -> &'static str {
+    match model {
+        ModelName::Auto(_) => {
+            "the default: an ensemble of the models below with the lowest cross-validation errors"
+        }
+        ModelName::Network(Family::Pnn) => "network of stops with a linear readout",
+        ModelName::Network(Family::Gpnn) => "network of deteriorating stops with a linear readout",
+        ModelName::Network(Family::PreisachNn) => "network of stops with a tanh layer",
+        ModelName::Network(Family::Xpnn) => {
+            "the paper's network: deteriorating stops of the input and its rate, tanh layer"
+        }
+        ModelName::Network(Family::XpnnPlus) => {
+            "xpnn with relaxation neurons, a direct path and further inputs"
+        }
+        ModelName::Classical(law) => match law {
+            ClassicalModel::Masing => "virgin curve and Masing's rules at turning points",
+            ClassicalModel::PrandtlIshlinskii => "weighted plays on a grid of thresholds",
+            ClassicalModel::ModifiedPrandtlIshlinskii => "plays, then one-sided dead zones (Kuhnen)",
+            ClassicalModel::GeneralizedPrandtlIshlinskii => "plays between two tanh envelopes",
+            ClassicalModel::RateDependentPrandtlIshlinskii => "plays whose thresholds grow with the rate",
+            ClassicalModel::Preisach => "plane of relays with a smooth density",
+            ClassicalModel::NeuroMadelung => "small network of the input and its last turning point",
+            ClassicalModel::BoucWen => {
+                "spring and yielding element; with --degradation pinching and degradation"
+            }
+            ClassicalModel::PeakOriented => {
+                "members and joints: reloading leads to the largest displacement so far"
+            }
+            ClassicalModel::MenegottoPinto => "steel: curves between two straight lines, with hardening",
+            ClassicalModel::JilesAtherton => "differential equation of the magnetisation",
+            ClassicalModel::Lugre => "friction of bristles, with the Stribeck effect",
+            ClassicalModel::DuhemNn => "recurrent network whose states move with the input and with time",
+            ClassicalModel::RandomStops => "random deteriorating stops with a ridge penalty",
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_is_listed_once_within_80_columns() {
+        let models = all();
+        let names: Vec<&str> = models.iter().map(|model| model.name).collect();
+        let expected: Vec<&str> =
+            std::iter::once("auto").chain(ModelName::all().map(ModelName::name)).collect();
+        assert_eq!(names, expected);
+        for line in text(&models).lines() {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
+    }
+
+    #[test]
+    fn rate_and_inputs_are_those_that_a_fit_checks() {
+        for (listed, model) in all().iter().zip(std::iter::once(ModelName::AUTO).chain(ModelName::all())) {
+            assert_eq!(listed.rate != "no", model.uses_rate(), "{}", listed.name);
+            assert_eq!(listed.several_inputs, model.takes_further_inputs(), "{}", listed.name);
+        }
+        let lugre = all().into_iter().find(|listed| listed.name == "lugre").unwrap();
+        assert_eq!((lugre.rate, lugre.identified_by), ("needed", "search"));
+    }
+}
