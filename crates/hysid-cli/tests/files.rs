@@ -190,6 +190,7 @@ reads!(spanish_csv, "spanish.csv", ["Tiempo (s)", "Desplazamiento (mm)", "Fuerza
 reads!(status_column_csv, "status-column.csv", ["t", "x", "y"]);
 reads!(tab_comma_txt, "tab-comma.txt", ["Time (s)", "Displacement (mm)", "Force (kN)"]);
 reads!(tab_txt, "tab.txt", ["Time (s)", "Displacement (mm)", "Force (kN)"]);
+reads!(testing_machine_csv, "testing-machine.csv", ["Time [s]", "Extension [mm]", "Load [kN]"]);
 reads!(text_behind_csv, "text-behind.csv", ["t", "x", "y"]);
 reads!(thousands_apostrophe_csv, "thousands-apostrophe.csv", ["t_s", "x_mm", "F_N"], [1.0, 1.0, 1000.0]);
 reads!(thousands_blank_csv, "thousands-blank.csv", ["t_s", "x_mm", "F_N"], [1.0, 1.0, 1000.0]);
@@ -358,7 +359,7 @@ fn a_clean_table_can_go_to_standard_output_and_come_from_standard_input() {
 }
 
 #[test]
-fn the_page_lists_every_file() {
+fn every_file_has_a_test_and_a_place_on_the_page() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let page = fs::read_to_string(root.join("../../docs/files.md")).unwrap();
     let files = fs::read_dir(root.join("tests/files")).unwrap();
@@ -366,6 +367,7 @@ fn the_page_lists_every_file() {
     assert!(names.len() >= 60, "{}", names.len());
     for name in names {
         assert!(page.contains(&format!("`{name}`")), "docs/files.md lacks {name}");
+        assert!(include_str!("files.rs").contains(&format!("\"{name}\"")), "{name} has no test");
     }
 }
 
