@@ -1,7 +1,6 @@
 //! All models that a fit can use, each with what it is.
 
 use hysid::law::facts::Rate;
-use hysid::network::Family;
 use hysid::options::ModelName;
 use hysid::options::classical::ClassicalModel;
 use hysid::options::network::Trainer;
@@ -97,35 +96,8 @@ fn what(model: ModelName) -> &'static str {
         ModelName::Auto(_) => {
             "the default: an ensemble of the models below with the lowest cross-validation errors"
         }
-        ModelName::Network(Family::Pnn) => "network of stops with a linear readout",
-        ModelName::Network(Family::Gpnn) => "network of deteriorating stops with a linear readout",
-        ModelName::Network(Family::PreisachNn) => "network of stops with a tanh layer",
-        ModelName::Network(Family::Xpnn) => {
-            "the paper's network: deteriorating stops of the input and its rate, tanh layer"
-        }
-        ModelName::Network(Family::XpnnPlus) => {
-            "xpnn with relaxation neurons, a direct path and further inputs"
-        }
-        ModelName::Classical(law) => match law {
-            ClassicalModel::Masing => "virgin curve and Masing's rules at turning points",
-            ClassicalModel::PrandtlIshlinskii => "weighted plays on a grid of thresholds",
-            ClassicalModel::ModifiedPrandtlIshlinskii => "plays, then one-sided dead zones (Kuhnen)",
-            ClassicalModel::GeneralizedPrandtlIshlinskii => "plays between two tanh envelopes",
-            ClassicalModel::RateDependentPrandtlIshlinskii => "plays whose thresholds grow with the rate",
-            ClassicalModel::Preisach => "plane of relays with a smooth density",
-            ClassicalModel::NeuroMadelung => "small network of the input and its last turning point",
-            ClassicalModel::BoucWen => {
-                "spring and yielding element; with --degradation pinching and degradation"
-            }
-            ClassicalModel::PeakOriented => {
-                "members and joints: reloading leads to the largest displacement so far"
-            }
-            ClassicalModel::MenegottoPinto => "steel: curves between two straight lines, with hardening",
-            ClassicalModel::JilesAtherton => "differential equation of the magnetisation",
-            ClassicalModel::Lugre => "friction of bristles, with the Stribeck effect",
-            ClassicalModel::DuhemNn => "recurrent network whose states move with the input and with time",
-            ClassicalModel::RandomStops => "random deteriorating stops with a ridge penalty",
-        },
+        ModelName::Network(family) => family.summary(),
+        ModelName::Classical(law) => law.facts().summary,
     }
 }
 

@@ -280,7 +280,12 @@ impl Law for BoucWen {
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
         variants: &["degradation"],
-        ..Facts::searched("bouc-wen", &["degradation", "starts", "epochs", "rate_companding"], 0.15)
+        ..Facts::searched(
+            "bouc-wen",
+            "spring and yielding element; option degradation: pinching and degradation",
+            &["degradation", "starts", "epochs", "rate_companding"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> BoucWenState {

@@ -118,6 +118,7 @@ impl Law for DuhemNn {
         limits: &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS)],
         ..Facts::searched(
             "duhem-nn",
+            "recurrent network whose states move with the input and with time",
             &["operators", "hidden", "states", "starts", "epochs", "rate_companding"],
             1.5,
         )

@@ -5,6 +5,8 @@
 pub struct Facts {
     /// The name on the command line and in model files.
     pub name: &'static str,
+    /// What the law is, in a few words.
+    pub summary: &'static str,
     /// Whether the rate of the input is in its equations.
     pub rate: Rate,
     /// The origin of its input.
@@ -24,9 +26,15 @@ pub struct Facts {
 
 impl Facts {
     /// A law that linear least squares finds, without a rate, limits or variants.
-    pub const fn linear(name: &'static str, options: &'static [&'static str], log_error_inside: f64) -> Self {
+    pub const fn linear(
+        name: &'static str,
+        summary: &'static str,
+        options: &'static [&'static str],
+        log_error_inside: f64,
+    ) -> Self {
         Self {
             name,
+            summary,
             rate: Rate::Ignored,
             origin: Origin::OfData,
             identification: Identification::LeastSquares,
@@ -40,10 +48,14 @@ impl Facts {
     /// A law that a search finds, without a rate, limits or variants.
     pub const fn searched(
         name: &'static str,
+        summary: &'static str,
         options: &'static [&'static str],
         log_error_inside: f64,
     ) -> Self {
-        Self { identification: Identification::Search, ..Self::linear(name, options, log_error_inside) }
+        Self {
+            identification: Identification::Search,
+            ..Self::linear(name, summary, options, log_error_inside)
+        }
     }
 }
 

@@ -117,6 +117,7 @@ impl Law for GeneralizedPrandtlIshlinskii {
 
     const FACTS: Facts = Facts::searched(
         "generalized-prandtl-ishlinskii",
+        "plays between two tanh envelopes",
         &["operators", "free_weights", "starts", "epochs"],
         0.15,
     );

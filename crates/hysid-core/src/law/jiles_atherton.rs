@@ -168,7 +168,12 @@ impl Law for JilesAtherton {
     const FACTS: Facts = Facts {
         origin: Origin::Zero,
         variants: &["differential_form"],
-        ..Facts::searched("jiles-atherton", &["differential_form", "starts", "epochs"], 0.15)
+        ..Facts::searched(
+            "jiles-atherton",
+            "differential equation of the magnetisation",
+            &["differential_form", "starts", "epochs"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> JilesAthertonState {

@@ -120,7 +120,12 @@ impl Law for Lugre {
 
     const FACTS: Facts = Facts {
         rate: Rate::Needed,
-        ..Facts::searched("lugre", &["starts", "epochs", "rate_companding"], 0.15)
+        ..Facts::searched(
+            "lugre",
+            "friction of bristles, with the Stribeck effect",
+            &["starts", "epochs", "rate_companding"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> LugreState {

@@ -115,7 +115,12 @@ impl Law for Masing {
     /// Turning points with the output there, without the constant.
     type State = TurningPointStack<f64>;
 
-    const FACTS: Facts = Facts::linear("masing", &["operators", "thresholds", "sign"], 0.85);
+    const FACTS: Facts = Facts::linear(
+        "masing",
+        "virgin curve and Masing's rules at turning points",
+        &["operators", "thresholds", "sign"],
+        0.85,
+    );
 
     fn virgin(&self) -> Self::State {
         TurningPointStack::default()

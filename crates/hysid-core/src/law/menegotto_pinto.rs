@@ -303,7 +303,12 @@ impl Law for MenegottoPinto {
 
     const FACTS: Facts = Facts {
         variants: &["asymmetric"],
-        ..Facts::searched("menegotto-pinto", &["asymmetric", "starts", "epochs"], 0.15)
+        ..Facts::searched(
+            "menegotto-pinto",
+            "steel: curves between two straight lines, with hardening",
+            &["asymmetric", "starts", "epochs"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> MenegottoPintoState {

@@ -182,6 +182,7 @@ impl Law for ModifiedPrandtlIshlinskii {
 
     const FACTS: Facts = Facts::linear(
         "modified-prandtl-ishlinskii",
+        "plays, then one-sided dead zones (Kuhnen)",
         &["operators", "thresholds", "sign", "dead_zones"],
         1.05,
     );

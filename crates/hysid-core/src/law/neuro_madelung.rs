@@ -147,7 +147,12 @@ impl Law for NeuroMadelung {
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
         limits: &[("hidden", 1, MOST_HIDDEN)],
-        ..Facts::searched("neuro-madelung", &["hidden", "starts", "epochs", "rate_companding"], 1.25)
+        ..Facts::searched(
+            "neuro-madelung",
+            "small network of the input and its last turning point",
+            &["hidden", "starts", "epochs", "rate_companding"],
+            1.25,
+        )
     };
 
     fn virgin(&self) -> TurningPointStack<f64> {

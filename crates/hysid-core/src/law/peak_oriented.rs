@@ -325,7 +325,12 @@ impl Law for PeakOriented {
 
     const FACTS: Facts = Facts {
         variants: &["degradation", "asymmetric"],
-        ..Facts::searched("peak-oriented", &["degradation", "asymmetric", "starts", "epochs"], 0.15)
+        ..Facts::searched(
+            "peak-oriented",
+            "members and joints: reloading leads to the largest displacement so far",
+            &["degradation", "asymmetric", "starts", "epochs"],
+            0.15,
+        )
     };
 
     fn virgin(&self) -> PeakOrientedState {

@@ -103,7 +103,12 @@ impl Law for PrandtlIshlinskii {
     /// The plays.
     type State = Vec<f64>;
 
-    const FACTS: Facts = Facts::linear("prandtl-ishlinskii", &["operators", "thresholds", "sign"], 0.85);
+    const FACTS: Facts = Facts::linear(
+        "prandtl-ishlinskii",
+        "weighted plays on a grid of thresholds",
+        &["operators", "thresholds", "sign"],
+        0.85,
+    );
 
     fn virgin(&self) -> Vec<f64> {
         vec![0.0; self.thresholds.len()]

@@ -172,7 +172,7 @@ impl Law for Preisach {
 
     const FACTS: Facts = Facts {
         limits: &[("operators", 1, MOST_INTERVALS)],
-        ..Facts::linear("preisach", &["operators", "sign"], 0.85)
+        ..Facts::linear("preisach", "plane of relays with a smooth density", &["operators", "sign"], 0.85)
     };
 
     fn virgin(&self) -> Self::State {

@@ -114,6 +114,7 @@ impl Law for RateDependentPrandtlIshlinskii {
         variants: &["logarithmic_thresholds"],
         ..Facts::searched(
             "rate-dependent-prandtl-ishlinskii",
+            "plays whose thresholds grow with the rate",
             &["operators", "free_weights", "logarithmic_thresholds", "starts", "epochs", "rate_companding"],
             0.15,
         )

@@ -41,6 +41,17 @@ impl Family {
         }
     }
 
+    /// What it is, in a few words.
+    pub fn summary(self) -> &'static str {
+        match self {
+            Family::Pnn => "network of stops with a linear readout",
+            Family::Gpnn => "network of deteriorating stops with a linear readout",
+            Family::PreisachNn => "network of stops with a tanh layer",
+            Family::Xpnn => "the paper's network: deteriorating stops of the input and its rate, tanh layer",
+            Family::XpnnPlus => "xpnn with relaxation neurons, a direct path and further inputs",
+        }
+    }
+
     /// True if the rate of the first input is an input of the stops.
     pub fn uses_rate(self) -> bool {
         matches!(self, Family::Xpnn | Family::XpnnPlus)

@@ -14,6 +14,7 @@ const RANDOM_STOPS: Facts = Facts {
     rate: Rate::Optional,
     ..Facts::linear(
         "random-stops",
+        "random deteriorating stops with a ridge penalty",
         &["operators", "hidden", "no_deterioration", "history", "rate_companding"],
         1.25,
     )
