@@ -29,6 +29,22 @@ def real(name: str, value: Any) -> float:
     raise TypeError(f"{name} {value!r}: a number is needed")
 
 
+def fraction(name: str, value: Any) -> float:
+    """A number above 0 and below 1.
+
+    Raises
+    ------
+    TypeError
+        Something else.
+    ValueError
+        A number outside these bounds.
+    """
+    number = real(name, value)
+    if not 0.0 < number < 1.0:
+        raise ValueError(f"{name} {number}: a number between 0 and 1 is needed")
+    return number
+
+
 def pair(name: str, value: Any) -> tuple[float, float]:
     """Two numbers as floats.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hysid import _hysid
-from hysid._arguments import name_of, real, truth, whole
+from hysid._arguments import fraction, name_of, truth, whole
 from hysid._data import columns
 
 if TYPE_CHECKING:
@@ -196,10 +196,8 @@ def cycles(
     >>> table["residual_after_peak"].round(2)
     array([2., 2., 2.])
     """
-    smallest_reversal = real("smallest_reversal", smallest_reversal)
+    smallest_reversal = fraction("smallest_reversal", smallest_reversal)
     smoothing = truth("smoothing", smoothing)
-    if not 0.0 < smallest_reversal < 1.0:
-        raise ValueError(f"smallest_reversal {smallest_reversal}: a number between 0 and 1 is needed")
     options = named_options(division, field, smoothing_factor)
     arranged = columns(x, y, time, None, records)
     return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field, fields
 from functools import cached_property
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
-from hysid._arguments import real, truth
+from hysid._arguments import fraction, truth
 from hysid._data import columns
+from hysid._findings import html_table, unknown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -77,8 +77,7 @@ class _Findings:
         for finding in self.properties:
             if finding.name == name:
                 return finding
-        names = ", ".join(finding.name for finding in self.properties)
-        raise KeyError(f"there is no property {name!r}: the properties are {names}")
+        raise unknown("property", "properties", name, (finding.name for finding in self.properties))
 
     def verdict(self, name: str) -> str:
         """Give the verdict on a property: yes, no or not testable.
@@ -99,13 +98,7 @@ class _Findings:
         return "\n".join(f"{finding.name:<18}{finding.verdict}" for finding in self.properties)
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f'<tr><td style="text-align: left">{escape(finding.name)}</td>'
-            f'<td style="text-align: left"><b>{escape(finding.verdict)}</b></td>'
-            f'<td style="text-align: left">{escape(finding.statement)}</td></tr>'
-            for finding in self.properties
-        )
-        return f"<table><tbody>{rows}</tbody></table>"
+        return html_table((finding.name, finding.verdict, finding.statement) for finding in self.properties)
 
 
 class Diagnosis(_Findings):
@@ -195,10 +188,8 @@ def diagnose(
     >>> hysid.diagnose(train.x, train.y, time=train.time).verdict("deterioration")
     'yes'
     """
-    smallest_reversal = real("smallest_reversal", smallest_reversal)
+    smallest_reversal = fraction("smallest_reversal", smallest_reversal)
     smoothing = truth("smoothing", smoothing)
-    if not 0.0 < smallest_reversal < 1.0:
-        raise ValueError(f"smallest_reversal {smallest_reversal}: a number between 0 and 1 is needed")
     arranged = columns(x, y, time, None, records)
     content = json.loads(_hysid.diagnose(arranged.dataset(), smallest_reversal, smoothing))
     return Diagnosis(content, arranged)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import cached_property
-from html import escape
 from typing import Any
+
+from hysid._findings import html_table, unknown
 
 
 @dataclass(frozen=True)
@@ -83,20 +84,16 @@ class Residuals:
         for finding in self.findings:
             if finding.test == test:
                 return finding
-        names = ", ".join(dict.fromkeys(finding.test for finding in self.findings))
-        raise KeyError(f"there is no test {test!r}: the tests are {names}")
+        raise unknown("test", "tests", test, (finding.test for finding in self.findings))
 
     def __str__(self) -> str:
         return "\n".join(f"{finding.test:<16}{finding.verdict}" for finding in self.findings)
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f'<tr><td style="text-align: left">{escape(finding.test)}</td>'
-            f'<td style="text-align: left"><b>{escape(finding.verdict)}</b></td>'
-            f'<td style="text-align: left">{escape(finding.statement)} {escape(finding.advice or "")}</td></tr>'
+        return html_table(
+            (finding.test, finding.verdict, f"{finding.statement} {finding.advice or ''}")
             for finding in self.findings
         )
-        return f"<table><tbody>{rows}</tbody></table>"
 
 
 @dataclass(frozen=True)
