@@ -18,12 +18,15 @@ pub mod reproduce;
 pub mod simulate;
 pub mod validate;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, ensure};
 use hysid::model::Model;
 
+use crate::arguments::ReadingOptions;
 use crate::files;
+use crate::messages::Usage;
+use hysid_tables::{Table, is_json};
 
 /// Refuses a model without a band.
 fn check_band(model: &Model, path: &Path) -> Result<()> {
@@ -34,6 +37,34 @@ fn check_band(model: &Model, path: &Path) -> Result<()> {
         path.display()
     );
     Ok(())
+}
+
+/// What the files of a command are that takes data or a model.
+enum Given {
+    /// The content of a model file.
+    Model(Vec<u8>),
+    /// Tables.
+    Tables(Vec<Table>),
+}
+
+impl Given {
+    /// Of files with these contents; `alone` is what to do with a model that comes with further files.
+    fn of(files: &[PathBuf], contents: Vec<Vec<u8>>, reading: &ReadingOptions, alone: &str) -> Result<Self> {
+        match contents.iter().position(|content| is_json(content)) {
+            Some(_) if contents.len() == 1 => {
+                Ok(Self::Model(contents.into_iter().next().unwrap_or_default()))
+            }
+            Some(place) => {
+                let model = files[place].display();
+                Err(Usage(format!("{model} is a model: {alone} alone, without further files")).into())
+            }
+            None => {
+                let reading = reading.reading();
+                let table = |(path, content): (&PathBuf, Vec<u8>)| Table::from_bytes(path, content, &reading);
+                Ok(Self::Tables(files.iter().zip(contents).map(table).collect::<Result<_>>()?))
+            }
+        }
+    }
 }
 
 /// Reads a model file.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use csv::QuoteStyle;
 use hysid::data::record::{Dataset, Record};
 
-use hysid_tables::shortest;
+use hysid_tables::{Delimiter, shortest};
 
 /// The data with a header line. Column `record` tells several records apart, a blank output is an empty
 /// cell, and every number reads back as the same number.
@@ -31,7 +31,10 @@ pub fn csv_text(data: &Dataset) -> Result<String> {
 /// character for the delimiter.
 pub fn header_line<'n>(delimiter: u8, names: impl Iterator<Item = &'n str> + Clone) -> Result<Vec<u8>> {
     let is_comment = names.clone().next().is_some_and(|name| name.trim_start().starts_with('#'));
-    let divides = |letter: char| "\t;,|".contains(letter) && letter != char::from(delimiter);
+    let divides = |letter: char| {
+        let other = u8::try_from(letter).ok().filter(|&byte| byte != delimiter);
+        other.is_some_and(|byte| Delimiter::ALL.contains(&Delimiter::Character(byte)))
+    };
     let style = match is_comment || names.clone().any(|name| name.contains(divides)) {
         true => QuoteStyle::Always,
         false => QuoteStyle::Necessary,
@@ -111,7 +114,7 @@ mod tests {
                 let header = header_line(delimiter as u8, names.into_iter()).unwrap();
                 let rows = format!("\"1;2\"{delimiter}3{delimiter}4\n").repeat(4).into_bytes();
                 let table =
-                    Table::from_bytes(Path::new("f"), &[header, rows].concat(), &Reading::default()).unwrap();
+                    Table::from_bytes(Path::new("f"), [header, rows].concat(), &Reading::default()).unwrap();
                 assert_eq!(table.header, names.map(str::trim), "{delimiter:?}");
             }
         }

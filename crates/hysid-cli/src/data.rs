@@ -11,12 +11,12 @@ use hysid::error::{Channel, DataError, DataProblem};
 
 use hysid_tables::{CellReader, ColumnReader, Head, Origin, Table, spread_equal, starts_again};
 
-use crate::arguments::ReadingOptions;
+use crate::arguments::{ColumnOptions, ReadingOptions};
 use crate::columns::Roles;
 use crate::files::shown;
 use crate::messages::{Usage, warning};
 use crate::record_names::RecordNames;
-use crate::terminal::clipped;
+use crate::terminal::{clipped, listed};
 
 /// Measured data and the tables they come from.
 pub struct Data {
@@ -45,6 +45,12 @@ pub struct Place {
 }
 
 impl Data {
+    /// The data in tables whose roles options and names tell.
+    pub fn of_tables(tables: Vec<Table>, options: &ColumnOptions) -> Result<Self> {
+        let roles = Roles::detect(&tables[0], options)?;
+        Self::new(tables, roles, options.reading.zero)
+    }
+
     /// Takes records from tables. `zero` is over how many rows at the beginning of each record the first input and the
     /// output are to be zero in the mean.
     pub fn new(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Self> {
@@ -73,6 +79,22 @@ impl Data {
         }
         let set = Dataset::new(roles.names(), records).map_err(|error| source.explain(error, &roles))?;
         Ok(Self { set, roles, source })
+    }
+
+    /// Warns of inputs after the first, which a command does not use. `what` is what it does with the output, `used` what it
+    /// does with inputs.
+    pub fn warn_of_further_inputs(&self, what: &str, used: &str) {
+        let [first, further @ ..] = self.roles.inputs.as_slice() else { return };
+        if further.is_empty() {
+            return;
+        }
+        warning(format_args!(
+            "{what} {} over {}; {} {} not {used} (choose with --input)",
+            clipped(&self.roles.output),
+            clipped(first),
+            listed(further),
+            if further.len() == 1 { "is" } else { "are" },
+        ));
     }
 
     /// The data with the first input and the output exchanged. A rate that a column gives is that of the input.

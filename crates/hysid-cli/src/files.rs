@@ -1,38 +1,27 @@
 //! Files in the program's words: reading, and writing to a [`Destination`].
 
 use std::borrow::Cow;
-use std::fs::{self, File};
+use std::fs;
 use std::io::Read;
 use std::path::{self, Path};
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Error, Result, anyhow};
 use hysid_document::{Page, html};
 pub use hysid_files::reason;
-use hysid_files::{Destination, Failure, PAGE_MARK};
+use hysid_files::{Destination, Failure, PAGE_MARK, unreadable};
 
 use crate::messages::{Usage, note};
 use crate::terminal;
-
-/// A file, to be read.
-pub fn open(path: &Path) -> Result<File> {
-    match File::open(path) {
-        _ if path.is_dir() => bail!("{}: is a directory, not a file", path.display()),
-        Ok(file) => Ok(file),
-        Err(error) => bail!("{}: cannot be read: {}", path.display(), reason(&error)),
-    }
-}
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     let mut content = Vec::new();
     let read = match path == Path::new("-") {
         true => std::io::stdin().read_to_end(&mut content),
-        false => open(path)?.read_to_end(&mut content),
+        false => hysid_files::open(path).map_err(Error::msg)?.read_to_end(&mut content),
     };
-    match read {
-        Ok(_) => Ok(content),
-        Err(error) => bail!("{}: cannot be read: {}", path.display(), reason(&error)),
-    }
+    read.map_err(|error| Error::msg(unreadable(&path.display().to_string(), &error)))?;
+    Ok(content)
 }
 
 /// Writes a file; the old one survives any failure. Says so if a copy of the old one is kept.

@@ -43,7 +43,6 @@ use clap::error::{ContextValue, ErrorKind};
 use std::path::Path;
 
 use arguments::{Arguments, ColumnOptions, Command, RateOption, ReadingOptions};
-use columns::Roles;
 use data::Data;
 use hysid::data::record::Dataset;
 use hysid::options::chosen::RateChoice;
@@ -106,7 +105,7 @@ pub fn run() -> ExitCode {
 /// # Errors
 /// As for a file: one line that says what is wrong and where.
 pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
-    let table = Table::from_bytes(Path::new("text"), text, &Reading::default())?;
+    let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
     let by_names = ColumnOptions {
         record: None,
         time: None,
@@ -115,8 +114,7 @@ pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
         rate: RateOption::Choice(RateChoice::Auto),
         reading: ReadingOptions::default(),
     };
-    let roles = Roles::detect(&table, &by_names)?;
-    Ok(Data::new(vec![table], roles, None)?.set)
+    Ok(Data::of_tables(vec![table], &by_names)?.set)
 }
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,

@@ -5,14 +5,13 @@ mod encoding;
 mod matlab;
 mod spreadsheet;
 
-use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Error, Result, anyhow};
 use flate2::read::MultiGzDecoder;
 
-pub use hysid_files::reason;
+use hysid_files::unreadable;
 
 use crate::reading::Reading;
 
@@ -41,11 +40,7 @@ impl Text {
             return Self::new("standard input".into(), Box::new(io::stdin()), reading);
         }
         let file = path.display().to_string();
-        let reader = match File::open(path) {
-            _ if path.is_dir() => bail!("{file}: is a directory, not a file"),
-            Ok(reader) => reader,
-            Err(error) => bail!("{file}: cannot be read: {}", reason(&error)),
-        };
+        let reader = hysid_files::open(path).map_err(Error::msg)?;
         Self::new(file, Box::new(reader), reading)
     }
 
@@ -86,18 +81,14 @@ impl Text {
 fn peeked(file: &str, mut reader: Box<dyn Read>) -> Result<(Box<dyn Read>, Vec<u8>)> {
     let mut first = Vec::new();
     let mut beginning = reader.by_ref().take(FIRST as u64);
-    beginning
-        .read_to_end(&mut first)
-        .map_err(|error| anyhow!("{file}: cannot be read: {}", reason(&error)))?;
+    beginning.read_to_end(&mut first).map_err(|error| Error::msg(unreadable(file, &error)))?;
     Ok((Box::new(Cursor::new(first.clone()).chain(reader)), first))
 }
 
 fn all(file: &str, mut reader: Box<dyn Read>) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    match reader.read_to_end(&mut bytes) {
-        Ok(_) => Ok(bytes),
-        Err(error) => bail!("{file}: cannot be read: {}", reason(&error)),
-    }
+    reader.read_to_end(&mut bytes).map_err(|error| Error::msg(unreadable(file, &error)))?;
+    Ok(bytes)
 }
 
 /// True for the content of a file that begins like a JSON object, as model files do.

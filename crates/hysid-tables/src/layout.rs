@@ -34,15 +34,6 @@ pub fn is_record(name: &str) -> bool {
 /// Rows with names that are a table, and no part of a preamble.
 const FEWEST_ROWS: usize = 3;
 
-/// Characters that may separate cells if the user names none.
-const DELIMITERS: [Delimiter; 5] = [
-    Delimiter::Character(b'\t'),
-    Delimiter::Character(b';'),
-    Delimiter::Character(b','),
-    Delimiter::Character(b'|'),
-    Delimiter::Blanks,
-];
-
 /// What a table looks like.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
@@ -62,9 +53,9 @@ pub struct Layout {
     pub cell_units: Vec<Option<String>>,
     /// Columns of dates or clocks.
     pub stamps: Vec<bool>,
-    /// Where the first row begins, in bytes, and its line.
+    /// Where the first row begins, in bytes.
     pub start: usize,
-    /// Its line.
+    /// The line of the first row.
     pub line: u64,
 }
 
@@ -79,23 +70,14 @@ impl Layout {
             lines.iter().any(|line| !line.is_blank()),
             "{file}: is empty (expected a header line and rows of numbers)"
         );
-        let delimiters = reading.delimiter.as_ref().map_or(&DELIMITERS[..], std::slice::from_ref);
+        let delimiters = reading.delimiter.as_ref().map_or(&Delimiter::ALL[..], std::slice::from_ref);
         let runs: Vec<Vec<Run>> = delimiters.iter().map(|&delimiter| Run::all(&lines, delimiter)).collect();
-        let best = |runs: &Vec<Run>| {
-            let all = runs.iter().cloned();
-            all.reduce(|best, run| if run.score() > best.score() { run } else { best })
-        };
-        let best_of_all = runs.iter().filter_map(|runs| Some((best(runs)?, runs)));
-        let Some((run, runs)) =
-            best_of_all.reduce(|best, other| if other.0.score() > best.0.score() { other } else { best })
-        else {
+        let all = runs.iter().flat_map(|runs| runs.iter().map(move |run| (run, runs)));
+        let best = all.reduce(|best, other| if other.0.score() > best.0.score() { other } else { best });
+        let Some((best, runs)) = best else {
             return Self::without_rows(file, &lines, reading);
         };
-        let settled = |run: &Run| settled(file, &lines, run, reading);
-        let (run, header) = match first_with_names(runs, &run, settled) {
-            Some(found) => found,
-            None => settled(&run)?,
-        };
+        let (run, header) = table(runs, best, |run| settled(file, &lines, run, reading))?;
         let first = &lines[run.lines.start];
         let mut layout = Self {
             delimiter: if run.width == 1 {
@@ -125,7 +107,7 @@ impl Layout {
         let line = &lines[place];
         let most = |&delimiter: &Delimiter| cells::split(line.text, delimiter).len();
         let delimiter = reading.delimiter.unwrap_or_else(|| {
-            let characters = DELIMITERS.iter().filter(|delimiter| **delimiter != Delimiter::Blanks);
+            let characters = Delimiter::ALL.iter().filter(|delimiter| **delimiter != Delimiter::Blanks);
             let best = characters.rev().max_by_key(|delimiter| most(delimiter));
             best.copied().filter(|delimiter| most(delimiter) > 1).unwrap_or(Delimiter::COMMA)
         });
@@ -171,30 +153,26 @@ fn settled(file: &str, lines: &[Line<'_>], run: &Run, reading: &Reading) -> Resu
         true => Ok(Header::none(run.width)),
         false => Header::above(file, lines, run, reading.units_row),
     };
-    if let Some(trimmed) = run.trimmed() {
-        let whole = header(&run).ok().filter(|header| header.names_last);
-        if whole.is_none() {
+    let whole = header(&run);
+    match run.trimmed() {
+        Some(trimmed) if !whole.as_ref().is_ok_and(|header| header.names_last) => {
             let header = header(&trimmed)?;
-            return Ok((trimmed, header));
+            Ok((trimmed, header))
         }
+        _ => Ok((run, whole?)),
     }
-    let header = header(&run)?;
-    Ok((run, header))
 }
 
-/// A run before the best one that is a table with names too: what follows it is told where it is read, and nothing is
-/// passed over in silence.
-fn first_with_names(
-    runs: &[Run],
-    best: &Run,
-    settled: impl Fn(&Run) -> Result<(Run, Header)>,
-) -> Option<(Run, Header)> {
-    let has_names = |run: &Run| settled(run).is_ok_and(|(_, header)| !header.lines.is_empty());
-    let is_table =
-        |run: &&Run| run.is_pure() && has_names(run) && (run.rows() >= FEWEST_ROWS || !has_names(best));
+/// The table: the best run, or one before it that is a table with names too. What follows it is told where it is read,
+/// and nothing is passed over in silence.
+fn table(runs: &[Run], best: &Run, settled: impl Fn(&Run) -> Result<(Run, Header)>) -> Result<(Run, Header)> {
+    let has_names = |(_, header): &(Run, Header)| !header.lines.is_empty();
+    let settled_best = settled(best);
+    let fewest_rows = if settled_best.as_ref().is_ok_and(has_names) { FEWEST_ROWS } else { 0 };
     let before = runs.iter().take_while(|run| run.lines.start < best.lines.start);
-    let first = before.into_iter().find(is_table)?;
-    settled(first).ok()
+    let mut tables =
+        before.filter(|run| run.is_pure() && run.rows() >= fewest_rows).filter_map(|run| settled(run).ok());
+    tables.find(has_names).map_or(settled_best, Ok)
 }
 
 /// What is said of a row with more or fewer cells than the table has columns.
@@ -204,8 +182,12 @@ pub fn width_problem(found: usize, expected: usize, row: &[&str], delimiter: Del
         Delimiter::COMMA if found > expected => " (decimal commas? separate the columns by semicolons)",
         _ => "",
     };
-    let cells = if found == 1 { "1 cell".to_string() } else { format!("{found} cells") };
-    format!("has {cells} where the header has {expected}{hint}")
+    cells_and_names(found, expected) + hint
+}
+
+/// That a row has another number of cells than the header has names.
+fn cells_and_names(cells: usize, names: usize) -> String {
+    format!("has {cells} cell{} where the header has {names}", if cells == 1 { "" } else { "s" })
 }
 
 #[cfg(test)]

@@ -51,12 +51,12 @@ impl CellReader {
     pub fn number(&mut self, cell: &str, line: u64) -> Result<f64, String> {
         let text = cell.trim();
         // Most numbers have what those before had.
-        let value = match text.parse::<f64>() {
-            Ok(number) if number.is_finite() && self.format.decimal == Some(DecimalSign::Point) => number,
-            _ if is_missing(text) || self.format.missing.iter().any(|missing| missing == text) => {
+        let value = match plain(text, self.format.decimal) {
+            Some(number) => number,
+            None if is_missing(text) || self.format.missing.iter().any(|missing| missing == text) => {
                 return Ok(f64::NAN);
             }
-            _ => self.slowly(text, line)?,
+            None => self.slowly(text, line)?,
         };
         Ok(if self.missing.contains(&value) { f64::NAN } else { value })
     }
@@ -99,6 +99,31 @@ impl CellReader {
             NumberProblem::NotANumber => format!("\"{text}\" is not a number"),
         }
     }
+}
+
+/// Digits of a number that is read without allocating.
+const MOST_DIGITS: usize = 32;
+
+/// The number of a text without thousands and of this decimal sign; `None` for anything that needs a closer look.
+fn plain(text: &str, decimal: Option<DecimalSign>) -> Option<f64> {
+    let number = match decimal {
+        Some(DecimalSign::Point) => text.parse::<f64>(),
+        None if text.contains(['.', ',']) => return None,
+        None => text.parse(),
+        Some(DecimalSign::Comma) => {
+            let mut digits = [0; MOST_DIGITS];
+            let digits = digits.get_mut(..text.len())?;
+            for (digit, &byte) in digits.iter_mut().zip(text.as_bytes()) {
+                *digit = match byte {
+                    b'.' => return None,
+                    b',' => b'.',
+                    other => other,
+                };
+            }
+            std::str::from_utf8(digits).ok()?.parse()
+        }
+    };
+    number.ok().filter(|number| number.is_finite())
 }
 
 /// What is wrong with the number in a cell.

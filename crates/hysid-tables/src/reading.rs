@@ -96,6 +96,10 @@ impl Delimiter {
     /// A comma.
     pub const COMMA: Self = Self::Character(b',');
 
+    /// Those that are found in a file, where several are possible the first of them.
+    pub const ALL: [Self; 5] =
+        [Self::Character(b'\t'), Self::Character(b';'), Self::COMMA, Self::Character(b'|'), Self::Blanks];
+
     /// Its name.
     pub fn name(self) -> String {
         match self {

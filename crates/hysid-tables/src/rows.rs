@@ -3,11 +3,13 @@
 use std::io::{Cursor, ErrorKind, Read};
 use std::path::Path;
 
-use anyhow::{Result, anyhow, bail, ensure};
+use anyhow::{Error, Result, bail, ensure};
 use csv_core::ReadRecordResult;
 
 use crate::blanks::TabsForBlanks;
-use crate::container::{BINARY, Text, reason};
+use crate::container::{BINARY, Text};
+use hysid_files::unreadable;
+
 use crate::head::{Head, counted};
 use crate::layout::{Layout, is_comment, is_row, split, width_problem};
 use crate::line_counter::LineCounter;
@@ -119,8 +121,8 @@ impl Rows {
     ///
     /// # Errors
     /// As of [`Rows::open`].
-    pub fn from_bytes(path: &Path, bytes: &[u8], reading: &Reading) -> Result<Self> {
-        let reader = Box::new(Cursor::new(bytes.to_vec()));
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
+        let reader = Box::new(Cursor::new(bytes));
         Self::of(Text::new(path.display().to_string(), reader, reading)?, reading)
     }
 
@@ -330,7 +332,7 @@ impl Rows {
                 read => break read,
             }
         };
-        let read = read.map_err(|error| anyhow!("{}: cannot be read: {}", self.head.file, reason(&error)))?;
+        let read = read.map_err(|error| Error::msg(unreadable(&self.head.file, &error)))?;
         self.is_all_read = read == 0;
         self.end += read;
         Ok(read)
@@ -344,7 +346,7 @@ fn beginning(file: &str, reader: &mut dyn Read) -> Result<(Vec<u8>, bool)> {
     loop {
         let more = (wanted - first.len()) as u64;
         let read = reader.take(more).read_to_end(&mut first);
-        read.map_err(|error| anyhow!("{file}: cannot be read: {}", reason(&error)))?;
+        read.map_err(|error| Error::msg(unreadable(file, &error)))?;
         let lines = first.iter().filter(|&&byte| byte == b'\n' || byte == b'\r').count();
         if first.len() < wanted || lines >= FEWEST_LINES || wanted >= LONGEST_ROW {
             let is_all = first.len() < wanted;

@@ -58,7 +58,7 @@ impl Table {
     ///
     /// # Errors
     /// As of [`Table::read`].
-    pub fn from_bytes(path: &Path, bytes: &[u8], reading: &Reading) -> Result<Self> {
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>, reading: &Reading) -> Result<Self> {
         Self::of(Rows::from_bytes(path, bytes, reading)?)
     }
 
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     fn lines(text: &str) -> Vec<u64> {
-        Table::from_bytes(Path::new("f"), text.as_bytes(), &Reading::default()).unwrap().into_origin().lines
+        Table::from_bytes(Path::new("f"), text.into(), &Reading::default()).unwrap().into_origin().lines
     }
 
     /// The last byte of one cell and the first of the next make a letter together, and nothing alone.
@@ -108,7 +108,7 @@ mod tests {
         for text in [b"x,y\n1\xc9,\xb72\n".as_slice(), b"x\xc9,\xb7y\n1,2\n"] {
             let error = Table::from_bytes(
                 Path::new("f"),
-                text,
+                text.to_vec(),
                 &Reading { encoding: "utf-8".parse().ok(), ..Reading::default() },
             )
             .unwrap_err()

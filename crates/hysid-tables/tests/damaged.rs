@@ -10,7 +10,7 @@ const BYTES: &[u8] = b"\"\n\r\t,;. #\0\xff-eE1:";
 
 /// Reads a file; what comes of it does not matter here.
 fn read(bytes: &[u8]) {
-    let _ = Table::from_bytes(Path::new("f"), bytes, &Reading::default());
+    let _ = Table::from_bytes(Path::new("f"), bytes.to_vec(), &Reading::default());
 }
 
 /// A random number generator of the least kind.

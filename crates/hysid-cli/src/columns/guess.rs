@@ -71,8 +71,9 @@ impl Guess<'_> {
         let mut unclear = Vec::new();
         for name in self.free.clone() {
             let values = self.values(name);
-            let course = values.as_ref().map(|values| Course::of(self.parts(values)));
-            let runs = values.as_ref().map(|values| Running::of(&self.parts(values)));
+            let parts = values.as_ref().map(|values| self.parts(values));
+            let runs = parts.as_ref().map(|parts| Running::of(parts));
+            let course = parts.map(Course::of);
             let is_time = match runs {
                 Some(Running::Strictly) => unit::may_be_time(name) || self.is_first_nameless(name),
                 Some(Running::WithEqualStamps) => unit::may_be_time(name),

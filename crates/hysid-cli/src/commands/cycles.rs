@@ -9,45 +9,40 @@ use hysid::options::chosen::RateChoice;
 use hysid_files::{Destination, Kind};
 
 use crate::arguments::{self, RateOption};
-use crate::columns::Roles;
-use crate::commands::model_from_bytes;
+use crate::commands::{Given, model_from_bytes};
 use crate::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 use crate::data::Data;
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, note, raw_results, results, warning};
-use crate::terminal::{clipped, listed};
 use crate::{Outcome, understanding};
-use hysid_tables::{Table, is_json};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
     let outputs = Outputs::of(arguments)?;
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let mut contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    let contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
     check_outputs(&outputs.table.iter().chain(&outputs.page).collect::<Vec<_>>(), &inputs)?;
-    let model = contents.iter().position(|content| is_json(content));
-    match (model, contents.len()) {
-        (Some(_), 1) => {
+    let (options, factor) = (arguments.options(), arguments.smoothing_factor);
+    match Given::of(&arguments.files, contents, &arguments.columns.reading, "give it")? {
+        Given::Model(content) => {
             let path = &arguments.files[0];
-            let model = model_from_bytes(path, contents.remove(0))?;
+            let model = model_from_bytes(path, content)?;
             for option in useless_for_models(arguments) {
                 warning(format_args!("the cycles of a model ignore {option}"));
             }
-            let cycles = Cycles::of_model(path, &model, &arguments.options(), arguments.smoothing_factor)?;
+            let cycles = Cycles::of_model(path, &model, &options, factor)?;
             understanding::print(&cycles.understood);
             tell(arguments, &outputs, &inputs, &cycles)
         }
-        (Some(place), _) => {
-            let model = inputs[place].display();
-            Err(Usage(format!("{model} is a model: give it alone, without further files")).into())
-        }
-        (None, _) => {
-            let data = read(arguments, &contents)?;
+        Given::Tables(tables) => {
+            let data = Data::of_tables(tables, &arguments.columns)?;
             let understood = understanding::of_data(&data, &Summary::of(&data.set));
             understanding::print(&understood);
-            warn_of_inputs(&data, arguments);
-            let cycles =
-                Cycles::of_data(&data, &arguments.options(), arguments.smoothing_factor, understood)?;
+            data.warn_of_further_inputs("cycles of", "used");
+            if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
+                warning("cycles ignores --rate: it needs no rate");
+            }
+            let cycles = Cycles::of_data(&data, &options, factor, understood)?;
             tell(arguments, &outputs, &inputs, &cycles)
         }
     }
@@ -86,32 +81,6 @@ impl Outputs {
             curves: Some(begun(path.with_extension("forc.csv"), BEGINNING_OF_CURVES)),
             table: Some(begun(path, BEGINNING)),
         })
-    }
-}
-
-fn read(arguments: &arguments::Cycles, contents: &[Vec<u8>]) -> Result<Data> {
-    let reading = arguments.columns.reading.reading();
-    let tables =
-        arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes, &reading));
-    let tables: Vec<Table> = tables.collect::<Result<_>>()?;
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    Data::new(tables, roles, arguments.columns.reading.zero)
-}
-
-fn warn_of_inputs(data: &Data, arguments: &arguments::Cycles) {
-    if let [first, further @ ..] = data.roles.inputs.as_slice()
-        && !further.is_empty()
-    {
-        warning(format_args!(
-            "cycles of {} over {}; {} {} not used (choose with --input)",
-            clipped(&data.roles.output),
-            clipped(first),
-            listed(further),
-            if further.len() == 1 { "is" } else { "are" },
-        ));
-    }
-    if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
-        warning("cycles ignores --rate: it needs no rate");
     }
 }
 

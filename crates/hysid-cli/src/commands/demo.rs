@@ -11,7 +11,6 @@ use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
-use crate::columns::Roles;
 use crate::csv_text::csv_text;
 use crate::data::Data;
 use crate::files::{self, check_outputs};
@@ -73,8 +72,7 @@ fn fit_as_typed(train: &Path) -> Box<crate::arguments::Fit> {
 
 fn read(path: &Path) -> Result<Data> {
     let table = Table::read(path, &Reading::default())?;
-    let roles = Roles::detect(&table, &fit_as_typed(path).columns)?;
-    Data::new(vec![table], roles, None)
+    Data::of_tables(vec![table], &fit_as_typed(path).columns)
 }
 
 fn next(train: &Path, test: &Path, out: &Path) -> String {

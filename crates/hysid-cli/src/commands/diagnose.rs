@@ -11,15 +11,13 @@ use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::{ColumnOptions, Diagnose, RateOption};
-use crate::columns::Roles;
-use crate::commands::model_from_bytes;
+use crate::commands::{Given, model_from_bytes};
 use crate::data::Data;
 use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
 use crate::files::{self, check_outputs};
-use crate::messages::{Usage, note, results, warning};
-use crate::terminal::{clipped, listed};
+use crate::messages::{note, results, warning};
 use crate::understanding;
-use hysid_tables::{Table, is_json};
+use hysid_tables::Table;
 
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
@@ -32,16 +30,11 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     let page = (!arguments.no_report)
         .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
     let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
-    let mut contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
+    let contents: Vec<Vec<u8>> = inputs.iter().map(|path| files::read(path)).collect::<Result<_>>()?;
     check_outputs(&page.iter().collect::<Vec<_>>(), &inputs)?;
-    let model = contents.iter().position(|content| is_json(content));
-    let told = match (model, contents.len()) {
-        (Some(_), 1) => of_model(arguments, contents.remove(0))?,
-        (Some(place), _) => {
-            let model = inputs[place].display();
-            return Err(Usage(format!("{model} is a model: diagnose it alone, without further files")).into());
-        }
-        (None, _) => of_data(arguments, &contents)?,
+    let told = match Given::of(&arguments.files, contents, &arguments.columns.reading, "diagnose it")? {
+        Given::Model(content) => of_model(arguments, content)?,
+        Given::Tables(tables) => of_data(arguments, tables)?,
     };
     results(&told.text)?;
     if let (Some(destination), Some(page)) = (&page, &told.page) {
@@ -51,26 +44,11 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn of_data(arguments: &Diagnose, contents: &[Vec<u8>]) -> Result<Told> {
-    let reading = arguments.columns.reading.reading();
-    let tables =
-        arguments.files.iter().zip(contents).map(|(path, bytes)| Table::from_bytes(path, bytes, &reading));
-    let tables: Vec<Table> = tables.collect::<Result<_>>()?;
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
-    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
+fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
+    let data = Data::of_tables(tables, &arguments.columns)?;
     let understood = understanding::of_data(&data, &Summary::of(&data.set));
     understanding::print(&understood);
-    if let [first, further @ ..] = data.roles.inputs.as_slice()
-        && !further.is_empty()
-    {
-        warning(format_args!(
-            "diagnosed: {} over {}; {} {} not diagnosed (choose with --input)",
-            clipped(&data.roles.output),
-            clipped(first),
-            listed(further),
-            if further.len() == 1 { "is" } else { "are" },
-        ));
-    }
+    data.warn_of_further_inputs("diagnosed:", "diagnosed");
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose ignores --rate: it uses the speeds between turning points");
     }

@@ -23,22 +23,25 @@ const OF_THE_DATA: [&str; 3] = ["samples", "guessed", "turning"];
 
 /// Runs the command.
 pub fn run(arguments: &Look) -> Result<Outcome> {
+    let to_stdout = arguments.out.as_deref() == Some(Path::new("-"));
+    if arguments.json && to_stdout {
+        return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
+    }
     let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
     let roles = Roles::detect(&tables[0], &arguments.columns);
     let looked: Vec<Looked> = tables.iter().map(|table| Looked::of(table, roles.as_ref().ok())).collect();
     let data = roles.and_then(|roles| Data::new(tables, roles, arguments.columns.reading.zero));
-    let warnings =
-        data.as_ref().map_or_else(|_| Vec::new(), |data| data_warnings(data, &Summary::of(&data.set)));
-    let to_stdout = arguments.out.as_deref() == Some(Path::new("-"));
+    let (warnings, understood) = match &data {
+        Ok(data) => {
+            let summary = Summary::of(&data.set);
+            (data_warnings(data, &summary), understanding::of_data(data, &summary))
+        }
+        Err(_) => Default::default(),
+    };
     match (arguments.json, to_stdout) {
-        (true, true) => {
-            return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
-        }
-        (true, false) => json_results(&Printed::of(&looked, &data, &warnings))?,
-        (false, true) => {
-            text(&looked, data.as_ref().ok()).lines().for_each(|line| note(format_args!("{line}")))
-        }
-        (false, false) => results(&text(&looked, data.as_ref().ok()))?,
+        (true, _) => json_results(&Printed::of(&looked, &data, &warnings))?,
+        (false, true) => text(&looked, &understood).lines().for_each(|line| note(format_args!("{line}"))),
+        (false, false) => results(&text(&looked, &understood))?,
     }
     warnings.iter().for_each(warning);
     let data = data?;
@@ -82,12 +85,13 @@ impl<'l> Printed<'l> {
     }
 }
 
-fn text(looked: &[Looked], data: Option<&Data>) -> String {
+/// The tables, and what was understood of the data as a whole.
+fn text(looked: &[Looked], understood: &[(String, String)]) -> String {
     let mut text = looked.iter().map(Looked::text).collect::<Vec<_>>().join("\n");
-    let Some(data) = data else { return text };
-    text.push('\n');
-    let lines = understanding::of_data(data, &Summary::of(&data.set));
-    for (label, line) in lines.iter().filter(|(label, _)| OF_THE_DATA.contains(&label.as_str())) {
+    if !understood.is_empty() {
+        text.push('\n');
+    }
+    for (label, line) in understood.iter().filter(|(label, _)| OF_THE_DATA.contains(&label.as_str())) {
         text += &understanding::labelled(label, line);
     }
     text

@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use hysid_core::data::unit;
 
 use super::cells::{Cell, Kind, split};
+use super::cells_and_names;
 use super::lines::Line;
 use super::run::Run;
 use crate::number::is_missing;
@@ -198,8 +199,7 @@ fn other_width(
         }
         _ => format!(" (skip the header with --skip {} --no-header)", line.number),
     };
-    let width = if width == 1 { "1 cell".to_string() } else { format!("{width} cells") };
-    anyhow::anyhow!("{file}, line {}: has {width} where the header has {names}{hint}", first.number)
+    anyhow::anyhow!("{file}, line {}: {}{hint}", first.number, cells_and_names(width, names))
 }
 
 /// True if the first row is in quotation marks and the others are not: its numbers are names.
