@@ -262,7 +262,7 @@ const RUN: &str = "Run";
 #[derive(Debug, Args)]
 #[command(after_help = FIT_EXAMPLES)]
 pub struct Fit {
-    /// Tables of measured data: CSV with a header line
+    /// Tables of measured data: text, spreadsheets, MATLAB files
     #[arg(value_name = "TRAIN.csv", required = true)]
     pub train: Vec<PathBuf>,
     /// Model file [default: name of TRAIN with `.json`]
@@ -313,7 +313,7 @@ pub struct Fit {
 #[derive(Debug, Args)]
 #[command(after_help = VALIDATE_EXAMPLES)]
 pub struct Validate {
-    /// Tables of measured data: CSV with a header line
+    /// Tables of measured data: text, spreadsheets, MATLAB files
     #[arg(value_name = "DATA.csv", required = true)]
     pub data: Vec<PathBuf>,
     /// Maximum number of folds of several records
@@ -506,7 +506,7 @@ pub struct Evaluate {
 #[derive(Debug, Args)]
 #[command(after_help = COMPARE_EXAMPLES)]
 pub struct Compare {
-    /// Tables of training data: CSV with a header line
+    /// Tables of training data: text, spreadsheets, MATLAB files
     #[arg(value_name = "TRAIN.csv", required = true)]
     pub train: Vec<PathBuf>,
     /// Table of test data [default: the training data]
@@ -568,7 +568,7 @@ pub struct Look {
 #[derive(Debug, Args)]
 #[command(after_help = DIAGNOSE_EXAMPLES)]
 pub struct Diagnose {
-    /// Tables of measured data, CSV with a header line; or one model file of `hysid fit`
+    /// Tables of measured data (text, spreadsheets, MATLAB files), or one model file
     #[arg(value_name = "DATA.csv|MODEL.json", required = true)]
     pub files: Vec<PathBuf>,
     /// Page with plots [default: name of the file with `.diagnosis.html`]

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fs;
 use std::io::Read;
-use std::path::{self, Path};
+use std::path::{self, Path, PathBuf};
 
 use anyhow::{Error, Result, anyhow};
 use hysid_document::{Page, html};
@@ -22,6 +22,15 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
     };
     read.map_err(|error| Error::msg(unreadable(&path.display().to_string(), &error)))?;
     Ok(content)
+}
+
+/// A file in the current folder, named after a table that is read.
+pub fn named_after(table: &Path, ending: &str) -> PathBuf {
+    // Standard input has no name.
+    let stem = table.file_stem().filter(|stem| *stem != "-").unwrap_or("data".as_ref());
+    let mut name = stem.to_os_string();
+    name.push(ending);
+    PathBuf::from(name)
 }
 
 /// Writes a file; the old one survives any failure. Says so if a copy of the old one is kept.

@@ -404,3 +404,18 @@ fn hints_about_reading_work_when_they_are_followed() {
         assert_eq!(ran.status, Some(0), "{options}: {}", ran.stderr);
     }
 }
+
+#[test]
+fn what_comes_from_standard_input_is_called_data() {
+    let bench = Workbench::new();
+    let plain = path("plain.csv");
+    for (command, file) in [
+        ("hysid fit - --model prandtl-ishlinskii --no-report", "data.json"),
+        ("hysid diagnose -", "data.diagnosis.html"),
+        ("hysid cycles - --no-report", "data.cycles.csv"),
+    ] {
+        let ran = bench.shell(&format!("cat {plain} | {command}"));
+        assert_eq!(ran.status, Some(0), "{command}: {}", ran.stderr);
+        assert!(bench.path(file).exists(), "{command}: {}", ran.stderr);
+    }
+}

@@ -69,7 +69,7 @@ impl FromStr for RowSelection {
     /// `FROM:TO`, `FROM:` or `:TO`.
     fn from_str(text: &str) -> Result<Self, String> {
         let advice =
-            || "write FROM:TO, such as 1:2000, 500: or :2000 (rows behind the header, from 1)".to_string();
+            || "write FROM:TO, such as 1:2000, 500: or :2000 (rows after the header, from 1)".to_string();
         let (first, last) = text.split_once(':').ok_or_else(advice)?;
         let number = |text: &str| match text.trim() {
             "" => Ok(None),
@@ -77,7 +77,7 @@ impl FromStr for RowSelection {
         };
         let (first, last) = (number(first)?.unwrap_or(1), number(last)?);
         if last.is_some_and(|last| last < first) {
-            return Err("the first row is behind the last".into());
+            return Err("the first row comes after the last".into());
         }
         Ok(Self { first, last, every: 1 })
     }

@@ -64,9 +64,9 @@ impl LeftOut {
     /// What was left out, in words; `None` if nothing was.
     pub fn described(&self) -> Option<String> {
         let comments = (self.comments > 0).then(|| counted(self.comments, "comment line", "among the rows"));
-        let end = self.end.map(|(line, lines)| {
-            format!("{} (from line {line})", counted(lines, "line", "behind the table"))
-        });
+        let end = self
+            .end
+            .map(|(line, lines)| format!("{} (from line {line})", counted(lines, "line", "after the table")));
         let all: Vec<String> = comments.into_iter().chain(end).collect();
         (!all.is_empty()).then(|| all.join(", "))
     }

@@ -21,7 +21,7 @@ Definitions of all figures: docs/cycles.md";
 #[derive(Debug, Args)]
 #[command(after_help = CYCLES_EXAMPLES)]
 pub struct Cycles {
-    /// Tables of measured data, CSV with a header line; or one model file of `hysid fit`
+    /// Tables of measured data (text, spreadsheets, MATLAB files), or one model file
     #[arg(value_name = "DATA.csv|MODEL.json", required = true)]
     pub files: Vec<PathBuf>,
     /// Table to write [default: name of the file with `.cycles.csv`; `-` is stdout]
@@ -36,7 +36,7 @@ pub struct Cycles {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// What is read: structure, magnet, actuator or general (all) [default: by names and units of the columns]
+    /// Figures to compute: structure, magnet, actuator or general (all) [default: by names and units of the columns]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean or reversals [default: as suits the data]

@@ -35,7 +35,7 @@ pub struct ReadingOptions {
     /// Sheet of a spreadsheet, by its name or number, or variable of a MATLAB file [default: the first sheet that is not empty; all variables]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     pub sheet: Option<String>,
-    /// Use these rows of each table, counted from 1 behind the header: FROM:TO, FROM: or :TO
+    /// Use these rows of each table, counted from 1 after the header: FROM:TO, FROM: or :TO
     #[arg(long, value_name = "FROM:TO", hide_short_help = true)]
     pub rows: Option<RowSelection>,
     /// Use every N-th row of those that --rows selects

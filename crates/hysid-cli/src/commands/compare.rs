@@ -73,9 +73,5 @@ fn every_model() -> Vec<ModelName> {
 
 /// The page: as asked, or the first table's name in the present folder.
 fn page_path(arguments: &Compare) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| {
-        let mut name = arguments.train[0].file_stem().unwrap_or("data".as_ref()).to_os_string();
-        name.push("-compared.html");
-        PathBuf::from(name)
-    })
+    arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.train[0], "-compared.html"))
 }

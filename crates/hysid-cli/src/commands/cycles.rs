@@ -57,11 +57,8 @@ struct Outputs {
 
 impl Outputs {
     fn of(arguments: &arguments::Cycles) -> Result<Self> {
-        let path = arguments.out.clone().unwrap_or_else(|| {
-            let mut name = arguments.files[0].file_stem().unwrap_or("data".as_ref()).to_os_string();
-            name.push(".cycles.csv");
-            PathBuf::from(name)
-        });
+        let path =
+            arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".cycles.csv"));
         if path == Path::new("-") {
             if arguments.json {
                 let advice =

@@ -106,9 +106,5 @@ fn useless_for_models(columns: &ColumnOptions, options: &DiagnosisOptions) -> Ve
 
 /// The page: as asked, or the first file's name in the present folder.
 fn page_path(arguments: &Diagnose) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| {
-        let mut name = arguments.files[0].file_stem().unwrap_or("data".as_ref()).to_os_string();
-        name.push(".diagnosis.html");
-        PathBuf::from(name)
-    })
+    arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".diagnosis.html"))
 }

@@ -102,9 +102,7 @@ fn note_resumable(checkpoint: &Path) {
 /// The model file: as asked, or the first table's name in the present folder.
 fn out(arguments: &Fit) -> Result<PathBuf> {
     let Some(out) = &arguments.out else {
-        let mut name = arguments.train[0].file_stem().unwrap_or("model".as_ref()).to_os_string();
-        name.push(".json");
-        return Ok(PathBuf::from(name));
+        return Ok(files::named_after(&arguments.train[0], ".json"));
     };
     if out.extension().is_some_and(|extension| extension == "html") {
         let advice = "use .json for the model file: the report gets the same name with .html";
