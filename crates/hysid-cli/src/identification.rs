@@ -25,7 +25,7 @@ use crate::data::Data;
 use crate::inspection::stored_errors;
 use crate::messages::{insist, summarised, warning};
 use crate::progress::Follower;
-use crate::report::{self, Report, ReportSet};
+use crate::report::{self, Report, ReportSet, Tracks};
 use crate::{errors_table, files, interrupt, understanding};
 
 /// A model and what was said and spent on the way to it.
@@ -142,8 +142,14 @@ impl Identified {
     }
 
     /// Writes the report on the model, which is written already.
-    pub fn write_report(&self, page: &Destination, model: &Path, sets: &[(&str, &Dataset)]) -> Result<()> {
-        files::write_page(page, &self.report(model, sets)?)
+    pub fn write_report(
+        &self,
+        page: &Destination,
+        model: &Path,
+        sets: &[(&str, &Dataset)],
+        inputs: &[&Path],
+    ) -> Result<()> {
+        files::write_page(page, self.report(model, sets)?, inputs)
             .context("the model was written, but not its report")
     }
 
@@ -225,7 +231,8 @@ impl Identified {
         };
         data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
         let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
-        Ok(ReportSet { name: name.into(), data, simulated, predicted, errors })
+        let tracks = Tracks::of(name, data);
+        Ok(ReportSet { name: name.into(), data, simulated, predicted, errors, tracks })
     }
 
     /// Errors, size, time and files, for stdout.

@@ -24,6 +24,7 @@ mod inversion;
 mod looked;
 mod messages;
 mod model_list;
+mod origin;
 mod progress;
 mod quantities;
 mod record_names;

@@ -9,6 +9,7 @@ mod neurons;
 pub mod parameters;
 pub mod provenance;
 mod residuals;
+pub mod tracks;
 mod usage;
 
 use hysid::data::initial_state::in_words;
@@ -19,7 +20,8 @@ use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
 use hysid_document::{Page, number, unit};
 
-pub use figures::{loops, path_curves, small_loops};
+pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, small_loops};
+pub use tracks::Tracks;
 
 /// Probability of the band that is drawn and judged.
 pub const BAND: f64 = 0.9;
@@ -58,23 +60,27 @@ pub struct ReportSet<'a> {
     pub predicted: Option<Vec<Prediction>>,
     /// Errors of these.
     pub errors: Errors,
+    /// What ties the curves of its records together.
+    pub tracks: Tracks,
 }
 
 /// The whole page.
 pub fn page(report: &Report) -> Page {
-    let mut parts = vec![errors::verdict(report), errors::section(report)];
-    parts.extend(provenance::notes(report));
-    parts.extend(ensemble::section(report));
-    parts.extend(band::section(report));
+    let mut parts = vec![errors::verdict(report)];
     parts.extend(report.sets.iter().map(figures::loops_section));
+    parts.push(errors::section(report));
+    parts.extend(provenance::notes(report));
+    parts.push(provenance::warnings(report));
     parts.extend(report.sets.iter().map(histories::section));
-    parts.extend(residuals::section(report));
-    parts.extend(figures::convergence_section(report.model));
-    parts.extend(neurons::section(report));
-    parts.extend(parameters::section(report));
-    parts.extend(provenance::understood(report));
-    parts.extend([provenance::warnings(report), provenance::section(report)]);
     parts.extend(usage::sections(report));
+    parts.extend(residuals::section(report));
+    parts.extend(band::section(report));
+    parts.extend(ensemble::section(report));
+    parts.extend(parameters::section(report));
+    parts.extend(neurons::section(report));
+    parts.extend(figures::convergence_section(report.model));
+    parts.extend(provenance::understood(report));
+    parts.push(provenance::section(report));
     Page { title: report.title.clone(), parts }
 }
 

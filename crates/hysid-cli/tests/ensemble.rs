@@ -144,7 +144,7 @@ fn auto_chooses_among_kinds_and_is_the_same_for_any_number_of_threads() {
     assert_narrow(&ran.stdout);
     assert!(ran.stderr.contains("model    auto: at most 5 models"), "{}", ran.stderr);
     let page = bench.text("a.html");
-    assert!(page.contains("random-stops (input companded 0.1)") && page.contains("<td>classical</td>"));
+    assert!(page.contains("random-stops (input companded 0.1)") && page.contains(">classical</td>"));
     assert_eq!(model, fit("--members 5 --no-report --threads 1").1);
 
     // One model in the place of many: its neurons can be shown, and what it has learnt from.

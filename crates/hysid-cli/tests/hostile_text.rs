@@ -61,7 +61,7 @@ fn names_reach_neither_the_terminal_nor_a_page_as_they_are() {
         }
     }
     for page in ["m.html", "evil.diagnosis.html", "model.html", "evil-compared.html"] {
-        let page = bench.text(page);
+        let page = bench.page(page);
         assert!(page.contains("&lt;script&gt;"), "the name is there");
         assert!(!page.contains("<script") && !page.contains(is_obeyed_by_xml), "{page}");
         // Nothing ends an attribute early: of every tag only names that Hysid writes are left.

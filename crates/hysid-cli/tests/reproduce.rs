@@ -156,7 +156,7 @@ fn a_stored_experiment_that_was_changed_injects_nothing() {
         bench.put("out/nds.json", change(&pointer, script.into()));
         let ran = bench.run("reproduce nds -o out --force");
         assert!(ran.stderr.contains("already finished"), "{pointer}: {}", ran.stderr);
-        let page = bench.text("out/nds.html");
+        let page = bench.page("out/nds.html");
         assert!(
             page.contains("&lt;script&gt;alert(1)&lt;/script&gt;") && !page.contains("<script"),
             "{pointer}"

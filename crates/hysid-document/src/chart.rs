@@ -1,15 +1,20 @@
 //! Charts as data, drawn as SVG.
 
+mod appearance;
 mod axis;
+mod curves;
+mod frame;
 mod heat_map;
+mod palette;
 mod svg;
 pub mod thin;
 
 use serde::{Deserialize, Serialize};
 
+pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
 pub use heat_map::{HeatCell, heat_map};
-pub use svg::STYLE;
+pub use palette::style;
 use thin::Point;
 
 /// What a curve shows, which determines its colour.
@@ -58,6 +63,20 @@ pub struct Curve {
     pub colour: Colour,
     /// Width of the line, or radius of the dots, in pixels.
     pub width: f64,
+    /// Where its points are in a record, for pages that show the same moment in several charts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub track: Option<Track>,
+}
+
+/// Where the points of a curve are in a record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Track {
+    /// Name of the record, the same in all charts that show it.
+    pub record: String,
+    /// Times of the points, or their rows; `None` where the horizontal axis is that of time.
+    pub times: Option<Vec<f64>>,
+    /// Times at which a cycle begins, and that at which the last one ends; empty where there are none.
+    pub cycles: Vec<f64>,
 }
 
 /// Text to the right of a point.
@@ -104,7 +123,12 @@ const LARGEST: f64 = 4000.0;
 impl Curve {
     /// A line through these points.
     pub fn new(points: Vec<Point>, colour: Colour, width: f64) -> Self {
-        Self { points, colour, width }
+        Self { points, colour, width, track: None }
+    }
+
+    /// The curve with the place of its points in a record.
+    pub fn tracked(self, track: Track) -> Self {
+        Self { track: Some(track), ..self }
     }
 
     /// The points as dots.
@@ -180,7 +204,12 @@ impl Chart {
 /// Several charts as one file, `columns` of them beside each other, in cells as large as the largest chart. `description`
 /// is for readers who cannot see them; `generator` names the program that made the file.
 pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
-    svg::sheet(charts, columns, description, generator)
+    svg::sheet(charts, columns, &Appearance::of_page(), description, generator)
+}
+
+/// As [`sheet`], in one column with this appearance.
+pub fn column(charts: &[Chart], appearance: &Appearance, description: &str, generator: &str) -> String {
+    svg::sheet(charts, 1, appearance, description, generator)
 }
 
 /// Points in a file: one that is not finite is nothing.

@@ -1,5 +1,7 @@
 //! Documents as self-contained HTML pages.
 
+mod contents;
+
 use crate::chart::{self, Chart};
 use crate::escape::escape;
 use crate::part::{Card, Item, Page, Part, anchor};
@@ -7,6 +9,12 @@ use crate::table::{Cell, Table};
 use crate::text::{Badge, Piece, Text};
 
 const STYLE: &str = include_str!("html/style.css");
+
+/// A table of so many columns fits a narrow screen.
+const NARROW_COLUMNS: usize = 3;
+
+/// What makes figures answer to pointer and keys. A page is complete without it.
+const SCRIPT: &str = include_str!("html/page.js");
 
 /// Beginning of a page without a mark of the program that wrote it.
 pub const BEGINNING: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">";
@@ -19,10 +27,23 @@ pub fn page(page: &Page, beginning: &str) -> String {
         "{beginning}\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <title>{title}</title>\n<style>\n{STYLE}{}</style>\n</head>\n<body>\n<main>\n\
-         <h1>{title}</h1>\n{}</main>\n</body>\n</html>\n",
-        chart::STYLE,
-        parts(&page.parts),
+         <h1>{title}</h1>\n{}</main>\n{}</body>\n</html>\n",
+        chart::style(),
+        content(&page.parts),
+        if page.parts.iter().any(|part| !part.charts().is_empty()) { script() } else { String::new() },
     )
+}
+
+fn script() -> String {
+    format!("<script>\n{SCRIPT}</script>\n")
+}
+
+/// The parts, with a table of contents before the sections of a long page that has none.
+fn content(all: &[Part]) -> String {
+    let contents = contents::of(all);
+    let before = all.iter().position(|part| matches!(part, Part::Section(..))).unwrap_or(all.len());
+    let (lead, sections) = all.split_at(before);
+    format!("{}{}{}", parts(lead), contents.as_ref().map_or_else(String::new, part), parts(sections))
 }
 
 fn parts(parts: &[Part]) -> String {
@@ -131,21 +152,26 @@ fn table(table: &Table) -> String {
         if table.heading.is_empty() { String::new() } else { note(&format!("{}.", escape(&table.heading))) };
     let cell = |cell: &String| format!("<th scope=\"col\">{}</th>", escape(cell));
     let head: String = table.columns.iter().map(cell).collect();
-    let body: String = table.rows.iter().map(|row| table_row(row, table.columns.len())).collect();
+    let body: String = table.rows.iter().map(|row| table_row(row, &table.columns)).collect();
+    // On a narrow screen, each row of a wide table becomes a list with the names of the columns.
+    let class = if table.columns.len() > NARROW_COLUMNS { " class=\"many\"" } else { "" };
     format!(
-        "{heading}<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
+        "{heading}<div class=\"scroll\" role=\"region\" aria-label=\"table\" tabindex=\"0\"><table{class}>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table></div>\n"
     )
 }
 
 /// A row; if it has fewer cells than the table has columns, its last one goes over all that are left.
-fn table_row(cells: &[Cell], columns: usize) -> String {
+fn table_row(cells: &[Cell], columns: &[String]) -> String {
     let mut row = String::from("<tr>");
     for (index, cell) in cells.iter().enumerate() {
         let cell = escape(&cell.shown());
         row += &match index {
             0 => format!("<th scope=\"row\">{cell}</th>"),
-            last if last + 1 == cells.len() && cells.len() < columns => {
-                format!("<td class=\"words\" colspan=\"{}\">{cell}</td>", columns - last)
+            last if last + 1 == cells.len() && cells.len() < columns.len() => {
+                format!("<td class=\"words\" colspan=\"{}\">{cell}</td>", columns.len() - last)
+            }
+            _ if columns.len() > NARROW_COLUMNS && !cell.is_empty() => {
+                format!("<td data-column=\"{}\">{cell}</td>", escape(&columns[index]))
             }
             _ => format!("<td>{cell}</td>"),
         };

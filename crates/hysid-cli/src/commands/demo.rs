@@ -49,7 +49,12 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
     identified.save(&model)?;
     let trained = identified.model.as_trained(&data.set)?;
-    identified.write_report(&report, out, &[("training", &trained), ("unseen", &unseen.set)])?;
+    identified.write_report(
+        &report,
+        out,
+        &[("training", &trained), ("unseen", &unseen.set)],
+        &[train, test],
+    )?;
     files::write(&loops, identified.loops("unseen", &unseen.set)?.as_bytes())?;
     let written =
         [("data", train), ("data", test), ("model", out), ("report", report.path()), ("loops", loops.path())];

@@ -37,8 +37,8 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
         Given::Tables(tables) => of_data(arguments, tables)?,
     };
     results(&told.text)?;
-    if let (Some(destination), Some(page)) = (&page, &told.page) {
-        files::write_page(destination, page)?;
+    if let (Some(destination), Some(page)) = (&page, told.page) {
+        files::write_page(destination, page, &inputs)?;
         note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)

@@ -68,7 +68,7 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     identified.save(&model)?;
     let trained = identified.model.as_trained(&data.set)?;
     let sets = [("training", trained.as_ref())];
-    let reported = report.as_ref().map_or(Ok(()), |page| identified.write_report(page, out, &sets));
+    let reported = report.as_ref().map_or(Ok(()), |page| identified.write_report(page, out, &sets, &inputs));
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
     match arguments.json {

@@ -6,7 +6,7 @@ use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
 use super::{Fitted, HEADINGS, Row, cells, stopped_note};
-use crate::report::{ReportSet, small_loops};
+use crate::report::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
 
 /// Most records drawn into one chart.
 const MOST_RECORDS: usize = 200;
@@ -43,8 +43,9 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
     parts.push(Part::section("Errors", [Part::Table(rows_table(rows)), Part::note(words)]));
     if !fitted.is_empty() {
         parts.push(Part::section("Error against size", [Part::chart(size_chart(&fitted, data))]));
-        let loops =
-            fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown)).collect::<Result<_>>()?;
+        let tracks = Tracks::of(data, shown);
+        let loops = fitted.iter().map(|(name, fitted)| loops(name, fitted, data, shown, tracks.clone()));
+        let loops = loops.collect::<Result<_>>()?;
         let overlay = Part::chart(overlay(&fitted, shown)?);
         let content = [overlay, Part::heading("Model by model"), Part::Charts(loops)];
         parts.push(Part::section(format!("Loops on {data}"), content));
@@ -53,11 +54,11 @@ pub fn page(title: &str, train: &Dataset, test: Option<&Dataset>, rows: &[Row]) 
 }
 
 /// Measured and simulated loops of one model.
-fn loops(name: &str, fitted: &Fitted, data: &str, shown: &Dataset) -> Result<Chart> {
+fn loops(name: &str, fitted: &Fitted, data: &str, shown: &Dataset, tracks: Tracks) -> Result<Chart> {
     let simulated = shown.records().iter().map(|record| fitted.model.simulate(record));
     let simulated = simulated.collect::<hysid::Result<_>>()?;
     let errors = fitted.judged().clone();
-    let set = ReportSet { name: data.into(), data: shown, simulated, predicted: None, errors };
+    let set = ReportSet { name: data.into(), data: shown, simulated, predicted: None, errors, tracks };
     Ok(small_loops(&set, &format!("{name}: {} %", super::percent(fitted.judged()))))
 }
 
@@ -132,14 +133,14 @@ fn overlay(fitted: &[(&str, &Fitted)], data: &Dataset) -> Result<Chart> {
     let records = || data.records().iter().step_by(every);
     for record in records() {
         let x = &record.inputs()[0];
-        curves.push(Curve::new(path(x, record.output(), record.output()), Colour::Measured, 2.4));
+        curves.push(Curve::new(path(x, record.output(), record.output()), Colour::Measured, MEASURED_WIDTH));
     }
     for (index, (name, fitted)) in fitted.iter().take(OVERLAID).enumerate() {
         legend.push((Colour::Series(index), name.to_string()));
         for record in records() {
             let simulated = fitted.model.simulate(record)?;
             let points = path(&record.inputs()[0], &simulated, record.output());
-            curves.push(Curve::new(points, Colour::Series(index), 1.1));
+            curves.push(Curve::new(points, Colour::Series(index), MODEL_WIDTH));
         }
     }
     for curve in &mut curves {

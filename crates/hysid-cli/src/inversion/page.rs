@@ -2,12 +2,14 @@
 
 use hysid::Model;
 use hysid::model::{Inversion, Reach};
+use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Cell, Chart, Colour, Curve, Page, Part, Piece, Table, Text, number, unit};
 
 use super::{Bounds, Inverted, Wanted, WantedRecord, meaning};
 use crate::report::histories::Panel;
-use crate::report::path_curves;
+use crate::report::tracks::times_or_rows;
+use crate::report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves};
 
 /// Most records drawn; of more, those with the largest deviations.
 const MOST_RECORDS: usize = 6;
@@ -61,6 +63,11 @@ pub fn page(
     Page { title: format!("Inverse of {}", model.name().name()), parts }
 }
 
+/// What ties the charts of a record together.
+fn track(record: &str, times: Option<Vec<f64>>) -> Track {
+    Track { record: record.into(), times, cycles: Vec::new() }
+}
+
 fn lead(model: &Model, inverted: &Inverted) -> Part {
     let errors = &inverted.errors;
     let percent = errors
@@ -92,7 +99,11 @@ fn loops(model: &Model, wanted: &Wanted, inverted: &Inverted, shown: &[usize]) -
     let most = (LOOP_POINTS / shown.len().max(1)).max(16);
     let curves = shown.iter().map(|&index| {
         let (record, inversion) = (&wanted.records[index], &inverted.records[index]);
-        path_curves(&inversion.input, &record.wanted, &inversion.output, most)
+        let (wanted, model, drawn) = path_curves(&inversion.input, &record.wanted, &inversion.output, most);
+        let times = times_or_rows(record.time.as_deref(), record.wanted.len());
+        let times = drawn.iter().map(|row| row.map_or(f64::NAN, |row| times[row])).collect();
+        let track = track(&record.name, Some(times));
+        (wanted.tracked(track.clone()), model.tracked(track))
     });
     let (mut back, front): (Vec<Curve>, Vec<Curve>) = curves.unzip();
     back.extend(front);
@@ -112,17 +123,15 @@ fn record(
     points: usize,
 ) -> Vec<Part> {
     let names = model.names();
-    let time: Vec<f64> = match &record.time {
-        Some(time) => time.clone(),
-        None => (1..=record.wanted.len()).map(|row| row as f64).collect(),
-    };
+    let time = times_or_rows(record.time.as_deref(), record.wanted.len());
     let time_label = match (&record.time, &names.time) {
         (Some(_), Some(name)) => unit::label(name),
         (Some(_), None) => "time".into(),
         (None, _) => "row".into(),
     };
     let band = bounds.band.map_or(0.0, |level| level.probability);
-    let panel = Panel { time: &time, record: &record.name, time_label, points, band };
+    let track = track(&record.name, None);
+    let panel = Panel { time: &time, record: &record.name, time_label, points, band, track };
     let rms = unit::with(&number(inversion.rms_deviation(&record.wanted), 3), &names.output);
     let heading = Text::from(record.name.as_str()).and(Piece::Aside(format!("RMS deviation {rms}")));
     let deviation: Vec<f64> =
@@ -138,8 +147,8 @@ fn record(
             &unit::label(&names.output),
             220.0,
             &[
-                (Colour::Measured, "wanted", 2.4, &record.wanted),
-                (Colour::Simulated, "model", 1.1, &inversion.output),
+                (Colour::Measured, "wanted", MEASURED_WIDTH, &record.wanted),
+                (Colour::Simulated, "model", MODEL_WIDTH, &inversion.output),
             ],
             None,
         ),

@@ -68,6 +68,8 @@ fn nodes(
         "ns per sample",
         "parameters",
     ];
+    let (adding, idle): (Vec<&CandidateResult>, Vec<&CandidateResult>) =
+        candidates.into_iter().partition(|one| !adds_nothing(one, selection));
     let (low, high) = ensemble.range();
     let words = format!(
         "The members of a candidate are fits from different random starts. A weighted median combines the \
@@ -78,7 +80,7 @@ fn nodes(
         number(low, 4),
         number(high, 4)
     );
-    let mut table = Table::new(columns).with_rows(candidates.iter().map(row));
+    let mut table = Table::new(columns).with_rows(adding.iter().map(row));
     table.push([
         "whole ensemble".into(),
         "".into(),
@@ -89,7 +91,15 @@ fn nodes(
         Cell::number(cost(report, report.model), 2),
         report.model.parameters().into(),
     ]);
-    vec![Part::Table(table), Part::note(words)]
+    let mut parts = vec![Part::Table(table), Part::note(words)];
+    if !idle.is_empty() {
+        let summary = format!("Candidates without which the error is not larger: {}", idle.len());
+        parts.push(Part::Folded(
+            summary,
+            vec![Part::Table(Table::new(columns).with_rows(idle.iter().map(row)))],
+        ));
+    }
+    parts
 }
 
 /// What a single model was chosen among, or distilled from.
@@ -190,11 +200,22 @@ fn pair(inside: String, outside: String) -> String {
     if inside == outside { inside } else { format!("{inside} / {outside}") }
 }
 
+/// A change of the ensemble's error by less than this share of it is none.
+const NO_CHANGE: f64 = 1e-3;
+
+/// True if the ensemble's error would not be larger without this candidate, inside the trained range and beyond it.
+fn adds_nothing(candidate: &CandidateResult, selection: &Selection) -> bool {
+    candidate.without_percent.is_some_and(|(inside, outside)| {
+        let (with_inside, with_outside) = selection.error_percent;
+        inside <= (1.0 + NO_CHANGE) * with_inside && outside <= (1.0 + NO_CHANGE) * with_outside
+    })
+}
+
 fn without(candidate: &CandidateResult, selection: &Selection) -> Cell {
     let Some(without) = candidate.without_percent else { return Cell::Missing };
     let added = without.0 - selection.error_percent.0;
     let added = match added {
-        nothing if nothing.abs() < 1e-3 * selection.error_percent.0 => "±0".into(),
+        nothing if nothing.abs() < NO_CHANGE * selection.error_percent.0 => "±0".into(),
         less if less < 0.0 => number(less, 2),
         more => format!("+{}", number(more, 2)),
     };

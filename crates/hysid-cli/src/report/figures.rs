@@ -13,6 +13,12 @@ use super::ReportSet;
 /// Points of all curves of a colour together in a chart of loops.
 const LOOP_POINTS: usize = 6000;
 
+/// Width of the line of measured data, in pixels: wide and pale, so that it is seen beside the model on it.
+pub const MEASURED_WIDTH: f64 = 4.2;
+
+/// Width of the line of a model, in pixels.
+pub const MODEL_WIDTH: f64 = 1.1;
+
 /// Most records drawn into one chart.
 const MOST_RECORDS: usize = 200;
 
@@ -89,19 +95,33 @@ fn loop_chart(set: &ReportSet, shown: &[usize], title: &str, points: usize) -> C
 fn loop_curves(set: &ReportSet, index: usize, most: usize) -> (Curve, Curve) {
     let record = &set.data.records()[index];
     let rows = scored_rows(record);
+    let first = rows.start;
     let x = &record.inputs()[0][rows.clone()];
     let (measured, simulated) = (&record.output()[rows.clone()], &set.simulated[index][rows]);
-    path_curves(x, measured, simulated, most)
+    let (mut wide, mut thin, drawn) = path_curves(x, measured, simulated, most);
+    let track = set.tracks.of_path(record, drawn.into_iter().map(|row| row.map(|row| first + row)));
+    for curve in [&mut wide, &mut thin] {
+        curve.track = Some(track.clone());
+    }
+    (wide, thin)
 }
 
-/// Two outputs over the same input, the same rows of both: the wide curve of one, and the thin one of a model before it.
-pub fn path_curves(x: &[f64], wide: &[f64], model: &[f64], most: usize) -> (Curve, Curve) {
+/// Two outputs over the same input, the same rows of both: the wide curve of one, and the thin one of a model before it;
+/// and the rows that are drawn.
+pub fn path_curves(
+    x: &[f64],
+    wide: &[f64],
+    model: &[f64],
+    most: usize,
+) -> (Curve, Curve, Vec<Option<usize>>) {
     let drawn = thin_path(&[x, wide, model], most);
     let curve = |colour: Colour, width: f64, y: &[f64]| {
         let point = |row: &Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
         Curve::new(drawn.iter().map(point).collect(), colour, width)
     };
-    (curve(Colour::Measured, 2.2, wide), curve(Colour::Simulated, 1.1, model))
+    let curves =
+        (curve(Colour::Measured, MEASURED_WIDTH, wide), curve(Colour::Simulated, MODEL_WIDTH, model));
+    (curves.0, curves.1, drawn)
 }
 
 /// From the first row with an output to the last; all rows if no row has one.

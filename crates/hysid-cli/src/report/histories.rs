@@ -1,9 +1,12 @@
 //! Output, error and input over time.
 
 use hysid::model::Prediction;
+use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, outline, thin};
 use hysid_document::{Axis, Chart, Colour, Curve, Part, Piece, Text, number, unit};
 
+use super::figures::{MEASURED_WIDTH, MODEL_WIDTH};
+use super::tracks::times;
 use super::{BAND, ReportSet, time_label};
 
 /// Most records drawn; of more, those with the largest errors.
@@ -55,12 +58,10 @@ fn errors(set: &ReportSet, index: usize) -> Vec<f64> {
 fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     let record = &set.data.records()[index];
     let names = set.data.names();
-    let time: Vec<f64> = match record.time() {
-        Some(time) => time.to_vec(),
-        None => (1..=record.len()).map(|row| row as f64).collect(),
-    };
-    let panel =
-        Panel { time: &time, record: record.name(), time_label: time_label(set.data), points, band: BAND };
+    let time = times(record);
+    let track = set.tracks.over_time(record.name());
+    let time_label = time_label(set.data);
+    let panel = Panel { time: &time, record: record.name(), time_label, points, band: BAND, track };
     let output = unit::label(&names.output);
     let error = match unit::split(&names.output).1 {
         Some(unit) => format!("error ({unit})"),
@@ -78,8 +79,8 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
         &output,
         220.0,
         &[
-            (Colour::Measured, "measured", 2.4, record.output()),
-            (Colour::Simulated, "model", 1.1, &set.simulated[index]),
+            (Colour::Measured, "measured", MEASURED_WIDTH, record.output()),
+            (Colour::Simulated, "model", MODEL_WIDTH, &set.simulated[index]),
         ],
         predicted.map(|predicted| panel.area(&predicted.low, &predicted.high)),
     ));
@@ -106,6 +107,8 @@ pub struct Panel<'a> {
     pub points: usize,
     /// Probability of the band.
     pub band: f64,
+    /// What ties the charts of the record together.
+    pub track: Track,
 }
 
 impl Panel<'_> {
@@ -132,7 +135,7 @@ impl Panel<'_> {
     ) -> Part {
         let curve = |&(colour, _, width, values): &(Colour, &str, f64, &[f64])| {
             let points: Vec<Point> = self.time.iter().copied().zip(values.iter().copied()).collect();
-            Curve::new(thin(&points, self.points), colour, width)
+            Curve::new(thin(&points, self.points), colour, width).tracked(self.track.clone())
         };
         let mut legend: Vec<(Colour, String)> =
             lines.iter().map(|(colour, name, ..)| (*colour, name.to_string())).collect();

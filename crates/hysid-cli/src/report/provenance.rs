@@ -36,7 +36,6 @@ pub fn section(report: &Report) -> Part {
     let mut pairs = of_model(report.model);
     pairs.push(pair("Time taken", format!("{} s", number(report.seconds, 3))));
     pairs.push(pair("Model file", &*report.model_file));
-    pairs.push(pair("Version", format!("hysid {}", env!("CARGO_PKG_VERSION"))));
     Part::section("Options and provenance", [Part::Definitions(pairs)])
 }
 

@@ -169,7 +169,7 @@ fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -
 }
 
 fn write_all([html, text, tables]: [Destination; 3], page: &Page, chapters: &[Chapter]) -> Result<()> {
-    files::write_page(&html, page)?;
+    files::write(&html, files::page_text(page).as_bytes())?;
     files::write(&text, markdown::page(page).as_bytes())?;
     files::write(&tables, rendering::csv(chapters)?.as_bytes())
 }

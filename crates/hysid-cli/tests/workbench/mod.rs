@@ -65,6 +65,14 @@ impl Workbench {
         fs::write(self.path(name), content).unwrap();
     }
 
+    /// A page without the script of its figures, which is the last thing in it.
+    pub fn page(&self, name: &str) -> String {
+        let text = self.text(name);
+        let (page, end) = text.split_once("<script>\n// Figures of a page").expect("a page with figures");
+        assert!(end.ends_with("</script>\n</body>\n</html>\n"), "{name}");
+        page.to_string()
+    }
+
     /// Reads a file.
     pub fn text(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap()

@@ -13,6 +13,9 @@ const MARGIN: f64 = 0.04;
 /// Most powers of ten that a logarithmic axis spans: what lies lower is drawn at its end.
 const MOST_DECADES: f64 = 9.0;
 
+/// Values further beyond the ends of an axis, in its lengths, have the place of this one.
+const MOST_BEYOND: f64 = 100.0;
+
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
@@ -113,9 +116,19 @@ impl Axis {
         self.ticks.iter().map(|&tick| self.text(tick).chars().count()).max().unwrap_or(0)
     }
 
-    fn position(&self, value: f64) -> f64 {
+    /// Place of a value along the axis: 0 at its beginning, 1 at its end, and not much beyond either.
+    pub(super) fn place(&self, value: f64) -> f64 {
         let value = if self.logarithmic { value.max(f64::MIN_POSITIVE).log10() } else { value };
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+        ((value - self.low) / (self.high - self.low)).clamp(-MOST_BEYOND, 1.0 + MOST_BEYOND)
+    }
+
+    fn position(&self, value: f64) -> f64 {
+        self.place(value).clamp(0.0, 1.0)
+    }
+
+    /// Beginning and end, as powers of ten if it is logarithmic, and whether it is.
+    pub(super) fn limits(&self) -> (f64, f64, bool) {
+        (self.low, self.high, self.logarithmic)
     }
 }
 

@@ -111,7 +111,7 @@ mod tests {
         assert_balanced(&svg);
         for marker in ["#102038", "#102133", "#102034", "#102030"] {
             assert!(svg.contains(&format!("fill=\"{marker}\"")), "{marker}");
-            assert!(super::super::STYLE.contains(&format!("[fill=\"{marker}\"]")), "{marker}");
+            assert!(super::super::style().contains(&format!("[fill=\"{marker}\"]")), "{marker}");
         }
     }
 

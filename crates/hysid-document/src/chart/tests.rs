@@ -1,6 +1,7 @@
 use plotters::style::RGBColor;
 
-use super::svg::{GRID, INK, legend_lines};
+use super::frame::legend_lines;
+use super::palette::{GRID, INK};
 use super::*;
 use crate::balance::assert_balanced;
 
@@ -12,7 +13,7 @@ fn chart(points: Vec<Point>) -> Chart {
         size: (520.0, 360.0),
         x: Axis::linear("x <mm>", points.iter().map(|p| p.0)),
         y: Axis::linear("y", points.iter().map(|p| p.1)),
-        curves: vec![Curve { points, colour: Colour::Simulated, width: 1.5 }],
+        curves: vec![Curve::new(points, Colour::Simulated, 1.5)],
         legend: vec![(Colour::Simulated, "model".into())],
     }
 }
@@ -83,14 +84,13 @@ fn every_marker_is_recoloured() {
         [Colour::Measured, Colour::Simulated, Colour::Input, Colour::Error, Colour::Faint, Colour::Band];
     let markers = colours.map(Colour::marker).into_iter().chain([INK, GRID]);
     for RGBColor(r, g, b) in markers {
-        assert!(STYLE.contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
+        assert!(style().contains(&format!("[stroke=\"#{r:02X}{g:02X}{b:02X}\"]")));
     }
 }
 
 #[test]
 fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
-    let curve =
-        |place| Curve { points: vec![(0.0, 0.0), (1.0, 1.0)], colour: Colour::Series(place), width: 1.0 };
+    let curve = |place| Curve::new(vec![(0.0, 0.0), (1.0, 1.0)], Colour::Series(place), 1.0);
     let chart = Chart {
         curves: (0..4).map(curve).collect(),
         legend: (0..6).map(|place| (Colour::Series(place), format!("a long name, number {place}"))).collect(),
@@ -98,7 +98,7 @@ fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
         ..chart(vec![])
     };
     // An entry takes about 190 of 520 pixels.
-    let lines: Vec<usize> = legend_lines(&chart).iter().map(Vec::len).collect();
+    let lines: Vec<usize> = legend_lines(&chart, &Appearance::of_page()).iter().map(Vec::len).collect();
     assert_eq!(lines, [2, 2]);
     assert_balanced(&chart.svg());
 }
