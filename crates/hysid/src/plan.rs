@@ -52,7 +52,7 @@ use survey::Survey;
 
 pub use limits::{FEWEST_ROWS, Limits, MOST_ROWS, Wanted};
 pub use path::{Leg, Path, Wave};
-pub use protocol::{Protocol, ProtocolOptions, RANGE_OF_A_PROTOCOL};
+pub use protocol::{Protocol, ProtocolOptions};
 pub use segment::{Kind, Segment};
 pub use survey::Gap;
 

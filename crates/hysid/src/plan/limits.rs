@@ -45,7 +45,7 @@ pub struct Wanted {
     /// Largest change of the input in a unit of time, or from row to row.
     pub max_rate: Option<f64>,
     /// Most rows.
-    pub rows: Option<usize>,
+    pub length: Option<usize>,
 }
 
 impl Limits {
@@ -70,7 +70,7 @@ impl Limits {
             start: start.clamp(range.0, range.1),
             step,
             max_rate: wanted.max_rate.unwrap_or(rate),
-            rows: wanted.rows.unwrap_or_else(|| data.rows().clamp(FEWEST_ROWS, MOST_ROWS)),
+            rows: wanted.length.unwrap_or_else(|| data.rows().clamp(FEWEST_ROWS, MOST_ROWS)),
         }
         .checked()
     }
@@ -95,7 +95,7 @@ impl Limits {
         }
         if !(FEWEST_ROWS..=MOST_ROWS).contains(&self.rows) {
             let needed = format!("a whole number from {FEWEST_ROWS} to {MOST_ROWS} is needed");
-            return Err(OptionError::value("rows", self.rows, needed).into());
+            return Err(OptionError::value("length", self.rows, needed).into());
         }
         let most = self.width() / FEWEST_ROWS_OF_A_SWING;
         let limited = Self { max_rate: self.max_rate.min(most / self.time_step()), ..self };
@@ -179,7 +179,7 @@ mod tests {
         let refused = |wanted: Wanted| Limits::of(&data(0.1), &wanted).unwrap_err().to_string();
         let base = Wanted::default();
         assert!(refused(Wanted { range: Some((1.0, 1.0)), ..base }).contains("lower one first"));
-        assert!(refused(Wanted { rows: Some(3), ..base }).contains("from 40 to"));
+        assert!(refused(Wanted { length: Some(3), ..base }).contains("from 40 to"));
         assert!(refused(Wanted { max_rate: Some(-1.0), ..base }).contains("above 0"));
         assert!(refused(Wanted { max_rate: Some(1e-3), ..base }).contains("too few"));
         assert!(refused(Wanted { step: Some(f64::NAN), ..base }).contains("above 0"));

@@ -10,9 +10,6 @@ use crate::error::{Error, OptionError, Result};
 /// Rows of a protocol for which neither rows nor a rate are given.
 const ROWS: usize = 2000;
 
-/// A range in which all protocols are the same but for their scale.
-pub const RANGE_OF_A_PROTOCOL: (f64, f64) = (-1.0, 1.0);
-
 /// A kind of specimen with a first protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Protocol {
@@ -259,7 +256,7 @@ impl Protocol {
     fn limits(self, range: (f64, f64), wanted: &Wanted, wave: Wave) -> Result<Limits> {
         let step = wanted.step;
         let start = 0.0_f64.clamp(range.0.min(range.1), range.1);
-        let rows = wanted.rows.unwrap_or(ROWS);
+        let rows = wanted.length.unwrap_or(ROWS);
         // Bounded by the fewest rows of a swing.
         let largest = (range.1 - range.0).abs() / step.unwrap_or(1.0);
         let probe = Limits { range, start, step, max_rate: largest, rows }.checked()?;
@@ -273,7 +270,7 @@ impl Protocol {
             // Nonsense is refused before rows are counted.
             let limits = Limits { max_rate, rows: super::limits::MOST_ROWS, ..probe }.checked()?;
             let needed = needed(limits.max_rate);
-            return match wanted.rows {
+            return match wanted.length {
                 Some(rows) if needed > rows => Err(too_few(self, rows, needed)),
                 _ if needed > super::limits::MOST_ROWS => {
                     Err(too_few(self, super::limits::MOST_ROWS, needed))
@@ -398,7 +395,7 @@ mod tests {
     /// Amplitudes of FEMA 461: two cycles each, 1.4 times larger each time, from 0.048 of the largest.
     #[test]
     fn the_protocol_of_structures_is_that_of_fema_461() {
-        let limits = Wanted { range: Some((-50.0, 50.0)), rows: Some(4000), ..Wanted::default() };
+        let limits = Wanted { range: Some((-50.0, 50.0)), length: Some(4000), ..Wanted::default() };
         let plan = Protocol::Structure.plan(&ProtocolOptions { limits, wave: None }).unwrap();
         let turns = &plan.segments[0].turning_points;
         assert!((turns[0] / 50.0 - 0.048).abs() < 0.0005, "{turns:?}");
