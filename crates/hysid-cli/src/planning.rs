@@ -126,18 +126,25 @@ fn on_disagreement(plan: &Plan) -> Option<String> {
 
 /// The segments as a table.
 fn segments(plan: &Plan) -> Table {
-    let mut table = Table::new(["", "segment", "rows", "amplitude", "mean", "rate", "new %"]);
+    let from_data = plan.segments.iter().any(|segment| segment.new_share.is_some());
+    let has_members = plan.disagreement.is_some();
+    let mut headings = vec!["", "segment", "rows", "amplitude", "mean", "rate"];
+    headings.extend(from_data.then_some("new %"));
+    headings.extend(has_members.then_some("members differ"));
+    let mut table = Table::new(headings);
     for (index, segment) in plan.segments.iter().enumerate() {
-        let rows = format!("{}-{}", segment.rows.start + 1, segment.rows.end);
-        table.push([
-            Cell::from((index + 1).to_string()),
+        let mut cells: Vec<Cell> = vec![
+            (index + 1).to_string().into(),
             segment.kind.words().into(),
-            Cell::from(rows),
+            format!("{}-{}", segment.rows.start + 1, segment.rows.end).into(),
             Cell::number(segment.amplitude, 3),
             Cell::number(segment.mean, 3),
             Cell::number(segment.rate, 3),
-            Cell::from(segment.new_share.map_or_else(String::new, |share| format!("{:.0}", 100.0 * share))),
-        ]);
+        ];
+        let percent = |share: f64| format!("{:.0}", 100.0 * share);
+        cells.extend(from_data.then(|| Cell::from(segment.new_share.map_or_else(String::new, percent))));
+        cells.extend(has_members.then(|| Cell::number(segment.disagreement, 2)));
+        table.push(cells);
     }
     table
 }

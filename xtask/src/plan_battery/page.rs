@@ -23,8 +23,9 @@ fn table(trials: &[&Trial]) -> String {
         let errors: [fn(&Trial) -> f64; 4] =
             [|trial| trial.before, |trial| trial.repeated, |trial| trial.planned, |trial| trial.random];
         let mut cells: Vec<String> =
-            errors.iter().map(|of| format!("{:.1}", median(&sorted(of_one, of)))).collect();
-        let ends = [median(&ratios), ratios[0], ratios[ratios.len() - 1]];
+            errors.iter().map(|of| format!("{:.2}", median(&sorted(of_one, of)))).collect();
+        let strict = median(&sorted(of_one, Trial::strict_ratio));
+        let ends = [median(&ratios), ratios[0], ratios[ratios.len() - 1], strict];
         cells.extend(ends.map(|ratio| format!("{ratio:.2}")));
         rows.push(row(of_one[0].name, &cells));
     }
@@ -36,19 +37,22 @@ fn summary(trials: &[&Trial]) -> String {
     if trials.is_empty() {
         return String::new();
     }
-    let ratios = sorted(trials, Trial::ratio);
     let of_random = sorted(trials, |trial| trial.random / trial.planned);
-    let at_least = |least: f64| ratios.iter().filter(|ratio| **ratio >= least).count();
-    format!(
-        "Over all {} trials the ratio repeated/planned has the median {:.2} and is {:.2} in the worst; it is 1.5 or more in \
-         {} and below 1 in {}. The ratio random/planned has the median {:.2}.\n",
-        ratios.len(),
-        median(&ratios),
-        ratios[0],
-        at_least(1.5),
-        ratios.len() - at_least(1.0),
-        median(&of_random)
-    )
+    let compared = [
+        ("repeated / planned", sorted(trials, Trial::ratio)),
+        ("lower of before and repeated / planned", sorted(trials, Trial::strict_ratio)),
+        ("random / planned", of_random),
+    ];
+    let mut rows =
+        vec![row("over all trials", &["median", "lowest", "highest", "1.5 or more", "below 1", "trials"])];
+    for (name, ratios) in compared {
+        let below = |limit: f64| ratios.iter().filter(|ratio| **ratio < limit).count();
+        let mut cells =
+            [median(&ratios), ratios[0], ratios[ratios.len() - 1]].map(|r| format!("{r:.2}")).to_vec();
+        cells.extend([ratios.len() - below(1.5), below(1.0), ratios.len()].map(|count| count.to_string()));
+        rows.push(row(name, &cells));
+    }
+    aligned(&rows)
 }
 
 fn sorted(trials: &[&Trial], of: impl Fn(&Trial) -> f64) -> Vec<f64> {

@@ -21,15 +21,17 @@ Method, protocols and what they are worth: docs/plan.md";
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]
 pub struct Plan {
-    /// Plan what to measure next, after these tables of measured data
+    /// Plan what to measure next, after these tables
     #[arg(long, value_name = "DATA.csv", num_args = 1.., conflicts_with = "kind")]
     pub like: Vec<PathBuf>,
-    /// Plan a first test: structure, damper, rubber, actuator or magnet, or words such as "piezo stage"
+    /// Plan a first test of a kind of specimen
+    ///
+    /// Structure, damper, rubber, actuator or magnet, or words that name one, such as "piezo stage".
     #[arg(long = "for", value_name = "KIND", id = "kind")]
     pub kind: Option<String>,
-    /// Table to write [default: name of DATA or KIND with `.drive.csv`; `-` is stdout]
+    /// Table to write; `-` is stdout
     ///
-    /// Its columns are time, if there is one, and the input. The page has the same name with `.html`.
+    /// The default is the name of DATA or KIND with `.drive.csv`, in the current folder. Its columns are time, if there is one, and the input. The page has the same name with `.html`.
     #[arg(short, long, value_name = "DRIVE.csv")]
     pub out: Option<PathBuf>,
     /// Which files may be replaced.
@@ -38,32 +40,40 @@ pub struct Plan {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Lowest and highest input, such as -5:5 [default: range of the data]
+    /// Lowest and highest input [default: of the data]
+    ///
+    /// Two numbers, such as -5:5. A range beyond that of the data is run too.
     #[arg(long, value_name = "LOW:HIGH", value_parser = limits, help_heading = "Limits")]
     pub range: Option<(f64, f64)>,
-    /// Most rows [default: rows of the data; 2000 without data]
+    /// Most rows [default: as many as the data]
+    ///
+    /// Without data, the default is 2000.
     #[arg(long, value_name = "ROWS", value_parser = whole::<usize>, help_heading = "Limits")]
     pub length: Option<usize>,
     /// Longest duration, in the unit of time
-    #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits", conflicts_with = "length")]
+    #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits", hide_short_help = true, conflicts_with = "length")]
     pub duration: Option<f64>,
-    /// Time between rows [default: that of the data; none without data]
+    /// Time between rows [default: that of the data]
+    ///
+    /// Without data there is no time by default, and the test is to be run slowly.
     #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits")]
     pub step: Option<f64>,
-    /// Largest change of the input in a unit of time [default: that of the data]
+    /// Largest rate of the input [default: of the data]
     ///
-    /// Without time stamps, the largest change from row to row. Without data, the default is the rate at which the test
+    /// The largest change of the input in a unit of time; without time stamps, from row to row. Without data, the default is the rate at which the test
     /// has the wanted length.
     #[arg(long, value_name = "RATE", value_parser = slew, help_heading = "Limits")]
     pub max_rate: Option<f64>,
     /// Shape of swings: smooth or triangle [default: smooth if there is time]
-    #[arg(long, value_name = "NAME", value_parser = wave, help_heading = "Limits")]
+    #[arg(long, value_name = "NAME", value_parser = wave, help_heading = "Limits", hide_short_help = true)]
     pub wave: Option<Wave>,
-    /// Ensemble that was fitted to the data [default: fitted now, with few starts]
+    /// Ensemble of the data [default: fitted now]
+    ///
+    /// A model file of `hysid fit`. The default is `auto` with one start of each candidate.
     #[arg(long, value_name = "MODEL.json", help_heading = "Method", conflicts_with = "kind")]
     pub model: Option<PathBuf>,
     /// Use no ensemble: plan by what was not run alone
-    #[arg(long, help_heading = "Method", conflicts_with_all = ["model", "kind"])]
+    #[arg(long, help_heading = "Method", hide_short_help = true, conflicts_with_all = ["model", "kind"])]
     pub coverage_only: bool,
     /// Seed of all random numbers
     #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = "Method")]

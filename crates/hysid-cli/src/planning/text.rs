@@ -1,5 +1,6 @@
 //! A plan on a terminal.
 
+use hysid::plan::{Kind, Plan};
 use hysid_document::plain::{WIDTH, indented, rendered, wrapped};
 use hysid_document::{Part, capitalised};
 
@@ -13,11 +14,7 @@ pub fn text(planned: &Planned<'_>) -> String {
         items.map(|item| format!("- {}", indented(&item, 2).trim_start())).collect()
     };
     let mut blocks = vec![lines(&headline(plan)), rendered(&[Part::Table(segments(plan))])];
-    let reasons = plan.segments.iter().enumerate();
-    let reasons: String = reasons
-        .map(|(index, segment)| format!("{:>2}  {}", index + 1, indented(&segment.reason, 4).trim_start()))
-        .collect();
-    blocks.push(format!("why\n{reasons}"));
+    blocks.push(format!("why\n{}", list(&mut purposes(plan).into_iter())));
     if !plan.gaps.is_empty() {
         let gaps = list(&mut plan.gaps.iter().map(|gap| format!("{}: {}", gap.what, gap.statement)));
         blocks.push(format!("what the data do not tell\n{gaps}"));
@@ -30,4 +27,15 @@ pub fn text(planned: &Planned<'_>) -> String {
     let step = capitalised("run the drive on a specimen like the first, save the results as NEW.csv, then");
     blocks.push(format!("next\n{}  {}\n", lines(&step), planned.next));
     blocks.join("\n")
+}
+
+/// What each kind of segment adds, in the order of the drive.
+fn purposes(plan: &Plan) -> Vec<String> {
+    let mut kinds: Vec<Kind> = Vec::new();
+    for segment in &plan.segments {
+        if !kinds.contains(&segment.kind) {
+            kinds.push(segment.kind);
+        }
+    }
+    kinds.into_iter().map(|kind| format!("{kind}: {}", kind.purpose())).collect()
 }

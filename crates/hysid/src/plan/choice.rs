@@ -12,8 +12,9 @@ use super::survey::Survey;
 use crate::error::Result;
 use hysid_diagnosis::Verdict;
 
-/// Share of the rows that a test of one property may take.
+/// Shares of the rows that a test of one property may take, and all of them together.
 const OF_A_TEST: f64 = 0.25;
+const OF_ALL_TESTS: f64 = 0.4;
 
 /// Amplitudes of such a test, as shares of half the range: the largest that fits.
 const AMPLITUDES: [f64; 5] = [0.6, 0.45, 0.3, 0.2, 0.12];
@@ -41,7 +42,8 @@ pub(super) fn fill(draft: &mut Draft<'_>, survey: &Survey, seed: u64) -> Result<
         add_if_it_fits(draft, Kind::Conditioning, &swings(&[high, low], 1.0))?;
     }
     if speed_matters && survey.rate_dependence == Verdict::NotTestable {
-        let slow = CLASSES[CLASSES.len() - 1];
+        // More than twice as fast tells, and the slowest would take most of the rows.
+        let slow = CLASSES[1];
         test_of_a_loop(draft, Kind::TwoSpeeds, |up, down| {
             [swings(&[up, down, up], 1.0), swings(&[down, up], slow)].concat()
         })?;
@@ -64,18 +66,23 @@ fn swings(turns: &[f64], speed: f64) -> Vec<Leg> {
     turns.iter().map(|&to| Leg::Swing { to, speed }).collect()
 }
 
+/// True if a test may still be added: it leaves rows for the rest.
+fn may_test(draft: &Draft<'_>, legs: &[Leg]) -> bool {
+    let (all, rows) = (draft.path.limits.rows as f64, draft.path.rows_of(draft.now(), legs));
+    let together = (draft.inputs.len() + rows) as f64;
+    rows as f64 <= OF_A_TEST * all && together <= OF_ALL_TESTS * all && draft.fits(legs)
+}
+
 fn add_if_it_fits(draft: &mut Draft<'_>, kind: Kind, legs: &[Leg]) -> Result<()> {
-    if draft.fits(legs) { draft.add(kind, legs) } else { Ok(()) }
+    if may_test(draft, legs) { draft.add(kind, legs) } else { Ok(()) }
 }
 
 /// Adds a test of a loop about the middle, as large as fits.
 fn test_of_a_loop(draft: &mut Draft<'_>, kind: Kind, legs: impl Fn(f64, f64) -> Vec<Leg>) -> Result<()> {
     let limits = draft.path.limits;
     let (middle, half) = (0.5 * (limits.range.0 + limits.range.1), 0.5 * limits.width());
-    let most = OF_A_TEST * limits.rows as f64;
     let all = AMPLITUDES.map(|share| legs(middle + share * half, middle - share * half));
-    let fits = |legs: &&Vec<Leg>| draft.path.rows_of(draft.now(), legs) as f64 <= most && draft.fits(legs);
-    match all.iter().find(fits) {
+    match all.iter().find(|legs| may_test(draft, legs)) {
         Some(legs) => draft.add(kind, legs),
         None => Ok(()),
     }

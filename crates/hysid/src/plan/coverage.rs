@@ -149,7 +149,8 @@ impl Coverage {
     pub fn new_share(&self, visits: &[Visit]) -> f64 {
         let all: f64 = visits.iter().map(|visit| visit.amount).sum();
         let new = visits.iter().filter(|visit| self.visits[visit.cell] < 0.5);
-        if all > 0.0 { new.map(|visit| visit.amount).sum::<f64>() / all } else { 0.0 }
+        // The empty sum is -0.
+        if all > 0.0 { new.map(|visit| visit.amount).sum::<f64>().abs() / all } else { 0.0 }
     }
 }
 

@@ -37,19 +37,7 @@ fn purpose(segment: &Segment, limits: Limits) -> String {
         share if share < 0.67 && share > 0.0 => " at medium speed",
         _ => "",
     };
-    let words = match segment.kind {
-        Kind::Conditioning => "brings the memory into a known state",
-        Kind::TwoSpeeds => "makes rate dependence testable",
-        Kind::RepeatedLoop => "makes deterioration testable, and shows the noise",
-        Kind::Hold => "shows creep and relaxation",
-        Kind::CentredLoop => "amplitudes about the middle",
-        Kind::MinorLoop => "loops away from the middle",
-        Kind::ReversalCurve => "reversals on the branches of the full loop",
-        Kind::NestedLoops => "loops inside loops: what the memory keeps",
-        Kind::RandomReversals => "many pairs of turning points in few rows",
-        Kind::RisingLoops => "each amplitude before a larger one changes the specimen",
-        Kind::Return => "back to the beginning",
-    };
+    let words = segment.kind.purpose();
     let said = !matches!(segment.kind, Kind::TwoSpeeds | Kind::Return | Kind::Hold);
     if said { format!("{words}{slow}") } else { words.to_string() }
 }

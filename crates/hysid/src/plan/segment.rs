@@ -50,6 +50,23 @@ impl Kind {
             Self::Return => "return",
         }
     }
+
+    /// What it adds, in a few words.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Conditioning => "brings the memory into a known state",
+            Self::TwoSpeeds => "makes rate dependence testable",
+            Self::RepeatedLoop => "makes deterioration testable, and shows the noise",
+            Self::Hold => "shows creep and relaxation",
+            Self::CentredLoop => "amplitudes about the middle",
+            Self::MinorLoop => "loops away from the middle",
+            Self::ReversalCurve => "reversals on the branches of the full loop",
+            Self::NestedLoops => "loops inside loops: what the memory keeps",
+            Self::RandomReversals => "many pairs of turning points in few rows",
+            Self::RisingLoops => "each amplitude before a larger one changes the specimen",
+            Self::Return => "back to the beginning",
+        }
+    }
 }
 
 impl fmt::Display for Kind {
