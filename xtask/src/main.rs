@@ -1,6 +1,6 @@
 //! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | generate-files |
 //! verdicts |
-//! verdict-battery | fuzz | soak | same-models | tidy`.
+//! verdict-battery | plan-battery | fuzz | soak | same-models | tidy`.
 
 mod arguments;
 mod bench;
@@ -11,6 +11,7 @@ mod files;
 mod fuzz;
 mod generate_cases;
 mod generate_files;
+mod plan_battery;
 mod program;
 mod proofs;
 mod python;
@@ -65,6 +66,9 @@ Commands:
                  `hysid diagnose` on records of laws with known properties and the disturbances of a laboratory, as
                  tables of right and wrong verdicts. The same seed (1) gives the same records. With --list-wrong, a
                  line of CSV for each wrong verdict, and its record in the folder FILE with the ending .records
+  plan-battery [--seeds NUMBER] [--specimens LIST] [--out FILE.md]
+                 the error on unseen data after a first test and a second one: the same again, the plan of
+                 `hysid plan`, random reversals. Long: run it as `cargo run --release -p xtask -- plan-battery`
 ";
 
 /// A command line that cannot be obeyed; the exit status is 2.
@@ -117,6 +121,9 @@ fn main() -> ExitCode {
         ["generate-files", folder] => generate_files::run(&PathBuf::from(folder)),
         ["verdicts", rest @ ..] => {
             cases::Request::parse(rest, &verdicts::OPTIONS).and_then(|request| verdicts::run(&request))
+        }
+        ["plan-battery", rest @ ..] => {
+            plan_battery::Request::parse(rest).and_then(|request| plan_battery::run(&request))
         }
         ["verdict-battery", rest @ ..] => {
             verdict_battery::Request::parse(rest).and_then(|request| verdict_battery::run(&request))

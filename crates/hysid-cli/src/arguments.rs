@@ -4,6 +4,7 @@ mod cycles;
 mod examples;
 mod limits;
 mod model_options;
+mod plan;
 mod program;
 mod reading;
 
@@ -28,6 +29,7 @@ pub use cycles::Cycles;
 use examples::*;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
+pub use plan::Plan;
 pub use program::{Completions, Man, Models};
 pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
@@ -101,6 +103,8 @@ pub enum Command {
     Diagnose(Diagnose),
     /// Tables of cycles: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
+    /// Plan what to measure next: a drive, and why
+    Plan(Box<Plan>),
     /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),
     /// Write training and test data of a synthetic specimen

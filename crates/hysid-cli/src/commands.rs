@@ -14,6 +14,7 @@ pub mod invert;
 pub mod look;
 pub mod man;
 pub mod models;
+pub mod plan;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

@@ -25,6 +25,7 @@ mod looked;
 mod messages;
 mod model_list;
 mod origin;
+mod planning;
 mod progress;
 mod quantities;
 mod record_names;
@@ -78,6 +79,7 @@ pub fn run() -> ExitCode {
         Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Cycles(arguments) => commands::cycles::run(&arguments),
+        Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),
         Command::Export(arguments) => commands::export::run(&arguments),

@@ -13,7 +13,7 @@ fn an_experiment_by_name_leaves_its_page_and_tables() {
     assert_eq!(bench.files("out"), ["nds.csv", "nds.html", "nds.json", "nds.md"]);
     let page = bench.text("out/nds.html");
     assert!(!page.contains("http://") || page.contains("http://www.w3.org"), "the page needs nothing else");
-    assert_eq!(page.matches("<svg").count(), 7, "an input and six loops");
+    assert_eq!(page.matches("<svg class=\"plot\"").count(), 7, "an input and six loops");
     // K of the first neuron: 2 (1 - 1/1.42).
     let table = bench.text("out/nds.csv");
     let k = table.lines().find(|line| line.contains("1: w (1.42, 0)") && line.contains(",K,")).unwrap();

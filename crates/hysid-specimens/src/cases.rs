@@ -8,6 +8,7 @@
 
 mod devices;
 mod draw;
+mod driven;
 mod magnets;
 mod one_loop;
 mod plans;
@@ -21,6 +22,7 @@ use hysid_core::error::Result;
 
 use super::noise::with_noise;
 use draw::Draw;
+pub use driven::{DrivenSpecimen, driven_specimen};
 pub use one_loop::one_loop;
 use plans::PLANS;
 
@@ -71,7 +73,7 @@ fn case(index: usize, seed: u64) -> Result<Case> {
     let subject = (plan.subject)(&mut draw)?;
     let parts = plan.design.parts(&mut draw, &subject)?;
     let names = ColumnNames {
-        time: plan.design.is_timed().then(|| "t_s".to_owned()),
+        time: plan.design.band().map(|_| "t_s".to_owned()),
         inputs: vec![plan.input.to_owned()],
         rate: None,
         output: plan.output.to_owned(),

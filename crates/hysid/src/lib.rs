@@ -31,7 +31,7 @@
 //! [`Fit::time_limit`] reads a clock. Each of these modules uses only those before it: [`data`] holds
 //! measured records, [`operator`] the operators with memory, [`network`] the family of networks, [`law`] the
 //! classical models, [`options`] the options of a fit, [`model`] the fitted model, [`validation`] the folds,
-//! [`mod@fit`] the identification. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
+//! [`mod@fit`] the identification, [`plan`] what to measure next. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
 //! synthetic data.
 //!
 //! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
@@ -39,6 +39,7 @@
 mod builder;
 pub mod fit;
 pub mod optimise;
+pub mod plan;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};

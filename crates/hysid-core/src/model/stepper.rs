@@ -118,14 +118,18 @@ impl<'m> Stepper<'m> {
         level.check()?;
         let band = self.model.band().ok_or(Error::NoBand(self.model.name().name()))?;
         let outside = self.state.excursion.map_or(0.0, |excursion| excursion.outside());
-        let disagreement = match (&self.model.body, &mut self.state.memory) {
-            (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) if !memory.outputs.is_empty() => {
-                let EnsembleMemory { outputs, medians, .. } = &mut **memory;
-                disagreement(medians.predictions(ensemble.group(), outside, |member| outputs[member]))
-            }
-            _ => 0.0,
-        };
+        let disagreement = disagreement_at(&self.model, &mut self.state.memory, outside);
         Ok(band.half_width(level, disagreement, outside))
+    }
+
+    /// Disagreement of the members of an ensemble at the last trial or step, in the unit of the output: half the distance
+    /// between the 15.9 % and 84.1 % quantiles of their outputs. 0 for a model that is no ensemble.
+    pub fn disagreement(&mut self) -> f64 {
+        let outside = match &self.state.memory {
+            Memory::Ensemble(memory) => memory.excursion.outside(),
+            Memory::Network(..) | Memory::Law(_) => 0.0,
+        };
+        disagreement_at(&self.model, &mut self.state.memory, outside)
     }
 
     fn advance(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
@@ -155,6 +159,17 @@ impl<'m> Stepper<'m> {
         self.state.reset(&self.model);
         self.state.excursion = excursion(&self.model);
         Ok(())
+    }
+}
+
+/// Disagreement of the members after their last sample, where `outside` is how far the record has been outside.
+fn disagreement_at(model: &Model, memory: &mut Memory, outside: f64) -> f64 {
+    match (&model.body, memory) {
+        (Predictor::Ensemble(ensemble), Memory::Ensemble(memory)) if !memory.outputs.is_empty() => {
+            let EnsembleMemory { outputs, medians, .. } = &mut **memory;
+            disagreement(medians.predictions(ensemble.group(), outside, |member| outputs[member]))
+        }
+        _ => 0.0,
     }
 }
 

@@ -30,7 +30,7 @@ const BY_CHANCE: usize = 8;
 /// # Errors
 /// As [`super::generated`].
 pub fn one_loop(count: usize, seed: u64) -> Result<Vec<Case>> {
-    let plans: Vec<&Plan> = PLANS.iter().filter(|plan| !plan.design.is_timed()).collect();
+    let plans: Vec<&Plan> = PLANS.iter().filter(|plan| plan.design.band().is_none()).collect();
     (0..count).map(|index| case(plans[index % plans.len()], index, seed)).collect()
 }
 

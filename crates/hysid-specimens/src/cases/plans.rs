@@ -36,9 +36,14 @@ impl Design {
         }
     }
 
-    /// True if the records have time stamps.
-    pub fn is_timed(self) -> bool {
-        matches!(self, Self::Frequencies(_) | Self::Pairs(_) | Self::Random(_) | Self::Halves(_))
+    /// The frequencies in Hz of records with time stamps.
+    pub fn band(self) -> Option<Band> {
+        match self {
+            Self::Frequencies(band) | Self::Pairs(band) | Self::Random(band) | Self::Halves(band) => {
+                Some(band)
+            }
+            Self::Cyclic(_) | Self::Loops(_) | Self::Reversals(_) | Self::SlowRandom => None,
+        }
     }
 
     pub fn words(self) -> &'static str {

@@ -1,0 +1,97 @@
+//! Arguments of `hysid plan`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use hysid::options::network::SEED;
+use hysid::plan::Wave;
+
+use super::limits::{limits, slew};
+use super::{ColumnOptions, Overwriting, RUN, seconds, whole};
+
+const PLAN_EXAMPLES: &str = "\
+Examples:
+  hysid plan --like data.csv             data.drive.csv, page data.drive.html
+  hysid plan --like data.csv --model data.json --length 2000 -o drive.csv
+  hysid plan --for \"piezo stage\" --range 0:150 --step 0.001 --length 5000
+
+Method, protocols and what they are worth: docs/plan.md";
+
+/// Arguments of `plan`.
+#[derive(Debug, Args)]
+#[command(after_help = PLAN_EXAMPLES)]
+pub struct Plan {
+    /// Plan what to measure next, after these tables
+    #[arg(long, value_name = "DATA.csv", num_args = 1.., conflicts_with = "kind")]
+    pub like: Vec<PathBuf>,
+    /// Plan a first test of a kind of specimen
+    ///
+    /// Structure, damper, rubber, actuator or magnet, or words that name one, such as "piezo stage".
+    #[arg(long = "for", value_name = "KIND", id = "kind")]
+    pub kind: Option<String>,
+    /// Table to write; `-` is stdout
+    ///
+    /// The default is the name of DATA or KIND with `.drive.csv`, in the current folder. Its columns are time, if there is one, and the input. The page has the same name with `.html`.
+    #[arg(short, long, value_name = "DRIVE.csv")]
+    pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: ColumnOptions,
+    /// Lowest and highest input [default: of the data]
+    ///
+    /// Two numbers, such as -5:5. A range beyond that of the data is run too.
+    #[arg(long, value_name = "LOW:HIGH", value_parser = limits, help_heading = "Limits")]
+    pub range: Option<(f64, f64)>,
+    /// Most rows [default: as many as the data]
+    ///
+    /// Without data, the default is 2000.
+    #[arg(long, value_name = "ROWS", value_parser = whole::<usize>, help_heading = "Limits")]
+    pub length: Option<usize>,
+    /// Longest duration, in the unit of time
+    #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits", hide_short_help = true, conflicts_with = "length")]
+    pub duration: Option<f64>,
+    /// Time between rows [default: that of the data]
+    ///
+    /// Without data there is no time by default, and the test is to be run slowly.
+    #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits")]
+    pub step: Option<f64>,
+    /// Largest rate of the input [default: of the data]
+    ///
+    /// The largest change of the input in a unit of time; without time stamps, from row to row. Without data, the default is the rate at which the test
+    /// has the wanted length.
+    #[arg(long, value_name = "RATE", value_parser = slew, help_heading = "Limits")]
+    pub max_rate: Option<f64>,
+    /// Shape of swings: smooth or triangle [default: smooth if there is time]
+    #[arg(long, value_name = "NAME", value_parser = wave, help_heading = "Limits", hide_short_help = true)]
+    pub wave: Option<Wave>,
+    /// Ensemble of the data [default: fitted now]
+    ///
+    /// A model file of `hysid fit`. The default is `auto` with one start of each candidate.
+    #[arg(long, value_name = "MODEL.json", help_heading = "Method", conflicts_with = "kind")]
+    pub model: Option<PathBuf>,
+    /// Use no ensemble: plan by what was not run alone
+    #[arg(long, help_heading = "Method", hide_short_help = true, conflicts_with_all = ["model", "kind"])]
+    pub coverage_only: bool,
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = SEED, value_parser = whole::<u64>, help_heading = "Method")]
+    pub seed: u64,
+    /// Stop the fit of the ensemble after this time
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = RUN, hide_short_help = true)]
+    pub time_limit: Option<f64>,
+    /// Number of threads; the plan does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = RUN, hide_short_help = true)]
+    pub threads: Option<u16>,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
+    /// Write no page
+    #[arg(long, help_heading = RUN)]
+    pub no_report: bool,
+}
+
+fn wave(text: &str) -> Result<Wave, String> {
+    text.parse().map_err(|error: hysid::Error| error.to_string())
+}

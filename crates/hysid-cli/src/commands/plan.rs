@@ -1,0 +1,216 @@
+//! `hysid plan`: which experiment next, as a drive with its reasons.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow};
+use hysid::data::summary::Summary;
+use hysid::model::Model;
+use hysid::options::FitSpec;
+use hysid::options::auto::AutoOptions;
+use hysid::plan::{MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions, Wanted};
+use hysid_files::{Destination, Kind};
+
+use crate::arguments;
+use crate::columns::Roles;
+use crate::commands::fit::rate_method;
+use crate::commands::read_model;
+use crate::csv_text::header_line;
+use crate::data::{Data, read_tables};
+use crate::files::{self, check_outputs};
+use crate::identification::{Work, identify, thread_pool};
+use crate::messages::{Usage, json_results, note, raw_results, results};
+use crate::planning::{self, Planned};
+use crate::units::Factors;
+use crate::{Outcome, interrupt, understanding};
+
+/// Starts of each candidate of the ensemble: it only has to show where models disagree.
+const STARTS: usize = 1;
+
+/// Runs the command.
+pub fn run(arguments: &arguments::Plan) -> Result<Outcome> {
+    match (&arguments.kind, arguments.like.is_empty()) {
+        (Some(kind), _) => of_kind(arguments, kind),
+        (None, false) => of_data(arguments),
+        (None, true) => {
+            let kinds = Protocol::ALL.map(Protocol::name).join(", ");
+            Err(Usage(format!("name measured data with --like, or a kind of specimen with --for: {kinds}"))
+                .into())
+        }
+    }
+}
+
+/// A first test.
+fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
+    let of_options = |error: hysid::Error| Usage(error.to_string());
+    let protocol = Protocol::named(kind).map_err(of_options)?;
+    if arguments.range.is_none() {
+        return Err(Usage("--for needs the range of the input: --range LOW:HIGH".into()).into());
+    }
+    if arguments.duration.is_some() && arguments.step.is_none() {
+        return Err(Usage("--duration needs the time between rows: --step TIME".into()).into());
+    }
+    let options = ProtocolOptions { limits: wanted(arguments, arguments.step)?, wave: arguments.wave };
+    let plan = protocol.plan(&options).map_err(of_options)?;
+    let out =
+        arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.drive.csv", protocol.name())));
+    let outputs = Outputs::of(arguments, out, &plan.names)?;
+    outputs.check(&[])?;
+    let planned = Planned {
+        plan: &plan,
+        title: format!("First test: {}", protocol.name()),
+        understood: Vec::new(),
+        next: "hysid fit NEW.csv".into(),
+    };
+    tell(arguments, &outputs, &planned)
+}
+
+/// What to measure next.
+fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
+    let tables = read_tables(&arguments.like, &arguments.columns.reading)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.like[0], ".drive.csv"));
+    let outputs = Outputs::of(arguments, out, &roles.names())?;
+    let inputs: Vec<&Path> = arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
+    outputs.check(&inputs)?;
+    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
+    if let [_, further @ ..] = data.roles.inputs.as_slice()
+        && !further.is_empty()
+    {
+        let count = data.roles.inputs.len();
+        return Err(
+            Usage(format!("there are {count} inputs, and a plan drives one: choose with --input")).into()
+        );
+    }
+    let mut step = arguments.step;
+    if arguments.duration.is_some() && !data.set.has_time() {
+        return Err(
+            Usage("--duration needs time stamps: use --length, or name them with --time".into()).into()
+        );
+    }
+    let summary = Summary::of(&data.set);
+    step = step.or_else(|| summary.records.iter().find_map(|record| Some(record.time_steps?.1)));
+    let limits = Wanted { step: arguments.step, ..wanted(arguments, step)? };
+    let options = PlanOptions { limits, wave: arguments.wave, seed: arguments.seed };
+    // What cannot be planned is said before the long fit.
+    hysid::plan::Limits::of(&data.set, &limits).map_err(|error| data.explain(error))?;
+    let ensemble = ensemble(arguments, &data, &summary)?;
+    let pool = thread_pool(arguments.threads)?;
+    let plan = pool.install(|| Plan::of(&data.set, ensemble.as_ref(), &options));
+    let plan = plan.map_err(|error| data.explain(error))?;
+    let shown: Vec<String> = arguments.like.iter().map(|path| files::shown(path)).collect();
+    let planned = Planned {
+        plan: &plan,
+        title: "What to measure next".into(),
+        understood: understanding::of_data(&data, &summary),
+        next: format!("hysid fit {} NEW.csv", shown.join(" ")),
+    };
+    tell(arguments, &outputs, &planned)?;
+    Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// The limits that are asked for; `step` is the time between rows, for a duration.
+fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<Wanted> {
+    let rows = arguments.duration.zip(step).map(|(duration, step)| duration / step + 1.0);
+    if let Some(rows) = rows.filter(|rows| *rows > MOST_ROWS as f64) {
+        return Err(
+            Usage(format!("--duration takes {rows:.0} rows: at most {MOST_ROWS} are possible")).into()
+        );
+    }
+    Ok(Wanted {
+        range: arguments.range,
+        step: arguments.step,
+        max_rate: arguments.max_rate,
+        length: arguments.length.or(rows.map(|rows| rows as usize)),
+    })
+}
+
+/// The ensemble whose members are compared: as given, or fitted now.
+fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Result<Option<Model>> {
+    if let Some(path) = &arguments.model {
+        let model = read_model(path)?;
+        understanding::print(&understanding::of_data(data, summary));
+        let factors = Factors::of(&model, &data.roles, &data.source.tables[0].file, true, false)?;
+        let converted = factors.inputs.iter().chain([&factors.time, &factors.output]).any(Option::is_some);
+        if converted || model.names().inputs.len() != 1 {
+            let problem = "its columns must be those of the data, in the same units";
+            return Err(anyhow!("{}: {problem}", path.display()));
+        }
+        return Ok(Some(model));
+    }
+    if arguments.coverage_only {
+        understanding::print(&understanding::of_data(data, summary));
+        return Ok(None);
+    }
+    let auto = AutoOptions::default();
+    let rate = rate_method(&arguments.columns.rate, &data.roles, FitSpec::Auto(auto.clone()).model())
+        .with_context(|| data.source.tables[0].file.clone())?;
+    let request = FitSpec::Auto(AutoOptions { starts: STARTS, seed: arguments.seed, rate, ..auto });
+    let work = Work { threads: arguments.threads, time_limit: arguments.time_limit, ..Work::new(&request) };
+    let model = identify(data, work)?.model;
+    Ok(model.ensemble().is_some().then_some(model))
+}
+
+/// Where the results go; no files if the table goes to stdout.
+struct Outputs {
+    header: Vec<u8>,
+    table: Option<Destination>,
+    page: Option<Destination>,
+}
+
+impl Outputs {
+    fn of(
+        arguments: &arguments::Plan,
+        path: PathBuf,
+        names: &hysid::data::record::ColumnNames,
+    ) -> Result<Self> {
+        let columns = names.time.iter().chain(&names.inputs[..1]).map(String::as_str);
+        let header = header_line(b',', columns)?;
+        if path == Path::new("-") {
+            if arguments.json {
+                let advice =
+                    "--json prints to stdout in place of the table: name a file for the table with -o";
+                return Err(Usage(advice.into()).into());
+            }
+            return Ok(Self { header, table: None, page: None });
+        }
+        if path.extension().is_some_and(|ending| ending == "html") {
+            let advice = "use .csv for the drive: the page gets the same name with .html";
+            return Err(Usage(format!("{}: {advice}", path.display())).into());
+        }
+        let force = arguments.overwriting.force;
+        let page =
+            (!arguments.no_report).then(|| Destination::new(path.with_extension("html"), Kind::Page, force));
+        let table = Some(Destination::new(path, Kind::Beginning(header.clone()), force));
+        Ok(Self { header, table, page })
+    }
+
+    fn check(&self, inputs: &[&Path]) -> Result<()> {
+        check_outputs(&self.table.iter().chain(&self.page).collect::<Vec<_>>(), inputs)
+    }
+}
+
+/// Prints and writes the results.
+fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -> Result<Outcome> {
+    let table = [outputs.header.clone(), planning::rows(planned.plan)].concat();
+    let Some(destination) = &outputs.table else {
+        raw_results(&String::from_utf8(table)?)?;
+        return Ok(Outcome::Done);
+    };
+    files::write(destination, &table)?;
+    if let Some(page) = &outputs.page {
+        let inputs: Vec<&Path> =
+            arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
+        files::write_page(page, planning::page(planned), &inputs)?;
+    }
+    let page = outputs.page.as_ref().map(Destination::path);
+    match arguments.json {
+        true => json_results(&planning::Printed::of(planned.plan, destination.path(), page))?,
+        false => results(&planning::text(planned))?,
+    }
+    for (what, path) in [("drive", Some(destination.path())), ("page", page)] {
+        if let Some(path) = path {
+            note(format_args!("{what:<8}{}", files::shown(path)));
+        }
+    }
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,150 @@
+//! A plan for its reader: text, page, table of the drive, JSON.
+
+mod page;
+mod text;
+
+use std::path::Path;
+
+use hysid::data::unit;
+use hysid::plan::{Disagreement, Gap, Limits, Plan, Segment, Wave};
+use hysid_document::{Cell, Table, number};
+use hysid_tables::{DecimalSign, push_shortest};
+use serde::Serialize;
+
+pub use page::page;
+pub use text::text;
+
+/// A plan and what was understood before it.
+pub struct Planned<'a> {
+    pub plan: &'a Plan,
+    /// What the plan is.
+    pub title: String,
+    /// How the data were read; empty without data.
+    pub understood: Vec<(String, String)>,
+    /// The command with which the results of the drive are used.
+    pub next: String,
+}
+
+/// The rows of the drive as CSV, without the header.
+pub fn rows(plan: &Plan) -> Vec<u8> {
+    let mut text = String::new();
+    for (row, &x) in plan.input.iter().enumerate() {
+        if let Some(time) = &plan.time {
+            push_shortest(&mut text, time[row], DecimalSign::Point);
+            text.push(',');
+        }
+        push_shortest(&mut text, x, DecimalSign::Point);
+        text.push('\n');
+    }
+    text.into_bytes()
+}
+
+/// The object that `--json` prints; the drive is in its file.
+#[derive(Serialize)]
+pub struct Printed<'a> {
+    drive: String,
+    page: Option<String>,
+    rows: usize,
+    duration: Option<f64>,
+    wave: Wave,
+    limits: Limits,
+    segments: &'a [Segment],
+    gaps: &'a [Gap],
+    disagreement: Option<Disagreement>,
+    sources: &'a [&'static str],
+}
+
+impl<'a> Printed<'a> {
+    /// The plan that is in these files.
+    pub fn of(plan: &'a Plan, drive: &Path, page: Option<&Path>) -> Self {
+        Self {
+            drive: drive.display().to_string(),
+            page: page.map(|page| page.display().to_string()),
+            rows: plan.rows(),
+            duration: duration(plan),
+            wave: plan.wave,
+            limits: plan.limits,
+            segments: &plan.segments,
+            gaps: &plan.gaps,
+            disagreement: plan.disagreement,
+            sources: &plan.sources,
+        }
+    }
+}
+
+fn duration(plan: &Plan) -> Option<f64> {
+    plan.time.as_ref()?.last().copied()
+}
+
+/// Unit of the rate of the input, such as mm/s.
+fn rate_unit(plan: &Plan) -> String {
+    let input = unit::of_column(&plan.names.inputs[0]);
+    let time = plan.names.time.as_ref().and_then(|name| unit::of_column(name));
+    match (plan.limits.step, input, time) {
+        (Some(_), Some(input), Some(time)) => unit::quotient(&input, &time),
+        (Some(_), ..) => "per unit of time".into(),
+        (None, Some(input), _) => format!("{input} per row"),
+        (None, None, _) => "per row".into(),
+    }
+}
+
+/// The plan in one sentence.
+fn headline(plan: &Plan) -> String {
+    let input = &plan.names.inputs[0];
+    let duration = duration(plan).map_or_else(String::new, |duration| {
+        let name = plan.names.time.as_deref().unwrap_or("time");
+        format!(" ({})", hysid_document::unit::with(&number(duration, 4), name))
+    });
+    let (low, high) = plan.limits.range;
+    format!(
+        "{} rows{duration}: {} from {} to {}, at most {} {}",
+        plan.rows(),
+        hysid_document::unit::split(input).0,
+        number(low, 4),
+        hysid_document::unit::with(&number(high, 4), input),
+        number(plan.limits.max_rate, 3),
+        rate_unit(plan)
+    )
+}
+
+/// What the disagreement says, if it is known.
+fn on_disagreement(plan: &Plan) -> Option<String> {
+    let Disagreement { plan: along, repeat } = plan.disagreement?;
+    let output = &plan.names.output;
+    let with_unit = |value: f64| hysid_document::unit::with(&number(value, 2), output);
+    Some(format!(
+        "The members of the ensemble differ by {} along the plan, and by {} along the data: {}",
+        with_unit(along),
+        with_unit(repeat),
+        if along > repeat {
+            "the plan measures what the data have not decided."
+        } else {
+            "they differ no more along the plan than along the data, so that a plan can tell them apart no better."
+        }
+    ))
+}
+
+/// The segments as a table.
+fn segments(plan: &Plan) -> Table {
+    let from_data = plan.segments.iter().any(|segment| segment.new_share.is_some());
+    let has_members = plan.disagreement.is_some();
+    let mut headings = vec!["", "segment", "rows", "amplitude", "mean", "rate"];
+    headings.extend(from_data.then_some("new %"));
+    headings.extend(has_members.then_some("members differ"));
+    let mut table = Table::new(headings);
+    for (index, segment) in plan.segments.iter().enumerate() {
+        let mut cells: Vec<Cell> = vec![
+            (index + 1).to_string().into(),
+            segment.kind.words().into(),
+            format!("{}-{}", segment.rows.start + 1, segment.rows.end).into(),
+            Cell::number(segment.amplitude, 3),
+            Cell::number(segment.mean, 3),
+            Cell::number(segment.rate, 3),
+        ];
+        let percent = |share: f64| format!("{:.0}", 100.0 * share);
+        cells.extend(from_data.then(|| Cell::from(segment.new_share.map_or_else(String::new, percent))));
+        cells.extend(has_members.then(|| Cell::number(segment.disagreement, 2)));
+        table.push(cells);
+    }
+    table
+}

@@ -1,0 +1,104 @@
+//! A segment of a drive: what is run and why.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::{Serialize, Serializer};
+
+/// Kind of a segment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// A loop over the whole range, after which the memory is known.
+    Conditioning,
+    /// The same loop at two speeds.
+    TwoSpeeds,
+    /// The same loop several times.
+    RepeatedLoop,
+    /// The input stands still.
+    Hold,
+    /// Loops about the middle of the range.
+    CentredLoop,
+    /// Loops away from the middle.
+    MinorLoop,
+    /// From an end of the range to a reversal and back.
+    ReversalCurve,
+    /// Loops whose amplitude falls, each inside the one before.
+    NestedLoops,
+    /// Random turning points.
+    RandomReversals,
+    /// Loops whose amplitude rises.
+    RisingLoops,
+    /// Back to the input of the beginning.
+    Return,
+}
+
+impl Kind {
+    /// What it is, in a few words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Conditioning => "full loop",
+            Self::TwoSpeeds => "loop at two speeds",
+            Self::RepeatedLoop => "repeated loop",
+            Self::Hold => "hold",
+            Self::CentredLoop => "centred loop",
+            Self::MinorLoop => "minor loop",
+            Self::ReversalCurve => "reversal curve",
+            Self::NestedLoops => "nested loops",
+            Self::RandomReversals => "random reversals",
+            Self::RisingLoops => "rising loops",
+            Self::Return => "return",
+        }
+    }
+
+    /// What it adds, in a few words.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Conditioning => "brings the memory into a known state",
+            Self::TwoSpeeds => "makes rate dependence testable",
+            Self::RepeatedLoop => "makes deterioration testable, and shows the noise",
+            Self::Hold => "shows creep and relaxation",
+            Self::CentredLoop => "amplitudes about the middle",
+            Self::MinorLoop => "loops away from the middle",
+            Self::ReversalCurve => "reversals on the branches of the full loop",
+            Self::NestedLoops => "loops inside loops: what the memory keeps",
+            Self::RandomReversals => "many pairs of turning points in few rows",
+            Self::RisingLoops => "each amplitude before a larger one changes the specimen",
+            Self::Return => "back to the beginning",
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.words())
+    }
+}
+
+/// A segment of a drive. Inputs and outputs are in the units of the data.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Segment {
+    /// What is run.
+    pub kind: Kind,
+    /// Its rows in the drive, counted from 0.
+    #[serde(serialize_with = "first_and_last")]
+    pub rows: Range<usize>,
+    /// Half the difference of the largest and the smallest input.
+    pub amplitude: f64,
+    /// Half the sum of the largest and the smallest input.
+    pub mean: f64,
+    /// Largest change of the input in a unit of time, or from row to row without time.
+    pub rate: f64,
+    /// Turning points within it, the end included.
+    pub turning_points: Vec<f64>,
+    /// Share of its path on branches that neither the data nor the segments before it have.
+    pub new_share: Option<f64>,
+    /// Root mean square of the disagreement of the members along it.
+    pub disagreement: Option<f64>,
+    /// Why it is run.
+    pub reason: String,
+}
+
+fn first_and_last<S: Serializer>(rows: &Range<usize>, serializer: S) -> Result<S::Ok, S::Error> {
+    (rows.start, rows.end.saturating_sub(1)).serialize(serializer)
+}

@@ -1,0 +1,166 @@
+//! One specimen, one first test, one seed: the errors after each second test.
+
+use anyhow::{Context, Result};
+use hysid::data::record::{Dataset, Record};
+use hysid::plan::{Limits, Path, Plan, PlanOptions, Wave};
+use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
+use hysid::specimens::with_noise;
+use hysid::{Fit, Model};
+
+use super::drives;
+
+/// Rows of a swing over the whole range, and of the first test.
+const ROWS_OF_A_SWING: f64 = 50.0;
+const ROWS: usize = 525;
+
+/// Noise, in percent of the standard deviation of the output.
+const NOISE: f64 = 1.0;
+
+/// Unseen tests and their rows.
+const UNSEEN: u64 = 3;
+const ROWS_UNSEEN: usize = 700;
+
+/// What was run first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FirstTest {
+    /// Cycles over the whole range.
+    Constant,
+    /// Amplitudes from a quarter of the range to the whole, two cycles each.
+    Rising,
+}
+
+impl FirstTest {
+    pub const ALL: [Self; 2] = [Self::Constant, Self::Rising];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "cycles of constant amplitude",
+            Self::Rising => "cycles of rising amplitude",
+        }
+    }
+
+    fn drive(self, path: &Path) -> Vec<f64> {
+        let Limits { range: (low, high), start, .. } = path.limits;
+        let level = move |cycle: usize| match self {
+            Self::Constant => 1.0,
+            Self::Rising => 0.25 * (1 + (cycle / 2) % 4) as f64,
+        };
+        let turns = (0..).flat_map(move |cycle| {
+            [start + level(cycle) * (high - start), start + level(cycle) * (low - start)]
+        });
+        drives::through(path, turns, ROWS)
+    }
+}
+
+/// The errors on unseen data, NRMSE in percent of the standard deviation.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    pub name: &'static str,
+    pub first: FirstTest,
+    pub seed: u64,
+    pub before: f64,
+    pub repeated: f64,
+    pub planned: f64,
+    pub random: f64,
+    /// Rows of the plan; the other tests have those of the first.
+    pub rows: usize,
+}
+
+impl Trial {
+    /// What it is worth to plan.
+    pub fn ratio(&self) -> f64 {
+        self.repeated / self.planned
+    }
+
+    /// The same against the lower of the errors without a second test and after the same one again: models chosen by
+    /// cross-validation can become worse by a repetition.
+    pub fn strict_ratio(&self) -> f64 {
+        self.before.min(self.repeated) / self.planned
+    }
+
+    pub fn line(&self) -> String {
+        format!(
+            "{}, {}, seed {}: before {:.2}, repeated {:.2}, planned {:.2} ({} rows), random {:.2}, ratio {:.2}",
+            self.name,
+            self.first.name(),
+            self.seed,
+            self.before,
+            self.repeated,
+            self.planned,
+            self.rows,
+            self.random,
+            self.ratio()
+        )
+    }
+}
+
+/// Fits models after the first test and after each second one.
+pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
+    let specimen = driven_specimen(name, seed)?.with_context(|| format!("there is no plan `{name}`"))?;
+    let rig = Rig { path: path(&specimen), specimen };
+    let path = &rig.path;
+    let one = rig.measured("first", &first.drive(path), seed)?;
+    let model = fit(&rig.data([one.clone()])?, seed)?;
+    let unseen = (0..UNSEEN)
+        .map(|number| rig.run("unseen", &drives::random(path, ROWS_UNSEEN, 1000 * seed + number)))
+        .collect::<Result<Vec<_>>>()?;
+    let unseen = Dataset::new(rig.specimen.names.clone(), unseen)?;
+    let error = |model: &Model| -> Result<f64> {
+        Ok(model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")?)
+    };
+    let plan =
+        Plan::of(&rig.data([one.clone()])?, Some(&model), &PlanOptions { seed, ..PlanOptions::default() })?;
+    let after = |drive: &[f64], noise: u64| -> Result<f64> {
+        let second = rig.measured("second", drive, noise)?;
+        error(&fit(&rig.data([one.clone(), second])?, seed)?)
+    };
+    Ok(Trial {
+        name,
+        first,
+        seed,
+        before: error(&model)?,
+        repeated: after(&first.drive(path), seed + 100)?,
+        planned: after(&plan.input, seed + 200)?,
+        random: after(&drives::random(path, ROWS, 1000 * seed + 500), seed + 300)?,
+        rows: plan.rows(),
+    })
+}
+
+/// The default model, with one start of each candidate.
+fn fit(data: &Dataset, seed: u64) -> Result<Model> {
+    Ok(Fit::new().option("starts", 1).option("initial_state", "virgin").seed(seed).run(data)?)
+}
+
+/// How a specimen is driven: as fast as half its highest frequency over the whole range.
+fn path(specimen: &DrivenSpecimen) -> Path {
+    let (low, high) = specimen.range;
+    let start = 0.0_f64.clamp(low, high);
+    let wave = if specimen.frequencies.is_some() { Wave::Smooth } else { Wave::Triangle };
+    let step = specimen.frequencies.map(|(_, highest)| 1.0 / (0.5 * highest * 2.0 * ROWS_OF_A_SWING));
+    let peak = if wave == Wave::Smooth { std::f64::consts::FRAC_PI_2 } else { 1.0 };
+    let max_rate = peak * (high - low) / (ROWS_OF_A_SWING * step.unwrap_or(1.0));
+    Path { limits: Limits { range: (low, high), start, step, max_rate, rows: ROWS }, wave }
+}
+
+/// A specimen in its machine.
+struct Rig {
+    specimen: DrivenSpecimen,
+    path: Path,
+}
+
+impl Rig {
+    /// An untouched specimen along a drive, without noise.
+    fn run(&self, name: &str, drive: &[f64]) -> Result<Record> {
+        Ok(self.specimen.run(name, drive, self.path.limits.step)?)
+    }
+
+    /// The same with noise.
+    fn measured(&self, name: &str, drive: &[f64], noise: u64) -> Result<Record> {
+        let data = with_noise(&self.data([self.run(name, drive)?])?, NOISE, noise)?;
+        Ok(data.records()[0].clone())
+    }
+
+    fn data<const N: usize>(&self, records: [Record; N]) -> Result<Dataset> {
+        Ok(Dataset::new(self.specimen.names.clone(), records.into())?)
+    }
+}
