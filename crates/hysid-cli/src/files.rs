@@ -11,7 +11,7 @@ pub use hysid_files::reason;
 use hysid_files::{Destination, Failure, PAGE_MARK, unreadable};
 
 use crate::messages::{Usage, note};
-use crate::{origin, terminal};
+use crate::terminal;
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
@@ -40,12 +40,6 @@ pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
         Err(failure) => return Err(explained(failure)),
     }
     Ok(())
-}
-
-/// Writes a page, as [`write`] does. Its last section says how it was made, from these files.
-pub fn write_page(destination: &Destination, mut page: Page, inputs: &[&Path]) -> Result<()> {
-    page.parts.push(origin::section(inputs));
-    write(destination, page_text(&page).as_bytes())
 }
 
 /// A page with the mark by which Hysid knows its own.

@@ -149,7 +149,7 @@ impl Identified {
         sets: &[(&str, &Dataset)],
         inputs: &[&Path],
     ) -> Result<()> {
-        files::write_page(page, self.report(model, sets)?, inputs)
+        crate::origin::write_page(page, self.report(model, sets)?, inputs)
             .context("the model was written, but not its report")
     }
 

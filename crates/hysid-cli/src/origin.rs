@@ -5,13 +5,21 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-use hysid_document::Part;
+use anyhow::Result;
+use hysid_document::{Page, Part};
+use hysid_files::Destination;
 use sha2::{Digest, Sha256};
 
 use crate::{date, files};
 
+/// Writes a page, as [`files::write`] does. Its last section says how it was made, from these files.
+pub fn write_page(destination: &Destination, mut page: Page, inputs: &[&Path]) -> Result<()> {
+    page.parts.push(section(inputs));
+    files::write(destination, files::page_text(&page).as_bytes())
+}
+
 /// The last section of a page: date, program, command, and files that were read with their checksums.
-pub fn section(inputs: &[&Path]) -> Part {
+fn section(inputs: &[&Path]) -> Part {
     let mut pairs = vec![
         ("Date".to_string(), format!("{} UTC", date::now())),
         ("Program".into(), format!("hysid {}", env!("CARGO_PKG_VERSION"))),

@@ -60,7 +60,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
         let content = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
-        files::write_page(page, content, &inputs)?;
+        crate::origin::write_page(page, content, &inputs)?;
         note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })

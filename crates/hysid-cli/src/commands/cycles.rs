@@ -102,7 +102,7 @@ fn tell(
         files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
     }
     if let Some(page) = &outputs.page {
-        files::write_page(page, cycles::page(cycles), inputs)?;
+        crate::origin::write_page(page, cycles::page(cycles), inputs)?;
     }
     let path = |destination: &Destination| destination.path().to_path_buf();
     let written = Files {

@@ -38,7 +38,7 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     };
     results(&told.text)?;
     if let (Some(destination), Some(page)) = (&page, told.page) {
-        files::write_page(destination, page, &inputs)?;
+        crate::origin::write_page(destination, page, &inputs)?;
         note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)

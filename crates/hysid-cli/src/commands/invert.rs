@@ -75,7 +75,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     }
     if let Some(page) = &page {
         let report = inversion::page(&model, &wanted, &inverted, &bounds, &understood, &warnings);
-        files::write_page(page, report, &[&arguments.model, &arguments.reference])?;
+        crate::origin::write_page(page, report, &[&arguments.model, &arguments.reference])?;
     }
     for (what, destination) in [("drive", &drive), ("report", &page)] {
         if let Some(destination) = destination {

@@ -200,7 +200,7 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
     if let Some(page) = &outputs.page {
         let inputs: Vec<&Path> =
             arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
-        files::write_page(page, planning::page(planned), &inputs)?;
+        crate::origin::write_page(page, planning::page(planned), &inputs)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);
     match arguments.json {
