@@ -118,10 +118,13 @@ fn after_tests_at_one_speed_several_are_run() {
     let data = spring_and_slider(&x, 0.1);
     let rate = |data: &Dataset| diagnose(data).unwrap().verdict(Property::RateDependence);
     assert_eq!(rate(&data), Verdict::NotTestable);
-    let plan = Plan::of(&data, None, &PlanOptions::default()).unwrap();
+    let limits = Wanted { length: Some(2400), ..Wanted::default() };
+    let plan = Plan::of(&data, None, &PlanOptions { limits, ..PlanOptions::default() }).unwrap();
     assert!(plan.gaps.iter().any(|gap| gap.what == "speeds" || gap.what == "rate-dependence"));
     let fast = plan.segments.iter().map(|segment| segment.rate).fold(0.0, f64::max);
-    let slow = |segment: &&hysid::plan::Segment| segment.rate < 0.5 * fast && segment.kind != Kind::Return;
+    let slow = |segment: &&hysid::plan::Segment| {
+        segment.rate < 0.25 * fast && segment.rate > 0.0 && segment.kind != Kind::Return
+    };
     assert!(plan.segments.iter().any(|segment| slow(&segment)), "{:?}", plan.segments);
     assert!(plan.segments.iter().any(|segment| segment.kind == Kind::TwoSpeeds));
     // What the plan is for: now the property can be tested, and the law has none.
@@ -186,10 +189,11 @@ fn the_plan_is_the_same_for_any_number_of_threads() {
     let disagreement = one.disagreement.unwrap();
     assert!(disagreement.plan > disagreement.repeat && disagreement.repeat > 0.0, "{disagreement:?}");
     // Another seed, another plan.
-    assert_ne!(
-        one,
-        Plan::of(&data, Some(&model), &PlanOptions { seed: 2, ..PlanOptions::default() }).unwrap()
-    );
+    let of_seed = |seed| {
+        let limits = Wanted { length: Some(4000), ..Wanted::default() };
+        Plan::of(&data, None, &PlanOptions { seed, limits, wave: None }).unwrap()
+    };
+    assert!(of_seed(1) == of_seed(1) && of_seed(1) != of_seed(2));
 }
 
 /// A specimen, after cycles over its whole range: error of a Preisach model on random reversals after the same cycles

@@ -106,7 +106,7 @@ pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
         .collect::<Result<Vec<_>>>()?;
     let unseen = Dataset::new(rig.specimen.names.clone(), unseen)?;
     let error = |model: &Model| -> Result<f64> {
-        Ok(model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")?)
+        model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")
     };
     let plan =
         Plan::of(&rig.data([one.clone()])?, Some(&model), &PlanOptions { seed, ..PlanOptions::default() })?;

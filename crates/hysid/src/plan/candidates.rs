@@ -42,9 +42,11 @@ pub(super) fn candidates(
     generator: &mut Xoshiro256PlusPlus,
 ) -> Vec<Candidate> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let path = |kind: Kind, turns: Vec<f64>| Candidate {
-        kind,
-        legs: turns.into_iter().map(|to| Leg::Swing { to, speed }).collect(),
+    // The way to a loop is no part of it, and fast.
+    let path = |kind: Kind, turns: Vec<f64>| {
+        let of_leg = |place: usize| if place == 0 && kind != Kind::RandomReversals { 1.0 } else { speed };
+        let legs = turns.into_iter().enumerate();
+        Candidate { kind, legs: legs.map(|(place, to)| Leg::Swing { to, speed: of_leg(place) }).collect() }
     };
     let mut all = Vec::new();
     for amplitude in AMPLITUDES {

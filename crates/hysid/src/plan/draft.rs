@@ -36,6 +36,7 @@ struct Piece {
     visits: f64,
     new_visits: f64,
     squares: f64,
+    rate: f64,
 }
 
 /// Rows of legs and what they visit.
@@ -44,6 +45,8 @@ struct Run {
     visits: Vec<Visit>,
     past: Past,
     direction: f64,
+    /// Longest step from row to row behind the first leg, or within it if there is no other.
+    longest: f64,
 }
 
 /// What a candidate is worth.
@@ -103,10 +106,18 @@ impl<'m> Draft<'m> {
     }
 
     fn run(&self, legs: &[Leg]) -> Run {
-        let mut run =
-            Run { rows: Vec::new(), visits: Vec::new(), past: self.past, direction: self.direction };
+        let mut run = Run {
+            rows: Vec::new(),
+            visits: Vec::new(),
+            past: self.past,
+            direction: self.direction,
+            longest: 0.0,
+        };
         let mut x = self.now();
-        for &leg in legs {
+        for (place, &leg) in legs.iter().enumerate() {
+            if place == 1 {
+                run.longest = 0.0;
+            }
             if let Leg::Swing { to, .. } = leg {
                 let direction = (to - x).signum();
                 if run.direction * direction < 0.0 {
@@ -118,6 +129,7 @@ impl<'m> Draft<'m> {
             for to in self.path.leg(x, leg) {
                 run.visits.push(self.coverage.visit(x, to, run.past, speed));
                 run.rows.push(to);
+                run.longest = run.longest.max((to - x).abs());
                 x = to;
             }
         }
@@ -177,6 +189,7 @@ impl<'m> Draft<'m> {
             visits,
             new_visits: visits * self.coverage.new_share(&run.visits),
             squares,
+            rate: run.longest / self.path.limits.time_step(),
         });
         self.coverage.add(&run.visits);
         self.inputs.extend(run.rows);
@@ -202,7 +215,7 @@ impl<'m> Draft<'m> {
     /// The segments, without reasons: pieces of one kind at one speed that follow each other are one.
     pub fn segments(&self) -> Vec<Segment> {
         let speed = |piece: &Piece| {
-            piece.legs.iter().find_map(|leg| match leg {
+            piece.legs.iter().rev().find_map(|leg| match leg {
                 Leg::Swing { speed, .. } => Some(speed.to_bits()),
                 Leg::Hold(_) => None,
             })
@@ -227,14 +240,13 @@ impl<'m> Draft<'m> {
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         let sum = |of: fn(&Piece) -> f64| pieces.iter().map(of).sum::<f64>();
-        let largest = inputs.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let visits = sum(|piece| piece.visits);
         let legs = pieces.iter().flat_map(|piece| &piece.legs);
         Segment {
             kind: pieces[0].kind,
             amplitude: 0.5 * (high - low),
             mean: 0.5 * (high + low),
-            rate: largest / self.path.limits.time_step(),
+            rate: pieces.iter().map(|piece| piece.rate).fold(0.0, f64::max),
             turning_points: legs
                 .filter_map(|leg| match leg {
                     Leg::Swing { to, .. } => Some(*to),

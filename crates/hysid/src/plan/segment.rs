@@ -87,7 +87,8 @@ pub struct Segment {
     pub amplitude: f64,
     /// Half the sum of the largest and the smallest input.
     pub mean: f64,
-    /// Largest change of the input in a unit of time, or from row to row without time.
+    /// Largest change of the input in a unit of time, or from row to row without time, behind the way to its first turning
+    /// point.
     pub rate: f64,
     /// Turning points within it, the end included.
     pub turning_points: Vec<f64>,
