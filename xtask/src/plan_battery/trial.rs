@@ -32,6 +32,14 @@ pub enum FirstTest {
 impl FirstTest {
     pub const ALL: [Self; 2] = [Self::Constant, Self::Rising];
 
+    /// The word on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Rising => "rising",
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Self::Constant => "cycles of constant amplitude",
@@ -106,7 +114,7 @@ pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
         .collect::<Result<Vec<_>>>()?;
     let unseen = Dataset::new(rig.specimen.names.clone(), unseen)?;
     let error = |model: &Model| -> Result<f64> {
-        Ok(model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")?)
+        model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")
     };
     let plan =
         Plan::of(&rig.data([one.clone()])?, Some(&model), &PlanOptions { seed, ..PlanOptions::default() })?;

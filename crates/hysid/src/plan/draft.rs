@@ -37,6 +37,8 @@ struct Piece {
     new_visits: f64,
     squares: f64,
     rate: f64,
+    /// Smallest and largest input behind the way to its first turning point.
+    range: (f64, f64),
 }
 
 /// Rows of legs and what they visit.
@@ -47,6 +49,15 @@ struct Run {
     direction: f64,
     /// Longest step from row to row behind the first leg, or within it if there is no other.
     longest: f64,
+    /// Smallest and largest input there.
+    range: (f64, f64),
+}
+
+/// The range of no input.
+const NO_RANGE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+fn joined(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// What a candidate is worth.
@@ -112,11 +123,12 @@ impl<'m> Draft<'m> {
             past: self.past,
             direction: self.direction,
             longest: 0.0,
+            range: NO_RANGE,
         };
         let mut x = self.now();
         for (place, &leg) in legs.iter().enumerate() {
             if place == 1 {
-                run.longest = 0.0;
+                (run.longest, run.range) = (0.0, (x, x));
             }
             if let Leg::Swing { to, .. } = leg {
                 let direction = (to - x).signum();
@@ -130,6 +142,7 @@ impl<'m> Draft<'m> {
                 run.visits.push(self.coverage.visit(x, to, run.past, speed));
                 run.rows.push(to);
                 run.longest = run.longest.max((to - x).abs());
+                run.range = joined(run.range, (to, to));
                 x = to;
             }
         }
@@ -190,6 +203,7 @@ impl<'m> Draft<'m> {
             new_visits: visits * self.coverage.new_share(&run.visits),
             squares,
             rate: run.longest / self.path.limits.time_step(),
+            range: run.range,
         });
         self.coverage.add(&run.visits);
         self.inputs.extend(run.rows);
@@ -235,10 +249,7 @@ impl<'m> Draft<'m> {
     }
 
     fn segment(&self, pieces: &[Piece], rows: std::ops::Range<usize>) -> Segment {
-        let inputs = &self.inputs[rows.start - 1..rows.end];
-        let (low, high) = inputs[1..]
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        let (low, high) = pieces.iter().fold(NO_RANGE, |range, piece| joined(range, piece.range));
         let sum = |of: fn(&Piece) -> f64| pieces.iter().map(of).sum::<f64>();
         let visits = sum(|piece| piece.visits);
         let legs = pieces.iter().flat_map(|piece| &piece.legs);
