@@ -66,7 +66,7 @@ Commands:
                  `hysid diagnose` on records of laws with known properties and the disturbances of a laboratory, as
                  tables of right and wrong verdicts. The same seed (1) gives the same records. With --list-wrong, a
                  line of CSV for each wrong verdict, and its record in the folder FILE with the ending .records
-  plan-battery [--seeds NUMBER] [--specimens LIST] [--out FILE.md]
+  plan-battery [--first constant|rising] [--seeds NUMBER] [--specimens LIST] [--out FILE.md]
                  the error on unseen data after a first test and a second one: the same again, the plan of
                  `hysid plan`, random reversals. Long: run it as `cargo run --release -p xtask -- plan-battery`
 ";

@@ -13,7 +13,7 @@ use crate::cases::origin;
 use crate::files;
 
 pub use request::Request;
-use trial::{FirstTest, Trial, trial};
+use trial::{Trial, trial};
 
 /// Plans of cases whose specimens are driven: of every field, with and without rate, pinched and degrading.
 const SPECIMENS: [&str; 12] = [
@@ -35,9 +35,10 @@ const SPECIMENS: [&str; 12] = [
 pub fn run(request: &Request) -> Result<()> {
     request.out.as_deref().map_or(Ok(()), files::check_writable)?;
     let names = request.specimens()?;
-    let all = names.len() * FirstTest::ALL.len() * request.seeds as usize;
+    let first_tests = request.first_tests();
+    let all = names.len() * first_tests.len() * request.seeds as usize;
     let mut trials: Vec<Trial> = Vec::new();
-    for first in FirstTest::ALL {
+    for first in first_tests {
         for &name in &names {
             for seed in 1..=request.seeds {
                 let done = trial(name, first, seed)?;

@@ -92,8 +92,9 @@ fn rate_unit(plan: &Plan) -> String {
 fn headline(plan: &Plan) -> String {
     let input = &plan.names.inputs[0];
     let duration = duration(plan).map_or_else(String::new, |duration| {
-        let name = plan.names.time.as_deref().unwrap_or("time");
-        format!(" ({})", hysid_document::unit::with(&number(duration, 4), name))
+        let unit = plan.names.time.as_ref().and_then(|name| unit::of_column(name));
+        let shown = number(duration, 4);
+        unit.map_or_else(|| format!(" (duration {shown})"), |unit| format!(" ({shown} {unit})"))
     });
     let (low, high) = plan.limits.range;
     format!(

@@ -1,4 +1,4 @@
-//! The pages of `docs/how-to` and `docs/cycles.md` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a
+//! The pages of `docs/how-to`, `docs/cycles.md` and `docs/plan.md` as a reader follows them: every line of a `sh` block that calls `hysid`, a compiler, or a
 //! program of the folder is run, in order, in a folder of the page's own.
 #![cfg(unix)]
 
@@ -30,7 +30,7 @@ fn commands(page: &str) -> Vec<&str> {
 fn every_command_of_every_page_works() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/how-to");
     let pages = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
-    let pages = pages.chain([folder.join("../cycles.md")]);
+    let pages = pages.chain(["../cycles.md", "../plan.md"].map(|page| folder.join(page)));
     let pages: Vec<_> = pages.filter(|path| path.extension().is_some_and(|end| end == "md")).collect();
     assert!(!pages.is_empty());
     for path in pages {

@@ -9,6 +9,7 @@ mod identification;
 mod inverse;
 mod minimiser;
 mod model;
+mod plan;
 mod specimens;
 
 use pyo3::prelude::*;
@@ -30,6 +31,8 @@ mod _hysid {
     use crate::minimiser::minimise;
     #[pymodule_export]
     use crate::model::{Model, Stepper};
+    #[pymodule_export]
+    use crate::plan::plan;
     #[pymodule_export]
     use crate::specimens::{specimen, specimens};
 

@@ -10,6 +10,9 @@ const COLUMNS: [&str; 7] =
 pub fn tables(trials: &[Trial]) -> String {
     let sections = FirstTest::ALL.map(|first| {
         let of_first: Vec<&Trial> = trials.iter().filter(|trial| trial.first == first).collect();
+        if of_first.is_empty() {
+            return String::new();
+        }
         format!("## First test: {}\n\n{}\n{}\n", first.name(), table(&of_first), summary(&of_first))
     });
     sections.concat()
@@ -34,9 +37,6 @@ fn table(trials: &[&Trial]) -> String {
 
 /// Over all specimens and seeds.
 fn summary(trials: &[&Trial]) -> String {
-    if trials.is_empty() {
-        return String::new();
-    }
     let of_random = sorted(trials, |trial| trial.random / trial.planned);
     let compared = [
         ("repeated / planned", sorted(trials, Trial::ratio)),

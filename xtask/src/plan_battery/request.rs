@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 
 use super::SPECIMENS;
+use super::trial::FirstTest;
 use crate::arguments::{option_and_value, usage};
 
 /// What is asked for.
@@ -15,6 +16,7 @@ pub struct Request {
     /// Seeds, from 1 on.
     pub seeds: u64,
     specimens: Option<String>,
+    first: Option<FirstTest>,
     /// The arguments as they were typed.
     pub typed: Vec<String>,
 }
@@ -23,7 +25,7 @@ impl Request {
     /// Reads the arguments behind the command.
     pub fn parse(arguments: &[&str]) -> Result<Self> {
         let typed = arguments.iter().map(ToString::to_string).collect();
-        let mut request = Self { out: None, seeds: 3, specimens: None, typed };
+        let mut request = Self { out: None, seeds: 3, specimens: None, first: None, typed };
         let mut rest = arguments.iter().copied();
         while let Some(argument) = rest.next() {
             let (option, value) = option_and_value(argument, &mut rest);
@@ -33,6 +35,10 @@ impl Request {
                 ("--seeds", _) => {
                     return usage(format!("--seeds needs a whole number from 1, not `{value}`"));
                 }
+                ("--first", _) => match FirstTest::ALL.into_iter().find(|first| first.word() == value) {
+                    Some(first) => request.first = Some(first),
+                    None => return usage(format!("--first needs constant or rising, not `{value}`")),
+                },
                 ("--out" | "--specimens", _) if value.is_empty() => {
                     return usage(format!("{option} needs a value"));
                 }
@@ -42,6 +48,11 @@ impl Request {
             }
         }
         Ok(request)
+    }
+
+    /// The first tests that are asked for, all without.
+    pub fn first_tests(&self) -> Vec<FirstTest> {
+        self.first.map_or(FirstTest::ALL.to_vec(), |first| vec![first])
     }
 
     /// The specimens that are asked for, all without.
@@ -63,8 +74,10 @@ mod tests {
     #[test]
     fn options_are_read_and_nonsense_is_refused() {
         let request = Request::parse(&["--seeds", "2", "--specimens=bush-random"]).unwrap();
+        assert_eq!(Request::parse(&["--first", "rising"]).unwrap().first_tests(), [FirstTest::Rising]);
+        assert_eq!(request.first_tests(), FirstTest::ALL);
         assert_eq!((request.seeds, request.specimens().unwrap()), (2, vec!["bush-random"]));
-        for typed in [&["--seeds", "0"][..], &["--out"], &["x"]] {
+        for typed in [&["--seeds", "0"][..], &["--out"], &["x"], &["--first", "last"]] {
             assert!(Request::parse(typed).is_err(), "{typed:?}");
         }
         assert!(Request::parse(&["--specimens", "jelly"]).unwrap().specimens().is_err());

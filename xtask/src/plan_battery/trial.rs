@@ -32,6 +32,14 @@ pub enum FirstTest {
 impl FirstTest {
     pub const ALL: [Self; 2] = [Self::Constant, Self::Rising];
 
+    /// The word on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Constant => "constant",
+            Self::Rising => "rising",
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             Self::Constant => "cycles of constant amplitude",

@@ -18,7 +18,7 @@ use crate::csv_text::header_line;
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
 use crate::identification::{Work, identify, thread_pool};
-use crate::messages::{Usage, json_results, note, raw_results, results};
+use crate::messages::{Usage, json_results, note, raw_results, results, warning};
 use crate::planning::{self, Planned};
 use crate::units::Factors;
 use crate::{Outcome, interrupt, understanding};
@@ -147,7 +147,13 @@ fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Resu
     let request = FitSpec::Auto(AutoOptions { starts: STARTS, seed: arguments.seed, rate, ..auto });
     let work = Work { threads: arguments.threads, time_limit: arguments.time_limit, ..Work::new(&request) };
     let model = identify(data, work)?.model;
-    Ok(model.ensemble().is_some().then_some(model))
+    if model.ensemble().is_none() {
+        warning(
+            "there was no time for an ensemble, or there are too few data: planned by what was not run alone",
+        );
+        return Ok(None);
+    }
+    Ok(Some(model))
 }
 
 /// Where the results go; no files if the table goes to stdout.

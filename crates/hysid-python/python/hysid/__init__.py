@@ -18,6 +18,7 @@ from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
 from hysid._fitting import Progress, fit
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
+from hysid._plan import Plan, Segment, plan
 from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
@@ -52,11 +53,13 @@ __all__ = [
     "Model",
     "ModelDiagnosis",
     "ParameterInterval",
+    "Plan",
     "Prediction",
     "Progress",
     "Records",
     "ResidualFinding",
     "Residuals",
+    "Segment",
     "Specimen",
     "Stepper",
     "Validation",
@@ -68,6 +71,7 @@ __all__ = [
     "minimise",
     "models",
     "operators",
+    "plan",
     "plot",
     "specimen",
     "specimens",

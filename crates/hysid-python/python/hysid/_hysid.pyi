@@ -21,6 +21,7 @@ __all__ = [
     "model_names",
     "option_names",
     "option_table",
+    "plan",
     "play",
     "relaxation",
     "relay",
@@ -148,6 +149,17 @@ def cycles(
     smoothing_factor: int | None,
 ) -> str: ...
 def figure_names() -> list[str]: ...
+def plan(
+    data: Dataset | None,
+    kind: str | None,
+    model: Model | None,
+    range: tuple[float, float] | None,
+    length: int | None,
+    step: float | None,
+    max_rate: float | None,
+    wave: str | None,
+    seed: int,
+) -> str: ...
 def diagnose(data: Dataset, smallest_reversal: float, smoothing: bool) -> str: ...
 def identify(
     data: Dataset,

@@ -14,6 +14,9 @@ const BY_DISAGREEMENT: f64 = 0.5;
 /// Largest value of a row, in mean disagreements: a member that diverges must not choose the plan.
 const LARGEST_VALUE: f64 = 4.0;
 
+/// Rows of a swing over the whole range at which candidates are looked at, about: long drives have many more.
+const LOOKS: usize = 200;
+
 /// A drive in the making.
 pub(super) struct Draft<'m> {
     pub path: Path,
@@ -37,22 +40,35 @@ struct Piece {
     new_visits: f64,
     squares: f64,
     rate: f64,
+    /// Smallest and largest input behind the way to its first turning point.
+    range: (f64, f64),
 }
 
 /// Rows of legs and what they visit.
 struct Run {
     rows: Vec<f64>,
+    /// How many rows each of them is from where the drive is.
+    offsets: Vec<usize>,
     visits: Vec<Visit>,
     past: Past,
     direction: f64,
     /// Longest step from row to row behind the first leg, or within it if there is no other.
     longest: f64,
+    /// Smallest and largest input there.
+    range: (f64, f64),
+}
+
+/// The range of no input.
+const NO_RANGE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+fn joined(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// What a candidate is worth.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Worth {
-    /// Sum of the disagreements, and rows.
+    /// Sum of the disagreements, and rows that were looked at.
     disagreement: f64,
     rows: usize,
     /// Gain of a row.
@@ -105,18 +121,21 @@ impl<'m> Draft<'m> {
         }
     }
 
-    fn run(&self, legs: &[Leg]) -> Run {
+    /// Every so many rows of legs, and the last of each.
+    fn run(&self, legs: &[Leg], every: usize) -> Run {
         let mut run = Run {
             rows: Vec::new(),
+            offsets: Vec::new(),
             visits: Vec::new(),
             past: self.past,
             direction: self.direction,
             longest: 0.0,
+            range: NO_RANGE,
         };
-        let mut x = self.now();
+        let (mut x, mut length) = (self.now(), 0);
         for (place, &leg) in legs.iter().enumerate() {
             if place == 1 {
-                run.longest = 0.0;
+                (run.longest, run.range) = (0.0, (x, x));
             }
             if let Leg::Swing { to, .. } = leg {
                 let direction = (to - x).signum();
@@ -126,10 +145,17 @@ impl<'m> Draft<'m> {
                 run.direction = direction;
             }
             let speed = self.speed(x, leg);
-            for to in self.path.leg(x, leg) {
+            let (rows, before) = (self.path.leg(x, leg), length);
+            length += rows.len();
+            for (index, &to) in rows.iter().enumerate() {
+                if (index + 1) % every != 0 && index + 1 < rows.len() {
+                    continue;
+                }
                 run.visits.push(self.coverage.visit(x, to, run.past, speed));
                 run.rows.push(to);
+                run.offsets.push(before + index + 1);
                 run.longest = run.longest.max((to - x).abs());
+                run.range = joined(run.range, (to, to));
                 x = to;
             }
         }
@@ -154,9 +180,11 @@ impl<'m> Draft<'m> {
     }
 
     fn worth_of(&self, legs: &[Leg], members: &mut Option<Members<'m>>) -> Result<Worth> {
-        let run = self.run(legs);
+        let (low, high) = self.path.limits.range;
+        let swing = self.path.rows(low, Leg::Swing { to: high, speed: 1.0 });
+        let run = self.run(legs, (swing / LOOKS).max(1));
         let disagreement = match members {
-            Some(members) => members.along(&run.rows)?,
+            Some(members) => members.along(&run.rows, &run.offsets)?,
             None => Vec::new(),
         };
         let mean = self.mean_disagreement.filter(|mean| *mean > 0.0);
@@ -166,17 +194,17 @@ impl<'m> Draft<'m> {
             }
             _ => 1.0,
         };
-        let rows = run.rows.len();
+        let rows = self.path.rows_of(self.now(), legs);
         Ok(Worth {
             disagreement: disagreement.iter().sum(),
-            rows,
+            rows: run.rows.len(),
             gain: self.coverage.gain(&run.visits, value) / rows as f64,
         })
     }
 
     /// Adds a piece.
     pub fn add(&mut self, kind: Kind, legs: &[Leg]) -> Result<()> {
-        let run = self.run(legs);
+        let run = self.run(legs, 1);
         let squares = match &mut self.members {
             Some(members) => members.advance(&run.rows)?.iter().map(|d| d * d).sum(),
             None => 0.0,
@@ -190,6 +218,7 @@ impl<'m> Draft<'m> {
             new_visits: visits * self.coverage.new_share(&run.visits),
             squares,
             rate: run.longest / self.path.limits.time_step(),
+            range: run.range,
         });
         self.coverage.add(&run.visits);
         self.inputs.extend(run.rows);
@@ -235,10 +264,7 @@ impl<'m> Draft<'m> {
     }
 
     fn segment(&self, pieces: &[Piece], rows: std::ops::Range<usize>) -> Segment {
-        let inputs = &self.inputs[rows.start - 1..rows.end];
-        let (low, high) = inputs[1..]
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        let (low, high) = pieces.iter().fold(NO_RANGE, |range, piece| joined(range, piece.range));
         let sum = |of: fn(&Piece) -> f64| pieces.iter().map(of).sum::<f64>();
         let visits = sum(|piece| piece.visits);
         let legs = pieces.iter().flat_map(|piece| &piece.legs);

@@ -52,8 +52,9 @@ impl Limits {
     /// The limits of data, where `wanted` says no others.
     ///
     /// # Errors
-    /// Limits that cannot be used.
+    /// Data from which nothing can be identified, limits that cannot be used.
     pub fn of(data: &Dataset, wanted: &Wanted) -> Result<Self> {
+        data.check_identifiable(crate::data::FEWEST_ROWS)?;
         let range = wanted.range.unwrap_or_else(|| data.input_range(0));
         let fastest = data.records().iter().map(|record| (largest_rate(record), record));
         let (rate, record) =

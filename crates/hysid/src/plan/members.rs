@@ -38,28 +38,24 @@ impl<'m> Members<'m> {
         Ok(Self { at: stepper.snapshot(), stepper, time_step: step.unwrap_or(1.0), row: 0 })
     }
 
-    /// The disagreement at each of the rows that follow, from where the drive is.
-    pub fn along(&mut self, rows: &[f64]) -> Result<Vec<f64>> {
+    /// The disagreement at inputs that follow, each so many rows from where the drive is.
+    pub fn along(&mut self, inputs: &[f64], offsets: &[usize]) -> Result<Vec<f64>> {
         self.stepper.restore(&self.at);
-        self.run(rows)
-    }
-
-    /// The same, and the drive goes on there.
-    pub fn advance(&mut self, rows: &[f64]) -> Result<Vec<f64>> {
-        let disagreement = self.along(rows)?;
-        self.at = self.stepper.snapshot();
-        self.row += rows.len();
-        Ok(disagreement)
-    }
-
-    fn run(&mut self, rows: &[f64]) -> Result<Vec<f64>> {
-        let time = |index: usize| (self.row + 1 + index) as f64 * self.time_step;
-        let mut all = Vec::with_capacity(rows.len());
-        for (index, &x) in rows.iter().enumerate() {
-            self.stepper.step(&[x], time(index), None)?;
+        let mut all = Vec::with_capacity(inputs.len());
+        for (&x, offset) in inputs.iter().zip(offsets) {
+            self.stepper.step(&[x], (self.row + offset) as f64 * self.time_step, None)?;
             all.push(self.stepper.disagreement());
         }
         Ok(all)
+    }
+
+    /// The disagreement at all rows that follow; the drive goes on behind them.
+    pub fn advance(&mut self, rows: &[f64]) -> Result<Vec<f64>> {
+        let offsets: Vec<usize> = (1..=rows.len()).collect();
+        let disagreement = self.along(rows, &offsets)?;
+        self.at = self.stepper.snapshot();
+        self.row += rows.len();
+        Ok(disagreement)
     }
 }
 

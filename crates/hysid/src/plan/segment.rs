@@ -83,12 +83,11 @@ pub struct Segment {
     /// Its rows in the drive, counted from 0.
     #[serde(serialize_with = "first_and_last")]
     pub rows: Range<usize>,
-    /// Half the difference of the largest and the smallest input.
+    /// Half the difference of the largest and the smallest input, behind the way to its first turning point.
     pub amplitude: f64,
-    /// Half the sum of the largest and the smallest input.
+    /// Half the sum of the largest and the smallest input there.
     pub mean: f64,
-    /// Largest change of the input in a unit of time, or from row to row without time, behind the way to its first turning
-    /// point.
+    /// Largest change of the input in a unit of time there, or from row to row without time.
     pub rate: f64,
     /// Turning points within it, the end included.
     pub turning_points: Vec<f64>,
