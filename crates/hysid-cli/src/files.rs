@@ -55,6 +55,24 @@ pub fn write_or_rescue(destination: &Destination, what: &str, content: &[u8]) ->
     })
 }
 
+/// Says which files were written: what each is, and its path.
+pub fn say_written<'p>(written: impl IntoIterator<Item = (&'p str, Option<&'p Path>)>) {
+    for (what, path) in written {
+        if let Some(path) = path {
+            note(format_args!("{what:<8}{}", shown(path)));
+        }
+    }
+}
+
+/// Refuses `--json` where the table goes to stdout.
+pub fn check_stdout(has_table: bool, json: bool) -> Result<()> {
+    if has_table && json {
+        let advice = "--json prints to stdout in place of the table: name a file for the table with -o";
+        return Err(Usage(advice.into()).into());
+    }
+    Ok(())
+}
+
 /// Says where the file is that was replaced, if it is kept.
 pub fn say_kept(path: &Path, kept: Option<&Path>) {
     if let Some(kept) = kept {

@@ -26,7 +26,7 @@ use crate::inspection::stored_errors;
 use crate::messages::{insist, summarised, warning};
 use crate::progress::Follower;
 use crate::report::{self, Report, ReportSet, Tracks};
-use crate::{errors_table, files, interrupt, understanding};
+use crate::{errors_table, files, interrupt, origin, understanding};
 
 /// A model and what was said and spent on the way to it.
 pub struct Identified {
@@ -149,7 +149,7 @@ impl Identified {
         sets: &[(&str, &Dataset)],
         inputs: &[&Path],
     ) -> Result<()> {
-        crate::origin::write_page(page, self.report(model, sets)?, inputs)
+        origin::write_page(page, self.report(model, sets)?, inputs)
             .context("the model was written, but not its report")
     }
 

@@ -1,6 +1,5 @@
 //! How a page was made: when, by which command, from which files.
 
-use std::fmt::Write;
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -28,7 +27,7 @@ fn section(inputs: &[&Path]) -> Part {
     for path in inputs {
         let sum = match checksum(path) {
             Some(sum) => format!("SHA-256 {sum}"),
-            None => "no checksum: standard input, or changed since".into(),
+            None => "no checksum: standard input, or the file can no longer be read".into(),
         };
         pairs.push((format!("Read: {}", path.display()), sum));
     }
@@ -46,9 +45,7 @@ fn command() -> String {
 fn checksum(path: &Path) -> Option<String> {
     let mut sum = Sha256::new();
     io::copy(&mut File::open(path).ok()?, &mut sum).ok()?;
-    let mut text = String::new();
-    sum.finalize().iter().for_each(|byte| write!(text, "{byte:02x}").expect("a string takes all"));
-    Some(text)
+    Some(format!("{:x}", sum.finalize()))
 }
 
 #[cfg(test)]

@@ -118,9 +118,9 @@ fn on_disagreement(plan: &Plan) -> Option<String> {
         with_unit(along),
         with_unit(repeat),
         if along > repeat {
-            "the plan measures what the data have not decided."
+            "the plan tests where the models still disagree."
         } else {
-            "they differ no more along the plan than along the data, so that a plan can tell them apart no better."
+            "the models do not differ more along the plan than along the data, so the plan may improve them little."
         }
     ))
 }

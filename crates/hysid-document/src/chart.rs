@@ -1,6 +1,5 @@
 //! Charts as data, drawn as SVG.
 
-mod appearance;
 mod axis;
 mod curves;
 mod frame;
@@ -11,7 +10,6 @@ pub mod thin;
 
 use serde::{Deserialize, Serialize};
 
-pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
 pub use heat_map::{HeatCell, heat_map};
 pub use palette::style;
@@ -204,12 +202,7 @@ impl Chart {
 /// Several charts as one file, `columns` of them beside each other, in cells as large as the largest chart. `description`
 /// is for readers who cannot see them; `generator` names the program that made the file.
 pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
-    svg::sheet(charts, columns, &Appearance::of_page(), description, generator)
-}
-
-/// As [`sheet`], in one column with this appearance.
-pub fn column(charts: &[Chart], appearance: &Appearance, description: &str, generator: &str) -> String {
-    svg::sheet(charts, 1, appearance, description, generator)
+    svg::sheet(charts, columns, description, generator)
 }
 
 /// Points in a file: one that is not finite is nothing.

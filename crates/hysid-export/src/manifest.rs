@@ -69,5 +69,5 @@ impl<'a> Entry<'a> {
 
 /// The SHA-256 checksum in hexadecimal digits.
 pub(crate) fn checksum(content: &[u8]) -> String {
-    Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect()
+    format!("{:x}", Sha256::digest(content))
 }

@@ -17,7 +17,7 @@ mod structures;
 mod subject;
 mod timed;
 
-use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
 use super::noise::with_noise;
@@ -72,12 +72,7 @@ fn case(index: usize, seed: u64) -> Result<Case> {
     let mut draw = Draw::new(seed, index);
     let subject = (plan.subject)(&mut draw)?;
     let parts = plan.design.parts(&mut draw, &subject)?;
-    let names = ColumnNames {
-        time: plan.design.band().map(|_| "t_s".to_owned()),
-        inputs: vec![plan.input.to_owned()],
-        rate: None,
-        output: plan.output.to_owned(),
-    };
+    let names = plan.names();
     let percent = draw.between(plan.noise.0, plan.noise.1);
     let mut noisy = |records| noisy(Dataset::new(names.clone(), records)?, percent, &mut draw);
     Ok(Case {

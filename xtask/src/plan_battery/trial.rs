@@ -145,8 +145,7 @@ fn path(specimen: &DrivenSpecimen) -> Path {
     let start = 0.0_f64.clamp(low, high);
     let wave = if specimen.frequencies.is_some() { Wave::Smooth } else { Wave::Triangle };
     let step = specimen.frequencies.map(|(_, highest)| 1.0 / (0.5 * highest * 2.0 * ROWS_OF_A_SWING));
-    let peak = if wave == Wave::Smooth { std::f64::consts::FRAC_PI_2 } else { 1.0 };
-    let max_rate = peak * (high - low) / (ROWS_OF_A_SWING * step.unwrap_or(1.0));
+    let max_rate = wave.peak() * (high - low) / (ROWS_OF_A_SWING * step.unwrap_or(1.0));
     Path { limits: Limits { range: (low, high), start, step, max_rate, rows: ROWS }, wave }
 }
 

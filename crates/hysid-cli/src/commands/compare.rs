@@ -18,6 +18,7 @@ use crate::files::{self, check_outputs};
 use crate::identification::data_warnings;
 use crate::interrupt;
 use crate::messages::{json_results, note, results, summarised, warning};
+use crate::origin;
 
 /// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {
@@ -60,7 +61,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
         let content = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
-        crate::origin::write_page(page, content, &inputs)?;
+        origin::write_page(page, content, &inputs)?;
         note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })

@@ -13,8 +13,8 @@ use crate::commands::{Given, model_from_bytes};
 use crate::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
 use crate::data::Data;
 use crate::files::{self, check_outputs};
-use crate::messages::{Usage, note, raw_results, results, warning};
-use crate::{Outcome, understanding};
+use crate::messages::{raw_results, results, warning};
+use crate::{Outcome, origin, understanding};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
@@ -59,12 +59,9 @@ impl Outputs {
     fn of(arguments: &arguments::Cycles) -> Result<Self> {
         let path =
             arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.files[0], ".cycles.csv"));
-        if path == Path::new("-") {
-            if arguments.json {
-                let advice =
-                    "--json prints to stdout in place of the table: name a file for the table with -o";
-                return Err(Usage(advice.into()).into());
-            }
+        let to_stdout = path == Path::new("-");
+        files::check_stdout(to_stdout, arguments.json)?;
+        if to_stdout {
             return Ok(Self { table: None, page: None, curves: None });
         }
         let force = arguments.overwriting.force;
@@ -102,7 +99,7 @@ fn tell(
         files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
     }
     if let Some(page) = &outputs.page {
-        crate::origin::write_page(page, cycles::page(cycles), inputs)?;
+        origin::write_page(page, cycles::page(cycles), inputs)?;
     }
     let path = |destination: &Destination| destination.path().to_path_buf();
     let written = Files {
@@ -114,11 +111,8 @@ fn tell(
         true => raw_results(&cycles.json(&written)?)?,
         false => results(&cycles::text(cycles))?,
     }
-    for (what, path) in [("table", &written.table), ("FORC", &written.curves), ("page", &written.page)] {
-        if let Some(path) = path {
-            note(format_args!("{what:<8}{}", files::shown(path)));
-        }
-    }
+    let written = [("table", &written.table), ("FORC", &written.curves), ("page", &written.page)];
+    files::say_written(written.map(|(what, path)| (what, path.as_deref())));
     Ok(Outcome::Done)
 }
 

@@ -16,6 +16,7 @@ use crate::data::Data;
 use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
 use crate::files::{self, check_outputs};
 use crate::messages::{note, results, warning};
+use crate::origin;
 use crate::understanding;
 use hysid_tables::Table;
 
@@ -38,7 +39,7 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     };
     results(&told.text)?;
     if let (Some(destination), Some(page)) = (&page, told.page) {
-        crate::origin::write_page(destination, page, &inputs)?;
+        origin::write_page(destination, page, &inputs)?;
         note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)

@@ -19,10 +19,10 @@ use crate::csv_text::header_line;
 use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::inversion::{self, Bounds, Inverted, Wanted};
-use crate::messages::{Usage, json_results, note, raw_results, results, warning};
+use crate::messages::{json_results, raw_results, results, warning};
 use crate::terminal::clipped;
 use crate::units::Factors;
-use crate::{Outcome, understanding};
+use crate::{Outcome, origin, understanding};
 use hysid_tables::{Table, push_shortest};
 
 /// Runs the command.
@@ -34,12 +34,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     let header =
         header_line(delimiter_of(&table), table.header.iter().chain(names.all()).map(String::as_str))?;
     let out = arguments.out.as_deref().filter(|out| *out != Path::new("-"));
-    if arguments.json && out.is_none() {
-        return Err(Usage(
-            "--json prints to stdout in place of the table: name a file for the table with -o".into(),
-        )
-        .into());
-    }
+    files::check_stdout(out.is_none(), arguments.json)?;
     let force = arguments.overwriting.force;
     let drive = out.map(|out| Destination::new(out, Kind::Beginning(header.clone()), force));
     let page_path = out.filter(|_| !arguments.no_report).map(|out| out.with_extension("html"));
@@ -75,13 +70,10 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     }
     if let Some(page) = &page {
         let report = inversion::page(&model, &wanted, &inverted, &bounds, &understood, &warnings);
-        crate::origin::write_page(page, report, &[&arguments.model, &arguments.reference])?;
+        origin::write_page(page, report, &[&arguments.model, &arguments.reference])?;
     }
-    for (what, destination) in [("drive", &drive), ("report", &page)] {
-        if let Some(destination) = destination {
-            note(format_args!("{what:<8}{}", files::shown(destination.path())));
-        }
-    }
+    let written = [("drive", &drive), ("report", &page)];
+    files::say_written(written.map(|(what, file)| (what, file.as_ref().map(Destination::path))));
     Ok(Outcome::Done)
 }
 

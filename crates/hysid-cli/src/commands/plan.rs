@@ -18,10 +18,10 @@ use crate::csv_text::header_line;
 use crate::data::{Data, read_tables};
 use crate::files::{self, check_outputs};
 use crate::identification::{Work, identify, thread_pool};
-use crate::messages::{Usage, json_results, note, raw_results, results, warning};
+use crate::messages::{Usage, json_results, raw_results, results, warning};
 use crate::planning::{self, Planned};
 use crate::units::Factors;
-use crate::{Outcome, interrupt, understanding};
+use crate::{Outcome, interrupt, origin, understanding};
 
 /// Starts of each candidate of the ensemble: it only has to show where models disagree.
 const STARTS: usize = 1;
@@ -73,23 +73,20 @@ fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let inputs: Vec<&Path> = arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
     outputs.check(&inputs)?;
     let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
-    if let [_, further @ ..] = data.roles.inputs.as_slice()
-        && !further.is_empty()
-    {
-        let count = data.roles.inputs.len();
+    let count = data.roles.inputs.len();
+    if count > 1 {
         return Err(
             Usage(format!("there are {count} inputs, and a plan drives one: choose with --input")).into()
         );
     }
-    let mut step = arguments.step;
     if arguments.duration.is_some() && !data.set.has_time() {
         return Err(
             Usage("--duration needs time stamps: use --length, or name them with --time".into()).into()
         );
     }
     let summary = Summary::of(&data.set);
-    step = step.or_else(|| summary.records.iter().find_map(|record| Some(record.time_steps?.1)));
-    let limits = Wanted { step: arguments.step, ..wanted(arguments, step)? };
+    let of_data = || summary.records.iter().find_map(|record| Some(record.time_steps?.1));
+    let limits = wanted(arguments, arguments.step.or_else(of_data))?;
     let options = PlanOptions { limits, wave: arguments.wave, seed: arguments.seed };
     // What cannot be planned is said before the long fit.
     hysid::plan::Limits::of(&data.set, &limits).map_err(|error| data.explain(error))?;
@@ -171,12 +168,9 @@ impl Outputs {
     ) -> Result<Self> {
         let columns = names.time.iter().chain(&names.inputs[..1]).map(String::as_str);
         let header = header_line(b',', columns)?;
-        if path == Path::new("-") {
-            if arguments.json {
-                let advice =
-                    "--json prints to stdout in place of the table: name a file for the table with -o";
-                return Err(Usage(advice.into()).into());
-            }
+        let to_stdout = path == Path::new("-");
+        files::check_stdout(to_stdout, arguments.json)?;
+        if to_stdout {
             return Ok(Self { header, table: None, page: None });
         }
         if path.extension().is_some_and(|ending| ending == "html") {
@@ -206,17 +200,13 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
     if let Some(page) = &outputs.page {
         let inputs: Vec<&Path> =
             arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
-        crate::origin::write_page(page, planning::page(planned), &inputs)?;
+        origin::write_page(page, planning::page(planned), &inputs)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);
     match arguments.json {
         true => json_results(&planning::Printed::of(planned.plan, destination.path(), page))?,
         false => results(&planning::text(planned))?,
     }
-    for (what, path) in [("drive", Some(destination.path())), ("page", page)] {
-        if let Some(path) = path {
-            note(format_args!("{what:<8}{}", files::shown(path)));
-        }
-    }
+    files::say_written([("drive", Some(destination.path())), ("page", page)]);
     Ok(Outcome::Done)
 }

@@ -23,7 +23,7 @@ pub fn page(planned: &Planned<'_>) -> Page {
     if !plan.sources.is_empty() {
         let sources =
             plan.sources.iter().map(|source| Item { text: (*source).into(), is_warning: false }).collect();
-        parts.push(Part::section("After", [Part::List(sources)]));
+        parts.push(Part::section("Sources", [Part::List(sources)]));
     }
     parts.push(Part::section(
         "Next",

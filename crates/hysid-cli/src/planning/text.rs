@@ -22,7 +22,7 @@ pub fn text(planned: &Planned<'_>) -> String {
     blocks.extend(on_disagreement(plan).map(|words| lines(&words)));
     if !plan.sources.is_empty() {
         let sources = list(&mut plan.sources.iter().map(|source| (*source).to_string()));
-        blocks.push(format!("after\n{sources}"));
+        blocks.push(format!("sources\n{sources}"));
     }
     let step = capitalised("run the drive on a specimen like the first, save the results as NEW.csv, then");
     blocks.push(format!("next\n{}  {}\n", lines(&step), planned.next));

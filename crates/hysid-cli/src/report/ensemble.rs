@@ -93,7 +93,7 @@ fn nodes(
     ]);
     let mut parts = vec![Part::Table(table), Part::note(words)];
     if !idle.is_empty() {
-        let summary = format!("Candidates without which the error is not larger: {}", idle.len());
+        let summary = format!("Candidates that do not lower the error of the ensemble: {}", idle.len());
         parts.push(Part::Folded(
             summary,
             vec![Part::Table(Table::new(columns).with_rows(idle.iter().map(row)))],

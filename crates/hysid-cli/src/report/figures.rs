@@ -5,6 +5,7 @@ use hysid::model::history::Phase;
 use hysid::model::{Model, Provenance};
 use hysid::options::FitSpec;
 use hysid::options::network::Method;
+use hysid_document::chart::Track;
 use hysid_document::chart::thin::thin_path;
 use hysid_document::{Chart, Colour, Curve, Part, convergence, count, unit};
 
@@ -98,12 +99,10 @@ fn loop_curves(set: &ReportSet, index: usize, most: usize) -> (Curve, Curve) {
     let first = rows.start;
     let x = &record.inputs()[0][rows.clone()];
     let (measured, simulated) = (&record.output()[rows.clone()], &set.simulated[index][rows]);
-    let (mut wide, mut thin, drawn) = path_curves(x, measured, simulated, most);
+    let (wide, thin, drawn) = path_curves(x, measured, simulated, most);
     let track = set.tracks.of_path(record, drawn.into_iter().map(|row| row.map(|row| first + row)));
-    for curve in [&mut wide, &mut thin] {
-        curve.track = Some(track.clone());
-    }
-    (wide, thin)
+    // A page needs the cycles of a record once.
+    (wide.tracked(track.clone()), thin.tracked(Track { cycles: Vec::new(), ..track }))
 }
 
 /// Two outputs over the same input, the same rows of both: the wide curve of one, and the thin one of a model before it;

@@ -6,6 +6,9 @@ use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::cycles::{CycleOptions, CycleTable};
 use hysid_document::chart::Track;
 
+/// Most cycles of a record among which a reader can select.
+const MOST_CYCLES: usize = 1000;
+
 /// Times of a record's rows, or their numbers where there is no time.
 pub fn times(record: &Record) -> Vec<f64> {
     times_or_rows(record.time(), record.len())
@@ -57,7 +60,9 @@ fn cycles(data: &Dataset) -> HashMap<String, Vec<f64>> {
         let own = table.complete().filter(|row| row.record == record.name());
         let mut of_record: Vec<f64> = own.clone().map(|row| times[row.rows.0]).collect();
         of_record.extend(own.last().map(|row| times[row.rows.1]));
-        bounds.insert(record.name().into(), of_record);
+        if of_record.len() <= MOST_CYCLES {
+            bounds.insert(record.name().into(), of_record);
+        }
     }
     bounds
 }

@@ -98,7 +98,7 @@ fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
         ..chart(vec![])
     };
     // An entry takes about 190 of 520 pixels.
-    let lines: Vec<usize> = legend_lines(&chart, &Appearance::of_page()).iter().map(Vec::len).collect();
+    let lines: Vec<usize> = legend_lines(&chart).iter().map(Vec::len).collect();
     assert_eq!(lines, [2, 2]);
     assert_balanced(&chart.svg());
 }

@@ -106,13 +106,16 @@
       }
       return low > 0 && time - times[low - 1] < times[low] - time ? low - 1 : low;
     }
-    // The points between two times, with gaps where something was left out.
+    // The parts of its pieces between two times.
     between(from, to) {
-      const kept = [];
-      for (let k = 0; k < this.x.length; k++) {
-        if (this.time[k] >= from && this.time[k] <= to) kept.push(this.x[k], this.y[k]);
-      }
-      return kept;
+      let first = 0;
+      return this.pieces.map(({ element, points }) => {
+        const kept = [];
+        for (let k = 0; k < points.length; k += 2, first++) {
+          if (this.time[first] >= from && this.time[first] <= to) kept.push(points[k], points[k + 1]);
+        }
+        return { element, kept };
+      });
     }
   }
 
@@ -426,10 +429,12 @@
       }
       for (const curve of this.curves) {
         if (curve.record !== record || curve.isArea || this.overTime) continue;
-        const shown = curve.pieces[0] && curve.pieces[0].element.cloneNode(false);
-        if (!shown) continue;
-        shown.setAttribute("points", this.placed(curve.between(from, to)).join(" "));
-        this.cycle.append(shown);
+        for (const { element, kept } of curve.between(from, to)) {
+          if (kept.length < 4) continue;
+          const shown = element.cloneNode(false);
+          shown.setAttribute("points", this.placed(kept).join(" "));
+          this.cycle.append(shown);
+        }
       }
       this.inner.insertBefore(this.cycle, this.marks);
     }
@@ -552,8 +557,8 @@
   if (figures.length > 0) {
     const touch = matchMedia("(pointer: coarse)").matches;
     const words = touch
-      ? "In a figure: spread two fingers to zoom, double-tap to see it whole again."
-      : "In a figure: drag to zoom, Shift-drag to move, double-click to see it whole again; or the keys + \u2212 0 and arrows.";
+      ? "In a figure: spread two fingers to zoom, double-tap to reset."
+      : "In a figure: drag to zoom, Shift-drag to move, double-click to reset. Keys: + \u2212 0 and arrows.";
     figures[0].figure.closest("section, main").querySelector("h2, h1").after(html("p", { className: "note hint", textContent: words }));
   }
 })();

@@ -17,8 +17,6 @@ const FIRST_DRAW: usize = 2000;
 pub struct DrivenSpecimen {
     /// Name of the plan of cases that it is of, such as `joint-growing`.
     pub name: &'static str,
-    /// The law, in a few words.
-    pub law: &'static str,
     /// Names of its columns; the time is named for a specimen whose output depends on it.
     pub names: ColumnNames,
     /// Smallest and largest input of its experiments.
@@ -46,16 +44,9 @@ pub fn driven_specimen(name: &str, seed: u64) -> Result<Option<DrivenSpecimen>> 
         return Ok(None);
     };
     let subject = (plan.subject)(&mut Draw::new(seed, FIRST_DRAW + index))?;
-    let names = ColumnNames {
-        time: plan.design.band().map(|_| "t_s".to_owned()),
-        inputs: vec![plan.input.to_owned()],
-        rate: None,
-        output: plan.output.to_owned(),
-    };
     Ok(Some(DrivenSpecimen {
         name: plan.name,
-        law: plan.law,
-        names,
+        names: plan.names(),
         range: subject.range,
         frequencies: plan.design.band(),
         subject,
@@ -72,8 +63,7 @@ impl DrivenSpecimen {
         let Some(step) = step else {
             return Record::new(name, vec![input.to_vec()], self.subject.run_still(input));
         };
-        let mut output = self.subject.run(&samples(input, step)).into_iter().step_by(STEPS_PER_ROW);
-        let output = (0..input.len()).filter_map(|_| output.next()).collect();
+        let output = self.subject.run(&samples(input, step)).into_iter().step_by(STEPS_PER_ROW).collect();
         let time = (0..input.len()).map(|row| row as f64 * step).collect();
         Record::new(name, vec![input.to_vec()], output)?.with_time(time)
     }

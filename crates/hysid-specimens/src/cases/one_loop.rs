@@ -1,7 +1,7 @@
 //! Cases of one loop, as most magnetics laboratories measure it, without information on smaller loops.
 
 use crate::path;
-use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
 use super::draw::Draw;
@@ -44,12 +44,7 @@ fn case(plan: &Plan, index: usize, seed: u64) -> Result<Case> {
         .enumerate()
         .map(|(kind, name)| test(&mut draw, &subject, step, kind, name))
         .collect::<Result<_>>()?;
-    let names = ColumnNames {
-        time: None,
-        inputs: vec![plan.input.to_owned()],
-        rate: None,
-        output: plan.output.to_owned(),
-    };
+    let names = plan.names();
     let percent = draw.between(plan.noise.0, plan.noise.1);
     Ok(Case {
         name: format!("l{:02}-{}", index + 1, plan.name),

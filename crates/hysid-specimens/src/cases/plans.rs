@@ -1,5 +1,6 @@
 //! The plans of the cases: which law is measured how. They are ordered so that any first few differ in kind.
 
+use hysid_core::data::record::ColumnNames;
 use hysid_core::error::Result;
 
 use super::draw::Draw;
@@ -74,6 +75,18 @@ pub(super) struct Plan {
     pub output: &'static str,
     /// Least and most noise, in percent of the standard deviation of the output.
     pub noise: (f64, f64),
+}
+
+impl Plan {
+    /// Names of the columns; the time is named where it matters.
+    pub fn names(&self) -> ColumnNames {
+        ColumnNames {
+            time: self.design.band().map(|_| "t_s".to_owned()),
+            inputs: vec![self.input.to_owned()],
+            rate: None,
+            output: self.output.to_owned(),
+        }
+    }
 }
 
 /// Names of a structure's columns.

@@ -10,7 +10,7 @@
 //! crossed so far, `a_c` how often the path crosses it, and `v_c` its value. The first visit of a cell gains half of
 //! its value, the second a sixth.
 
-use crate::data::record::Dataset;
+use crate::data::record::{Dataset, Record};
 use crate::data::turning_points::turning_points;
 
 use super::limits::Limits;
@@ -32,7 +32,30 @@ const FAST: f64 = 0.67;
 pub(super) const CLASSES: [f64; 3] = [1.0, 0.45, 0.2];
 
 /// Reversals below this share of the range are noise.
-const SMALLEST_REVERSAL: f64 = 0.02;
+pub(super) const SMALLEST_REVERSAL: f64 = 0.02;
+
+/// A swing of data between two turning points.
+pub(super) struct DataSwing {
+    /// Row where it begins.
+    pub start: usize,
+    /// Row where it ends.
+    pub end: usize,
+    /// Mean speed.
+    pub speed: f64,
+}
+
+/// The swings of a record, for a plan over a range of this width.
+pub(super) fn swings(record: &Record, width: f64) -> Vec<DataSwing> {
+    let x = &record.inputs()[0];
+    let turns = turning_points(x, SMALLEST_REVERSAL * width);
+    let ends: Vec<usize> = std::iter::once(0).chain(turns).chain([x.len() - 1]).collect();
+    let swing = |pair: &[usize]| {
+        let (start, end) = (pair[0], pair[1]);
+        let elapsed = record.time().map_or((end - start) as f64, |time| time[end] - time[start]);
+        DataSwing { start, end, speed: (x[end] - x[start]).abs() / elapsed }
+    };
+    ends.windows(2).map(swing).collect()
+}
 
 /// How often each cell was crossed.
 #[derive(Debug, Clone)]
@@ -83,16 +106,13 @@ impl Coverage {
     pub fn add_data(&mut self, data: &Dataset) {
         for record in data.records() {
             let x = &record.inputs()[0];
-            let turns = turning_points(x, SMALLEST_REVERSAL * self.limits.width());
             let mut past = Past::at(x[0]);
-            let starts = std::iter::once(0).chain(turns.iter().copied());
-            let ends = turns.iter().copied().chain([x.len() - 1]);
-            for (number, (start, end)) in starts.zip(ends).enumerate() {
+            for (number, DataSwing { start, end, speed }) in
+                swings(record, self.limits.width()).into_iter().enumerate()
+            {
                 if number > 0 {
                     past = past.turned(x[start]);
                 }
-                let elapsed = record.time().map_or((end - start) as f64, |time| time[end] - time[start]);
-                let speed = (x[end] - x[start]).abs() / elapsed;
                 let scored = start + 1..=end;
                 let visits: Vec<Visit> = scored
                     .filter(|&row| !record.output()[row].is_nan())

@@ -11,8 +11,8 @@ use crate::error::Result;
 /// Disagreement of the members counts this much, the rest is coverage alone: members may agree by chance.
 const BY_DISAGREEMENT: f64 = 0.5;
 
-/// Largest value of a row, in mean disagreements: a member that diverges must not choose the plan.
-const LARGEST_VALUE: f64 = 4.0;
+/// Largest disagreement of a row that counts, in mean disagreements: a member that diverges must not choose the plan.
+const LARGEST_RATIO: f64 = 4.0;
 
 /// Rows of a swing over the whole range at which candidates are looked at, about: long drives have many more.
 const LOOKS: usize = 200;
@@ -190,7 +190,7 @@ impl<'m> Draft<'m> {
         let mean = self.mean_disagreement.filter(|mean| *mean > 0.0);
         let value = |row: usize| match (mean, disagreement.get(row)) {
             (Some(mean), Some(found)) => {
-                1.0 - BY_DISAGREEMENT + BY_DISAGREEMENT * (found / mean).min(LARGEST_VALUE)
+                1.0 - BY_DISAGREEMENT + BY_DISAGREEMENT * (found / mean).min(LARGEST_RATIO)
             }
             _ => 1.0,
         };

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::data::record::{Dataset, Record};
 use crate::error::{Error, LARGEST_VALUE, OptionError, Result};
+use crate::significant::Significant;
 
 /// Fewest rows of a drive.
 pub const FEWEST_ROWS: usize = 40;
@@ -85,8 +86,11 @@ impl Limits {
         let is_range = low < high && low.abs().max(high.abs()) <= LARGEST_VALUE;
         // The rows of a swing must differ.
         if !is_range || high - low <= 1e-9 * low.abs().max(high.abs()) {
-            let needed = "two numbers are needed, the lower one first, and not next to each other";
-            return Err(OptionError::value("range", format!("{low}:{high}"), needed).into());
+            let needed = format!(
+                "two different numbers of at most {LARGEST_VALUE:e} in size are needed, the lower one first"
+            );
+            let given = format!("{:.9}:{:.9}", Significant(low), Significant(high));
+            return Err(OptionError::value("range", given, needed).into());
         }
         let is_positive = |value: f64| value > 0.0 && value <= LARGEST_VALUE;
         for (name, value) in [("step", self.step.unwrap_or(1.0)), ("max_rate", self.max_rate)] {

@@ -34,8 +34,8 @@ impl Wave {
         }
     }
 
-    /// Largest rate over mean rate.
-    fn peak(self) -> f64 {
+    /// Largest rate over mean rate of a swing.
+    pub fn peak(self) -> f64 {
         match self {
             Self::Smooth => FRAC_PI_2,
             Self::Triangle => 1.0,

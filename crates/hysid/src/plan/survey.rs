@@ -4,14 +4,11 @@ use hysid_diagnosis::cycles::Field;
 use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use serde::Serialize;
 
+use super::coverage::{self, DataSwing, SMALLEST_REVERSAL};
 use crate::data::record::Dataset;
-use crate::data::turning_points::turning_points;
 use crate::error::Result;
 use crate::property::Property;
 use crate::significant::Significant;
-
-/// Reversals below this share of the range are noise.
-const SMALLEST_REVERSAL: f64 = 0.02;
 
 /// Intervals of the amplitude, and of each axis of the plane of turning points.
 const INTERVALS: usize = 8;
@@ -109,13 +106,8 @@ impl Swings {
         let mut swings = Vec::new();
         for record in data.records() {
             let x = &record.inputs()[0];
-            let turns = turning_points(x, SMALLEST_REVERSAL * (range.1 - range.0));
-            let ends: Vec<usize> = std::iter::once(0).chain(turns).chain([x.len() - 1]).collect();
-            for pair in ends.windows(2) {
-                let (from, to) = (pair[0], pair[1]);
-                let elapsed = record.time().map_or((to - from) as f64, |time| time[to] - time[from]);
-                swings.push((x[from], x[to], (x[to] - x[from]).abs() / elapsed));
-            }
+            let of_record = coverage::swings(record, range.1 - range.0).into_iter();
+            swings.extend(of_record.map(|DataSwing { start, end, speed }| (x[start], x[end], speed)));
         }
         Self { range, swings }
     }
