@@ -5,6 +5,7 @@ mod examples;
 mod limits;
 mod model_options;
 mod plan;
+mod plot;
 mod program;
 mod reading;
 
@@ -30,6 +31,7 @@ use examples::*;
 pub use limits::Preview;
 pub use model_options::{ModelOptions, flag};
 pub use plan::Plan;
+pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};
 pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 
@@ -49,8 +51,20 @@ pub struct Arguments {
 }
 
 /// What stands for a number in the usage of an option.
-const NUMBERS: [&str; 10] =
-    ["N", "SHARE", "ROWS", "SECONDS", "FRACTION", "PROBABILITY", "PERCENT", "LOW:HIGH", "RATE", "TIME"];
+const NUMBERS: [&str; 12] = [
+    "N",
+    "SHARE",
+    "ROWS",
+    "SECONDS",
+    "FRACTION",
+    "PROBABILITY",
+    "PERCENT",
+    "LOW:HIGH",
+    "RATE",
+    "TIME",
+    "MM",
+    "POINTS",
+];
 
 impl Arguments {
     /// What was typed.
@@ -103,6 +117,8 @@ pub enum Command {
     Diagnose(Diagnose),
     /// Tables of cycles: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
+    /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
+    Plot(Box<Plot>),
     /// Plan what to measure next: a drive, and why
     Plan(Box<Plan>),
     /// Run the paper's experiments and compare the results with the paper

@@ -115,6 +115,17 @@ impl Roles {
         Self::of_inputs(model, &model.names().inputs, model.needs_time(), table, options, scored)
     }
 
+    /// The same with a column of time if the table has one, for a model that needs none.
+    pub fn with_time(self, table: &Head, options: &ColumnOptions) -> Result<Self> {
+        let time = match (&self.time, &options.time) {
+            (Some(_), _) => return Ok(self),
+            (None, Some(name)) => require(table, name, "--time").map(|()| Some(full_name(table, name)))?,
+            (None, None) => table.header.iter().find(|name| unit::is_time(name)).cloned(),
+        };
+        let is_used = |name: &String| self.inputs.contains(name) || *name == self.output;
+        Ok(Self { time: time.filter(|name| !is_used(name)), ..self })
+    }
+
     /// Finds the columns that the inverse of a model needs: the wanted output, and all inputs but the first.
     pub fn of_inverse(
         model: &Model,

@@ -15,6 +15,7 @@ pub mod look;
 pub mod man;
 pub mod models;
 pub mod plan;
+pub mod plot;
 pub mod reproduce;
 pub mod simulate;
 pub mod validate;

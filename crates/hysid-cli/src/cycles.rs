@@ -1,8 +1,9 @@
 //! What `hysid cycles` tells: tables as CSV, text for a terminal, one JSON object, and a page with pictures.
 
 mod curves;
+pub mod over_amplitude;
 mod page;
-mod pictures;
+pub mod pictures;
 mod table;
 mod text;
 

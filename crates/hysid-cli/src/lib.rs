@@ -16,6 +16,7 @@ mod date;
 mod diagnosis;
 mod errors_table;
 mod files;
+mod gathered;
 mod help;
 mod identification;
 mod inspection;
@@ -26,6 +27,7 @@ mod messages;
 mod model_list;
 mod origin;
 mod planning;
+mod plotting;
 mod progress;
 mod quantities;
 mod record_names;
@@ -79,6 +81,7 @@ pub fn run() -> ExitCode {
         Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Cycles(arguments) => commands::cycles::run(&arguments),
+        Command::Plot(arguments) => commands::plot::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),

@@ -20,7 +20,7 @@ use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
 use hysid_document::{Page, number, unit};
 
-pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, small_loops};
+pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use tracks::Tracks;
 
 /// Probability of the band that is drawn and judged.

@@ -1,76 +1,33 @@
 //! Tests of the residual of a run over a table, and what they say on a terminal.
 
-use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::data::record::ColumnNames;
 use hysid::data::warning::Warning;
 use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, ResidualVerdict, Residuals};
 use hysid::model::Model;
 use hysid_document::plain::{aligned, indented};
 
-use crate::table_run::Simulated;
+use crate::gathered::{Gathered, Gatherer};
 
 /// How far statements stand in under their verdict.
 const INDENT: usize = 4;
 
-/// Gathers the rows of a run, record by record. They are kept: memory grows with the table.
-#[derive(Default)]
-pub struct Gatherer {
-    records: Vec<Gathered>,
-    has_ended: bool,
-}
-
-#[derive(Default)]
-struct Gathered {
-    time: Vec<f64>,
-    inputs: Vec<Vec<f64>>,
-    rate: Vec<f64>,
-    measured: Vec<f64>,
-    simulated: Vec<f64>,
-}
-
-impl Gatherer {
-    /// Takes rows that are simulated.
-    pub fn take(&mut self, rows: &Simulated<'_>) {
-        if self.records.is_empty() || self.has_ended {
-            self.records.push(Gathered::default());
-        }
-        self.has_ended = rows.ends_record;
-        let Some(record) = self.records.last_mut() else { return };
-        let (drive, count) = (rows.drive(), rows.measured.len());
-        let some = |column: &Vec<f64>| column.iter().take(count).copied().collect::<Vec<f64>>();
-        record.time.extend(some(&drive.time));
-        record.rate.extend(some(&drive.rate));
-        record.inputs.resize(drive.inputs.len(), Vec::new());
-        record.inputs.iter_mut().zip(&drive.inputs).for_each(|(input, from)| input.extend(some(from)));
-        record.measured.extend(rows.measured);
-        record.simulated.extend(&rows.prediction.output);
-    }
-
-    /// The tests; `warnings` tell whether the model was trained on the data.
-    ///
-    /// # Errors
-    /// Too few scored rows.
-    pub fn tests(self, model: &Model, output: &str, warnings: &[Warning]) -> hysid::Result<Residuals> {
-        let (mut records, mut simulated) = (Vec::new(), Vec::new());
-        for (index, gathered) in
-            self.records.into_iter().filter(|record| !record.measured.is_empty()).enumerate()
-        {
-            let Gathered { time, inputs, rate, measured, simulated: run } = gathered;
-            let mut record = Record::new(format!("record {}", index + 1), inputs, measured)?;
-            if !time.is_empty() {
-                record = record.with_time(time)?;
-            }
-            if !rate.is_empty() {
-                record = record.with_given_rate(rate)?;
-            }
-            records.push(record);
-            simulated.push(run);
-        }
-        let names = ColumnNames { output: output.into(), ..model.names().clone() };
-        let is_training = warnings.iter().any(|warning| matches!(warning, Warning::TrainedOn { .. }));
-        let options =
-            ResidualOptions { uses_rate: model.rate().is_some(), is_training, ..ResidualOptions::default() };
-        Residuals::of(&Dataset::new(names, records)?, &simulated, &options)
-    }
+/// The tests of a run that was gathered; `warnings` tell whether the model was trained on the data.
+///
+/// # Errors
+/// Too few scored rows.
+pub fn tests(
+    gatherer: Gatherer,
+    model: &Model,
+    output: &str,
+    warnings: &[Warning],
+) -> hysid::Result<Residuals> {
+    let names = ColumnNames { output: output.into(), ..model.names().clone() };
+    let Gathered { data, predicted } = gatherer.gathered(names)?;
+    let simulated: Vec<Vec<f64>> = predicted.into_iter().map(|prediction| prediction.output).collect();
+    let is_training = warnings.iter().any(|warning| matches!(warning, Warning::TrainedOn { .. }));
+    let options =
+        ResidualOptions { uses_rate: model.rate().is_some(), is_training, ..ResidualOptions::default() };
+    Residuals::of(&data, &simulated, &options)
 }
 
 /// The verdicts in a table, under each what was found.

@@ -43,6 +43,8 @@ pub struct Simulated<'r> {
     pub prediction: &'r Prediction,
     /// Their measured outputs, NaN where they are blank; empty if these are not wanted.
     pub measured: &'r [f64],
+    /// Name of their record; that of the file if records have no names.
+    pub record: &'r str,
     /// Rows of their record before them.
     pub before: usize,
     /// Their record ends with them.
@@ -146,6 +148,8 @@ struct TableRun<'r, 'm> {
     offsets: Option<(f64, f64)>,
     /// Records so far.
     records: usize,
+    /// Name of the present one: of the rows that are simulated, while the row that was read last may begin the next one.
+    name: String,
     model: &'m Model,
     simulation: Simulation<'m>,
     /// Of the rows of the present record.
@@ -233,6 +237,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
             spread: 0,
             offsets: None,
             records: 0,
+            name: String::new(),
             model,
             simulation,
             fingerprint: Fingerprint::default(),
@@ -285,16 +290,12 @@ impl<'r, 'm> TableRun<'r, 'm> {
         self.records += 1;
         self.offsets = None;
         (self.clock.first, self.clock.step) = (self.clock.now, None);
-        self.simulation.begin(self.record_name());
-    }
-
-    /// The name of the present record.
-    fn record_name(&self) -> String {
-        match self.names.present() {
+        self.name = match self.names.present() {
             Some(name) => name.to_string(),
             None if self.records > 1 => format!("{} ({})", self.file, self.records),
             None => self.file.clone(),
-        }
+        };
+        self.simulation.begin(self.name.clone());
     }
 
     /// Takes the numbers of a row.
@@ -356,7 +357,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         if self.block.rows > 0 {
             self.prepare_block(ends_record);
             let first = self.waiting.lines.len() - self.block.rows;
-            let record = self.block.record(&self.columns, &self.record_name());
+            let record = self.block.record(&self.columns, &self.name);
             let record = record.map_err(|error| self.explain(error, first))?;
             let prediction = self.simulation.take(&record.excitation());
             if self.hand_on(prediction, false, take)?.is_break() {
@@ -365,7 +366,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         }
         if ends_record {
             if self.model.was_trained_on(&mem::take(&mut self.fingerprint)) {
-                let record = self.record_name();
+                let record = self.name.clone();
                 self.known.push(Warning::TrainedOn { record, likeness: Likeness::Equal });
             }
             let prediction = self.simulation.finish();
@@ -383,6 +384,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
         let prediction = prediction.map_err(|error| self.explain_in_record(error))?;
         let rows = prediction.output.len();
         let flow = take(&Simulated {
+            record: &self.name,
             measured: if self.wanted.measured { &self.waiting.measured[..rows] } else { &[] },
             prediction: &prediction,
             before: self.simulated,

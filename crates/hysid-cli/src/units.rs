@@ -1,6 +1,7 @@
 //! The columns of a table for a model that was trained on other units: factors, or why there are none.
 
 use anyhow::{Result, bail};
+use hysid::data::record::ColumnNames;
 use hysid::data::unit::{self, Conversion};
 use hysid::model::Model;
 use hysid::significant::Significant;
@@ -49,6 +50,24 @@ impl Factors {
             rate: both(&roles.rate, &trained.rate)?,
             output: if is_scored { column(&roles.output, &trained.output)? } else { None },
         })
+    }
+
+    /// The names of the columns after the conversion: those of the model where a column is converted.
+    pub fn names(&self, model: &Model, roles: &Roles) -> ColumnNames {
+        let trained = model.names();
+        let name = |factor: Option<f64>, trained: &String, found: &String| {
+            if factor.is_some() { trained.clone() } else { found.clone() }
+        };
+        let either = |factor: Option<f64>, trained: &Option<String>, found: &Option<String>| {
+            found.as_ref().map(|found| name(factor, trained.as_ref().unwrap_or(found), found))
+        };
+        let inputs = self.inputs.iter().zip(&trained.inputs).zip(&roles.inputs);
+        ColumnNames {
+            time: either(self.time, &trained.time, &roles.time),
+            inputs: inputs.map(|((factor, trained), found)| name(*factor, trained, found)).collect(),
+            rate: either(self.rate, &trained.rate, &roles.rate),
+            output: name(self.output, &trained.output, &roles.output),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Charts as data, drawn as SVG.
 
+mod appearance;
 mod axis;
 mod curves;
 mod frame;
@@ -10,6 +11,7 @@ pub mod thin;
 
 use serde::{Deserialize, Serialize};
 
+pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
 pub use heat_map::{HeatCell, heat_map};
 pub use palette::style;
@@ -199,10 +201,17 @@ impl Chart {
     }
 }
 
-/// Several charts as one file, `columns` of them beside each other, in cells as large as the largest chart. `description`
-/// is for readers who cannot see them; `generator` names the program that made the file.
-pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
-    svg::sheet(charts, columns, description, generator)
+/// Several charts as one file, `columns` of them beside each other, in columns as wide as the widest chart and rows as high
+/// as the highest chart of the row. `description` is for readers who cannot see them; `generator` names the program that
+/// made the file.
+pub fn sheet(
+    charts: &[Chart],
+    columns: usize,
+    appearance: &Appearance,
+    description: &str,
+    generator: &str,
+) -> String {
+    svg::sheet(charts, columns, appearance, description, generator)
 }
 
 /// Points in a file: one that is not finite is nothing.

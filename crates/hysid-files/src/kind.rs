@@ -19,9 +19,16 @@ const OLD_PAGE: [&str; 2] = [
     "</title>\n<style>\n:root { color-scheme: light dark; --page: #ffffff; --text: #1b1f24;",
 ];
 
-/// Drawings begin like this, and carry either the mark or, in version 0.1.0, the style sheet.
-const DRAWING: &str = "<svg class=\"plot\" role=\"img\" aria-label=\"";
-const DRAWING_MARKS: [&str; 2] = [" data-generator=\"Hysid ", "><style>svg.plot { --ink: #1b1f24; --axis: "];
+/// How drawings begin, as SVG, PDF and PNG, and the marks of which each carries one soon after. The style sheet is the mark
+/// of version 0.1.0.
+const DRAWINGS: [(&[u8], &[&str]); 3] = [
+    (
+        b"<svg class=\"plot\" role=\"img\" aria-label=\"",
+        &[" data-generator=\"Hysid ", "><style>svg.plot { --ink: #1b1f24; --axis: "],
+    ),
+    (b"%PDF-", &["/Creator (Hysid "]),
+    (b"\x89PNG", &["Software\0Hysid "]),
+];
 
 /// Names of columns in titles and labels may be long.
 const LONGEST_BEGINNING: u64 = 1 << 16;
@@ -35,7 +42,7 @@ pub enum Kind {
     Checkpoint,
     /// A page of HTML.
     Page,
-    /// A drawing, as SVG.
+    /// A drawing, as SVG, PDF or PNG.
     Drawing,
     /// A text that begins like this, such as a table with this header line.
     Beginning(Vec<u8>),
@@ -88,7 +95,10 @@ impl Kind {
                     || text.starts_with(OLD_PAGE[0].as_bytes()) && contains(text, OLD_PAGE[1])
             }
             Self::Drawing => {
-                text.starts_with(DRAWING.as_bytes()) && DRAWING_MARKS.iter().any(|mark| contains(text, mark))
+                let is_marked = |(beginning, marks): &(&[u8], &[&str])| {
+                    text.starts_with(beginning) && marks.iter().any(|mark| contains(text, mark))
+                };
+                DRAWINGS.iter().any(is_marked)
             }
             Self::Beginning(beginning) => text.starts_with(beginning),
             Self::Marked(beginning, mark) => text.starts_with(beginning.as_bytes()) && contains(text, mark),

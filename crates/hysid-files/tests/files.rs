@@ -123,6 +123,11 @@ fn only_hysid_s_own_files_are_replaced() {
         (Kind::Checkpoint, "hysid checkpoint 1\n...", "t,x,y\n"),
         (Kind::Page, &page, "<!DOCTYPE html>\n<title>mine</title>"),
         (Kind::Drawing, svg, "<svg class=\"plot\"></svg>"),
+        (
+            Kind::Drawing,
+            "%PDF-1.7\n1 0 obj\n<< /Creator (Hysid 0.1.0) >>",
+            "%PDF-1.7\n1 0 obj\n<< /Creator (LaTeX) >>",
+        ),
         (table, "t,x,y_model\n0,1,2\n", "t,x,y_model_2\n0,1,2\n"),
         (Kind::Content(b"x,y\n1,2\n".to_vec()), "x,y\n1,2\n", "x,y\n1,3\n"),
     ];

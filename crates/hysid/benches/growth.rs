@@ -20,7 +20,7 @@ use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::options::network::FitOptions;
 use hysid::termination::Termination;
-use hysid_document::chart::{self, Axis, Chart, Colour, Curve};
+use hysid_document::chart::{self, Appearance, Axis, Chart, Colour, Curve};
 use hysid_document::{Cell, Page, Part, Table, markdown};
 
 use inputs::{data, network, options, parameters, path, xpnn};
@@ -282,5 +282,5 @@ fn drawing(studies: &[Study]) -> String {
     let charts: Vec<Chart> = studies.iter().map(Study::chart).collect();
     let description =
         "Time against rows, stops, tanh neurons and members of an ensemble, with lines of linear growth";
-    chart::sheet(&charts, 2, description, "hysid/benches/growth.rs")
+    chart::sheet(&charts, 2, &Appearance::of_page(), description, "hysid/benches/growth.rs")
 }

@@ -73,7 +73,8 @@ impl Cycles {
     }
 }
 
-fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, String> {
+/// A choice by its name.
+pub(super) fn named<T: FromStr<Err = hysid::Error>>(name: &str) -> Result<T, String> {
     name.parse().map_err(|error: hysid::Error| error.to_string())
 }
 

@@ -14,8 +14,9 @@ use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
 use crate::data::explained;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
+use crate::gathered::Gatherer;
 use crate::messages::{json_results, results, summarised, warning};
-use crate::residual_tests::{self, Gatherer};
+use crate::residual_tests;
 use crate::table_run::{self, Simulated, Wanted};
 use crate::units::Factors;
 use hysid_tables::Rows;
@@ -64,7 +65,8 @@ pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     };
     let warnings = warnings.context("the run was ended early")?;
     summarised(&warnings).iter().for_each(warning);
-    let residuals = gatherer.map(|gatherer| gatherer.tests(&model, output, &warnings)).transpose();
+    let residuals =
+        gatherer.map(|gatherer| residual_tests::tests(gatherer, &model, output, &warnings)).transpose();
     let residuals = residuals.map_err(|error| explained(&rows.head.file, None, error, &roles))?;
     let level = arguments.data_sets.level(arguments.band);
     let band = level.map(|level| BandCoverage::of(covered, level));

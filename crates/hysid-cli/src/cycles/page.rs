@@ -1,10 +1,10 @@
 //! The page: pictures, the whole table, first-order reversal curves, and how the data were read.
 
-use hysid_document::{Page, Part, Text, number, unit};
+use hysid_document::{Colour, Page, Part, Text, number, unit};
 
 use super::table::{has_backbone, notes, shown};
 use super::text::{begin, both_ends, present};
-use super::{Cycles, curves, pictures};
+use super::{Cycles, curves, over_amplitude, pictures};
 
 /// Rows of a long table at each end.
 const AT_EACH_END: usize = 100;
@@ -22,7 +22,9 @@ pub fn page(cycles: &Cycles) -> Page {
     };
     let mut parts = vec![Part::Lead(Text::from(lead))];
     parts.push(Part::section("Loops", [Part::chart(pictures::loops(cycles))]));
-    let figures = pictures::figures(cycles);
+    let alone = [over_amplitude::Shown { cycles, colour: Colour::Simulated, radius: 3.0, name: "cycles" }];
+    let mut figures = over_amplitude::figures(&alone);
+    figures.extend(over_amplitude::losses(&alone));
     if !figures.is_empty() {
         parts.push(Part::section("Figures over amplitude", [Part::Charts(figures)]));
     }
@@ -75,7 +77,7 @@ fn backbone_section(cycles: &Cycles) -> Option<Part> {
 
 fn losses_section(cycles: &Cycles) -> Option<Part> {
     use hysid::diagnosis::cycles::Quantity;
-    let losses = pictures::at_several_frequencies(cycles);
+    let losses = over_amplitude::at_several_frequencies(cycles);
     if losses.is_empty() {
         return None;
     }

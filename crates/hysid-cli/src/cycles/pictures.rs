@@ -1,24 +1,18 @@
 //! The pictures of the page.
 
-use hysid::diagnosis::cycles::{CycleRow, Direction, Field, LossAtFrequency, Quantity};
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 use hysid_document::chart::thin::{Point, thin, thin_path};
 use hysid_document::chart::{HeatCell, heat_map};
-use hysid_document::{Axis, Chart, Colour, Curve, unit};
+use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::Cycles;
+use super::over_amplitude::backbone;
 
 /// Points of all loops together.
 const LOOP_POINTS: usize = 6000;
 
 /// Records and reversal curves that are drawn at most.
-const MOST_CURVES: usize = 60;
-
-/// Dots of a chart at most.
-const MOST_DOTS: usize = 600;
-
-/// Frequencies that differ by more than this factor are drawn.
-const SEVERAL: f64 = 1.05;
+pub(super) const MOST_CURVES: usize = 60;
 
 /// All loops, the last complete cycle, and the backbone.
 pub fn loops(cycles: &Cycles) -> Chart {
@@ -41,7 +35,7 @@ pub fn loops(cycles: &Cycles) -> Chart {
         let points = path(&record.inputs()[0][rows.clone()], &record.output()[rows], 2000);
         curves.push(Curve::new(points, Colour::Simulated, 1.8));
     }
-    curves.extend(backbone(cycles));
+    curves.extend(backbone(cycles, Colour::Error, (1.6, 3.0)));
     let q = &cycles.quantities;
     let (x, y) = (unit::label(&q.input), unit::label(&q.output));
     let what = if cycles.of_model { "all loops of the model" } else { "all loops" };
@@ -54,96 +48,9 @@ pub fn loops(cycles: &Cycles) -> Chart {
 }
 
 /// Input and output where one or the other has moved visibly.
-fn path(x: &[f64], y: &[f64], most: usize) -> Vec<Point> {
+pub fn path(x: &[f64], y: &[f64], most: usize) -> Vec<Point> {
     let point = |row: Option<usize>| row.map_or((f64::NAN, f64::NAN), |row| (x[row], y[row]));
     thin_path(&[x, y], most).into_iter().map(point).collect()
-}
-
-/// The backbone of each record: a line from valley to peak, and its points.
-fn backbone(cycles: &Cycles) -> Vec<Curve> {
-    let mut curves = Vec::new();
-    for record in cycles.data.records().iter().take(MOST_CURVES) {
-        let own = cycles.table.backbone.iter().filter(|point| point.record == record.name());
-        let mut points: Vec<Point> = own.clone().map(|point| (point.input, point.output)).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if own.clone().any(|point| point.direction == Direction::Up) || own.count() > 1 {
-            curves.push(Curve::dots(points.clone(), Colour::Error, 3.0));
-            curves.push(Curve::new(points, Colour::Error, 1.6));
-        }
-    }
-    curves
-}
-
-/// The figures of the field over cycle or amplitude, each with its title.
-pub fn figures(cycles: &Cycles) -> Vec<Chart> {
-    let names: &[&str] = match cycles.table.field {
-        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
-        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
-        Field::Actuator => &["width_percent", "width", "creep"],
-        Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
-    };
-    let amplitude = cycles.quantities.as_input("amplitude");
-    let mut charts = Vec::new();
-    for figure in super::text::present(cycles, names) {
-        let point = |row: &CycleRow| Some((row.amplitude?, (figure.of)(row)?));
-        let points: Vec<Point> = cycles.table.complete().filter_map(point).collect();
-        if points.is_empty() {
-            continue;
-        }
-        let label = unit::label(&cycles.quantities.as_figure(figure.label, figure.quantity));
-        charts.push(dots(
-            &format!("{label} of each cycle over its amplitude"),
-            &unit::label(&amplitude),
-            &label,
-            &points,
-        ));
-    }
-    charts.extend(losses(cycles));
-    charts
-}
-
-fn dots(description: &str, x: &str, y: &str, points: &[Point]) -> Chart {
-    let every = points.len().div_ceil(MOST_DOTS).max(1);
-    let shown: Vec<Point> = points.iter().copied().step_by(every).collect();
-    let axis = |label: &str, of: fn(&Point) -> f64| Axis::linear(label, points.iter().map(of).chain([0.0]));
-    let curves = vec![Curve::dots(shown, Colour::Simulated, 3.0)];
-    Chart::on_axes(description, axis(x, |point| point.0), axis(y, |point| point.1), curves).small("")
-}
-
-/// Losses of the amplitudes that have several frequencies.
-pub fn at_several_frequencies<'a>(cycles: &'a Cycles) -> Vec<&'a [LossAtFrequency]> {
-    let amplitudes =
-        cycles.table.losses.chunk_by(|a, b| b.frequency > a.frequency && alike(a.amplitude, b.amplitude));
-    let has_several =
-        |losses: &&[LossAtFrequency]| losses[losses.len() - 1].frequency > SEVERAL * losses[0].frequency;
-    if cycles.table.field == Field::Actuator { Vec::new() } else { amplitudes.filter(has_several).collect() }
-}
-
-fn alike(a: f64, b: f64) -> bool {
-    a.max(b) <= SEVERAL * a.min(b)
-}
-
-/// Loss per cycle over frequency, a curve for each amplitude; `None` for a single frequency.
-fn losses(cycles: &Cycles) -> Option<Chart> {
-    let amplitudes = at_several_frequencies(cycles);
-    let all = || amplitudes.iter().copied().flatten();
-    all().next()?;
-    let q = &cycles.quantities;
-    let x = unit::label(&q.as_figure("frequency", Quantity::Frequency));
-    let y = unit::label(&q.as_energy("loss per cycle"));
-    let axes = (
-        Axis::logarithmic(&x, all().map(|loss| loss.frequency)),
-        Axis::linear(&y, all().map(|loss| loss.energy).chain([0.0])),
-    );
-    let curve = |(number, losses): (usize, &&[LossAtFrequency])| {
-        let points: Vec<Point> = losses.iter().map(|loss| (loss.frequency, loss.energy)).collect();
-        let colour = Colour::Series(number);
-        [Curve::new(points.clone(), colour, 1.4), Curve::dots(points, colour, 3.0)]
-    };
-    let curves = amplitudes.iter().enumerate().flat_map(curve).collect();
-    Some(
-        Chart::on_axes(format!("{y} over {x}, a curve for each amplitude"), axes.0, axes.1, curves).small(""),
-    )
 }
 
 /// The reversal curves.

@@ -102,7 +102,8 @@ fn main_table(cycles: &Cycles) -> Table {
 
 /// Losses at several frequencies.
 fn losses(cycles: &Cycles) -> Option<String> {
-    let losses: Vec<_> = super::pictures::at_several_frequencies(cycles).into_iter().flatten().collect();
+    let losses: Vec<_> =
+        super::over_amplitude::at_several_frequencies(cycles).into_iter().flatten().collect();
     if losses.is_empty() {
         return None;
     }

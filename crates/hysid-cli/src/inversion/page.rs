@@ -143,7 +143,7 @@ fn record(
     let area = (!inversion.low.is_empty()).then(|| panel.area(&inversion.low, &inversion.high));
     vec![
         Part::Heading(heading),
-        panel.figure(
+        Part::chart(panel.chart(
             &unit::label(&names.output),
             220.0,
             &[
@@ -151,8 +151,13 @@ fn record(
                 (Colour::Simulated, "model", MODEL_WIDTH, &inversion.output),
             ],
             None,
-        ),
-        panel.figure(&deviation_label, 200.0, &[(Colour::Error, "model − wanted", 1.1, &deviation)], None),
+        )),
+        Part::chart(panel.chart(
+            &deviation_label,
+            200.0,
+            &[(Colour::Error, "model − wanted", 1.1, &deviation)],
+            None,
+        )),
         drive(&panel, &unit::label(&names.inputs[0]), inversion, area),
     ]
 }
@@ -164,7 +169,7 @@ fn drive(panel: &Panel, label: &str, inversion: &Inversion, area: Option<Curve>)
     let dots: Vec<Point> = thin(&rows.map(place).collect::<Vec<_>>(), panel.points / 4);
     if dots.is_empty() {
         let line = (Colour::Input, "drive", 1.2, inversion.input.as_slice());
-        return panel.figure(label, 200.0, &[line], area);
+        return Part::chart(panel.chart(label, 200.0, &[line], area));
     }
     let mut legend = vec![(Colour::Input, "drive".to_string()), (Colour::Error, "not reached".to_string())];
     legend.extend(area.iter().map(|_| (Colour::Band, format!("{} % band", number(100.0 * panel.band, 3)))));

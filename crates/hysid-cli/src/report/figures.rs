@@ -124,7 +124,7 @@ pub fn path_curves(
 }
 
 /// From the first row with an output to the last; all rows if no row has one.
-fn scored_rows(record: &Record) -> std::ops::Range<usize> {
+pub fn scored_rows(record: &Record) -> std::ops::Range<usize> {
     let output = record.output();
     let first = output.iter().position(|y| !y.is_nan());
     let last = output.iter().rposition(|y| !y.is_nan());

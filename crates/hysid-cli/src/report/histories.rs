@@ -63,10 +63,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     let time_label = time_label(set.data);
     let panel = Panel { time: &time, record: record.name(), time_label, points, band: BAND, track };
     let output = unit::label(&names.output);
-    let error = match unit::split(&names.output).1 {
-        Some(unit) => format!("error ({unit})"),
-        None => "error".into(),
-    };
+    let error = error_label(&names.output);
     let predicted = set.predicted.as_ref().map(|predicted| &predicted[index]);
     let rmse = rmse(set, index);
     let rmse = match rmse < 0.0 {
@@ -75,7 +72,7 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
     };
     let name = Text::from(record.name()).and(Piece::Aside(rmse));
     let mut parts = vec![Part::Heading(name)];
-    parts.push(panel.figure(
+    parts.push(Part::chart(panel.chart(
         &output,
         220.0,
         &[
@@ -83,16 +80,24 @@ fn record(set: &ReportSet, index: usize, points: usize) -> Vec<Part> {
             (Colour::Simulated, "model", MODEL_WIDTH, &set.simulated[index]),
         ],
         predicted.map(|predicted| panel.area(&predicted.low, &predicted.high)),
-    ));
+    )));
     let errors = errors(set, index);
     let line = (Colour::Error, "model − measured", 1.1, errors.as_slice());
     let band = predicted.map(|predicted| panel.error_band(predicted));
-    parts.push(panel.figure(&error, 165.0, &[line], band));
+    parts.push(Part::chart(panel.chart(&error, 165.0, &[line], band)));
     for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
         let line = (Colour::Input, "input", 1.2, &**input);
-        parts.push(panel.figure(&unit::label(name), 165.0, &[line], None));
+        parts.push(Part::chart(panel.chart(&unit::label(name), 165.0, &[line], None)));
     }
     parts
+}
+
+/// Label of the axis of errors of this output.
+pub fn error_label(output: &str) -> String {
+    match unit::split(output).1 {
+        Some(unit) => format!("error ({unit})"),
+        None => "error".into(),
+    }
 }
 
 /// What the charts of a record have in common.
@@ -126,13 +131,13 @@ impl Panel<'_> {
     }
 
     /// Lines over time, in front of a band if there is one.
-    pub fn figure(
+    pub fn chart(
         &self,
         label: &str,
         height: f64,
         lines: &[(Colour, &str, f64, &[f64])],
         band: Option<Curve>,
-    ) -> Part {
+    ) -> Chart {
         let curve = |&(colour, _, width, values): &(Colour, &str, f64, &[f64])| {
             let points: Vec<Point> = self.time.iter().copied().zip(values.iter().copied()).collect();
             Curve::new(thin(&points, self.points), colour, width).tracked(self.track.clone())
@@ -147,7 +152,7 @@ impl Panel<'_> {
         let curves = band.into_iter().chain(lines).collect();
         let description = format!("{label} over {}, record {}", self.time_label, self.record);
         let x = Axis::linear(self.time_label.as_str(), self.time.iter().copied());
-        Part::chart(Chart::on_axes(description, x, y, curves).with_height(height).with_legend(legend))
+        Chart::on_axes(description, x, y, curves).with_height(height).with_legend(legend)
     }
 }
 

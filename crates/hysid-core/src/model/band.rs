@@ -43,7 +43,7 @@ pub struct Band {
 }
 
 /// A simulated record with its prediction band.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Prediction {
     /// Output of each row, in the user's unit.
     pub output: Vec<f64>,

@@ -4,7 +4,8 @@
 
 use std::fmt::Write;
 
-use super::frame::{FAMILY, FINE, Frame, TEXT};
+use super::appearance::Appearance;
+use super::frame::{FINE, Frame};
 use super::palette::{INK, written};
 use super::thin::{Point, is_drawable};
 use super::{Axis, Chart, Colour, Curve, Label, Track};
@@ -18,9 +19,9 @@ const BESIDE: f64 = 8.0;
 const BASE: f64 = 0.36;
 
 /// Curves and labels, cut off at the edges of the frame. With `tracks`, the curves carry what a page needs to follow them.
-pub(super) fn curves(chart: &Chart, frame: &Frame, tracks: bool) -> String {
+pub(super) fn curves(chart: &Chart, frame: &Frame, appearance: &Appearance, tracks: bool) -> String {
     let [left, top, width, height] = frame.place;
-    let canvas = Canvas { chart, place: frame.place.map(f64::from), tracks };
+    let canvas = Canvas { chart, place: frame.place.map(f64::from), appearance, tracks };
     let curves: String = chart.curves.iter().map(|curve| canvas.curve(curve)).collect();
     let labels: String = chart.labels.iter().map(|label| canvas.label(label)).collect();
     // An inner `svg` cuts its content off, and needs no name for that.
@@ -33,6 +34,7 @@ pub(super) fn curves(chart: &Chart, frame: &Frame, tracks: bool) -> String {
 struct Canvas<'a> {
     chart: &'a Chart,
     place: [f64; 4],
+    appearance: &'a Appearance,
     tracks: bool,
 }
 
@@ -46,7 +48,7 @@ impl Canvas<'_> {
     fn curve(&self, curve: &Curve) -> String {
         let runs = curve.points.split(|&point| !is_drawable(point)).filter(|run| !run.is_empty());
         let marker = written(curve.colour.marker());
-        let width = FINE * curve.width;
+        let width = FINE * curve.width * self.appearance.lines;
         let mut drawn = String::new();
         for run in runs {
             drawn += &match run {
@@ -93,12 +95,13 @@ impl Canvas<'_> {
     }
 
     fn label(&self, label: &Label) -> String {
-        let (x, y) = self.point(label.point);
+        let ((x, y), size) = (self.point(label.point), self.appearance.text);
         format!(
-            "<text x=\"{:.1}\" y=\"{:.1}\" font-family=\"{FAMILY}\" font-size=\"{}\" fill=\"{}\">{}</text>\n",
+            "<text x=\"{:.1}\" y=\"{:.1}\" font-family=\"{}\" font-size=\"{}\" fill=\"{}\">{}</text>\n",
             x + FINE * BESIDE,
-            y + FINE * (BASE * TEXT - label.rise),
-            FINE * TEXT,
+            y + FINE * (BASE * size - label.rise),
+            escape(&self.appearance.family),
+            FINE * size,
             written(INK),
             escape(&label.text)
         )

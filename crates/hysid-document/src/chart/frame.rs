@@ -4,21 +4,13 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::appearance::Appearance;
 use super::palette::{GRID, INK};
-use super::{Chart, Colour};
+use super::{Axis, Chart, Colour};
 use crate::escape::is_not_xml;
 
 /// Units of the drawing in a pixel, since the library draws on a grid of whole units.
 pub(super) const FINE: f64 = 4.0;
-
-/// Size of all text, in pixels.
-pub(super) const TEXT: f64 = 13.0;
-
-/// Family of the font of all text.
-pub(super) const FAMILY: &str = "system-ui";
-
-/// Mean width of a letter, in pixels.
-const LETTER: f64 = 0.554 * TEXT;
 
 /// Free space on the left, in pixels.
 const EDGE: f64 = 5.0;
@@ -51,13 +43,13 @@ type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws what is around the curves of a chart.
-pub(super) fn frame(chart: &Chart) -> Frame {
+pub(super) fn frame(chart: &Chart, appearance: &Appearance) -> Frame {
     let mut text = String::new();
     let place;
     {
         let size = (fine(chart.size.0) as u32, fine(chart.size.1) as u32);
         let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        place = draw(chart, &root).expect("a drawing into a string succeeds");
+        place = Layout { chart, appearance }.draw(&root).expect("a drawing into a string succeeds");
         root.present().expect("a drawing into a string succeeds");
     }
     // The library escapes what XML needs, and lets through characters that XML has no place for.
@@ -67,84 +59,110 @@ pub(super) fn frame(chart: &Chart) -> Frame {
     Frame { markup, place }
 }
 
-fn draw(chart: &Chart, root: &Area) -> Result<[i32; 4], DrawingAreaErrorKind<std::io::Error>> {
-    let legend = legend_lines(chart);
-    let header = match legend.len() {
+/// Height of title and legend, in pixels.
+fn header_height(chart: &Chart, appearance: &Appearance, legend_lines: usize) -> f64 {
+    match legend_lines {
         0 if chart.title.is_empty() => 8.0,
-        lines => em(HEADER + LEGEND_LINE * lines.saturating_sub(1) as f64),
-    };
-    let (top, body) = root.split_vertically(fine(header));
-    let bottom = em(AXIS);
-    let ticks = |length: f64, each: f64| (length / em(each)) as usize;
-    let x = chart.x.clone().with_ticks(ticks(chart.size.0, 7.0));
-    let y = chart.y.clone().with_ticks(ticks(chart.size.1 - header - bottom, 2.77));
-    // Charts below each other share their horizontal axis, so their labels get the same room.
-    let letters = if chart.size.0 > 800.0 { y.longest_text().max(6) } else { y.longest_text() };
-    let left = em(2.6) + LETTER * letters as f64;
-    draw_header(chart, &top, EDGE + left, &legend)?;
-    let mut context = ChartBuilder::on(&body)
-        .margin_left(fine(EDGE))
-        .margin_right(fine(RIGHT))
-        .x_label_area_size(fine(bottom))
-        .y_label_area_size(fine(left))
-        .build_cartesian_2d(x.clone(), y.clone())?;
-    context
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(GRID.stroke_width(3))
-        .axis_style(INK.stroke_width(4))
-        .set_all_tick_mark_size(fine(4.0))
-        .label_style(text_style())
-        .axis_desc_style(text_style())
-        .x_label_formatter(&|tick| x.text(*tick))
-        .y_label_formatter(&|tick| y.text(*tick))
-        .x_desc(shortened(&x.label, chart.size.0 - left))
-        .y_desc(shortened(&y.label, chart.size.1 - header - bottom))
-        .draw()?;
-    let (across, down) = context.plotting_area().get_pixel_range();
-    Ok([across.start, down.start, across.end - across.start, down.end - down.start])
+        lines => appearance.em(HEADER + LEGEND_LINE * lines.saturating_sub(1) as f64),
+    }
 }
 
-/// Title and legend; the legend goes on below where it is too long for a line.
-fn draw_header(chart: &Chart, area: &Area, left: f64, legend: &[Vec<&(Colour, String)>]) -> Drawn {
-    let middle = |line: usize| fine(em(1.0 + LEGEND_LINE * line as f64));
-    let style = || text_style().pos(Pos::new(HPos::Left, VPos::Center));
-    let widest = legend.iter().map(|line| width_of(line)).fold(0.0, f64::max);
-    let title = shortened(&chart.title, chart.size.0 - left - widest - RIGHT);
-    area.draw(&Text::new(title, (fine(left), middle(0)), style()))?;
-    // Without a title the legend comes first, where a narrow screen that scrolls shows it.
-    let room = chart.size.0 - RIGHT - widest;
-    let begin = if chart.title.is_empty() { left.min(room.max(EDGE)) } else { room };
-    for (number, line) in legend.iter().enumerate() {
-        let mut x = begin;
-        for (colour, name) in line {
-            let dash = vec![(fine(x), middle(number)), (fine(x + em(SAMPLE)), middle(number))];
-            let width = match colour {
-                colour if colour.is_area() => em(0.77),
-                colour => line_width(chart, *colour),
-            };
-            area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(width) as u32)))?;
-            let after = fine(x + em(BEFORE_NAME));
-            area.draw(&Text::new(name.clone(), (after, middle(number)), style()))?;
-            x += entry_width(name);
+/// The vertical axis with its ticks, below a header of this height.
+fn vertical_axis(chart: &Chart, appearance: &Appearance, header: f64) -> Axis {
+    let height = chart.size.1 - header - appearance.em(AXIS);
+    chart.y.clone().with_ticks((height / appearance.em(2.77)) as usize)
+}
+
+/// Letters of the longest text of the vertical axis.
+pub(super) fn tick_letters(chart: &Chart, appearance: &Appearance) -> usize {
+    let header = header_height(chart, appearance, legend_lines(chart, appearance).len());
+    vertical_axis(chart, appearance, header).longest_text()
+}
+
+struct Layout<'a> {
+    chart: &'a Chart,
+    appearance: &'a Appearance,
+}
+
+impl Layout<'_> {
+    fn draw(&self, root: &Area) -> Result<[i32; 4], DrawingAreaErrorKind<std::io::Error>> {
+        let (chart, appearance) = (self.chart, self.appearance);
+        let legend = legend_lines(chart, appearance);
+        let header = header_height(chart, appearance, legend.len());
+        let (top, body) = root.split_vertically(fine(header));
+        let bottom = appearance.em(AXIS);
+        let x = chart.x.clone().with_ticks((chart.size.0 / appearance.em(7.0)) as usize);
+        let y = vertical_axis(chart, appearance, header);
+        // Charts below each other share their horizontal axis, so their labels get the same room.
+        let least = if chart.size.0 > 800.0 { 6 } else { 0 };
+        let letters = y.longest_text().max(least).max(appearance.tick_letters);
+        let left = appearance.em(2.6) + appearance.letter() * letters as f64;
+        self.draw_header(&top, EDGE + left, &legend)?;
+        let mut context = ChartBuilder::on(&body)
+            .margin_left(fine(EDGE))
+            .margin_right(fine(RIGHT))
+            .x_label_area_size(fine(bottom))
+            .y_label_area_size(fine(left))
+            .build_cartesian_2d(x.clone(), y.clone())?;
+        context
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(GRID.stroke_width(3))
+            .axis_style(INK.stroke_width(4))
+            .set_all_tick_mark_size(fine(4.0))
+            .label_style(self.text_style())
+            .axis_desc_style(self.text_style())
+            .x_label_formatter(&|tick| x.text(*tick))
+            .y_label_formatter(&|tick| y.text(*tick))
+            .x_desc(self.shortened(&x.label, chart.size.0 - left))
+            .y_desc(self.shortened(&y.label, chart.size.1 - header - bottom))
+            .draw()?;
+        let (across, down) = context.plotting_area().get_pixel_range();
+        Ok([across.start, down.start, across.end - across.start, down.end - down.start])
+    }
+
+    /// Title and legend; the legend goes on below where it is too long for a line.
+    fn draw_header(&self, area: &Area, left: f64, legend: &[Vec<&(Colour, String)>]) -> Drawn {
+        let (chart, appearance) = (self.chart, self.appearance);
+        let middle = |line: usize| fine(appearance.em(1.0 + LEGEND_LINE * line as f64));
+        let style = || self.text_style().pos(Pos::new(HPos::Left, VPos::Center));
+        let widest = legend.iter().map(|line| width_of(line, appearance)).fold(0.0, f64::max);
+        let title = self.shortened(&chart.title, chart.size.0 - left - widest - RIGHT);
+        area.draw(&Text::new(title, (fine(left), middle(0)), style()))?;
+        // Without a title the legend comes first, where a narrow screen that scrolls shows it.
+        let room = chart.size.0 - RIGHT - widest;
+        let begin = if chart.title.is_empty() { left.min(room.max(EDGE)) } else { room };
+        for (number, line) in legend.iter().enumerate() {
+            let mut x = begin;
+            for (colour, name) in line {
+                let dash = vec![(fine(x), middle(number)), (fine(x + appearance.em(SAMPLE)), middle(number))];
+                let width = match colour {
+                    colour if colour.is_area() => appearance.em(0.77),
+                    colour => appearance.lines * line_width(chart, *colour),
+                };
+                area.draw(&PathElement::new(dash, colour.marker().stroke_width(fine(width) as u32)))?;
+                let after = fine(x + appearance.em(BEFORE_NAME));
+                area.draw(&Text::new(name.clone(), (after, middle(number)), style()))?;
+                x += entry_width(name, appearance);
+            }
         }
+        Ok(())
     }
-    Ok(())
-}
 
-fn text_style() -> TextStyle<'static> {
-    // The library divides by 1.24.
-    let font = (FAMILY, 1.24 * FINE * TEXT).into_font();
-    TextStyle::from(font).color(&INK)
-}
-
-/// The text, cut off where it would not fit into the width.
-fn shortened(text: &str, width: f64) -> String {
-    let room = (width / LETTER).max(4.0) as usize;
-    if text.chars().count() <= room {
-        return text.to_string();
+    fn text_style(&self) -> TextStyle<'_> {
+        // The library divides by 1.24.
+        let font = (self.appearance.family.as_str(), 1.24 * FINE * self.appearance.text).into_font();
+        TextStyle::from(font).color(&INK)
     }
-    text.chars().take(room - 1).chain(std::iter::once('…')).collect()
+
+    /// The text, cut off where it would not fit into the width.
+    fn shortened(&self, text: &str, width: f64) -> String {
+        let room = (width / self.appearance.letter()).max(4.0) as usize;
+        if text.chars().count() <= room {
+            return text.to_string();
+        }
+        text.chars().take(room - 1).chain(std::iter::once('…')).collect()
+    }
 }
 
 /// Length of the line of an entry of the legend, in sizes of the text.
@@ -157,14 +175,14 @@ const BEFORE_NAME: f64 = 1.77;
 const AFTER_NAME: f64 = 1.08;
 
 /// Entries of the legend whose colour is drawn, in as many lines as they need.
-pub(super) fn legend_lines(chart: &Chart) -> Vec<Vec<&(Colour, String)>> {
+pub(super) fn legend_lines<'c>(chart: &'c Chart, appearance: &Appearance) -> Vec<Vec<&'c (Colour, String)>> {
     let is_used =
         |colour| chart.curves.iter().any(|curve| curve.colour == colour && !curve.points.is_empty());
     let mut lines: Vec<Vec<&(Colour, String)>> = Vec::new();
     for entry in chart.legend.iter().filter(|(colour, _)| is_used(*colour)) {
-        let room = chart.size.0 - LEGEND_EDGE - entry_width(&entry.1);
+        let room = chart.size.0 - LEGEND_EDGE - entry_width(&entry.1, appearance);
         match lines.last_mut() {
-            Some(line) if width_of(line) <= room => line.push(entry),
+            Some(line) if width_of(line, appearance) <= room => line.push(entry),
             _ => lines.push(vec![entry]),
         }
     }
@@ -172,12 +190,8 @@ pub(super) fn legend_lines(chart: &Chart) -> Vec<Vec<&(Colour, String)>> {
 }
 
 /// Width of a line of the legend.
-fn width_of(line: &[&(Colour, String)]) -> f64 {
-    line.iter().map(|(_, name)| entry_width(name)).sum()
-}
-
-fn entry_width(name: &str) -> f64 {
-    em(BEFORE_NAME + AFTER_NAME) + LETTER * name.chars().count() as f64
+fn width_of(line: &[&(Colour, String)], appearance: &Appearance) -> f64 {
+    line.iter().map(|(_, name)| entry_width(name, appearance)).sum()
 }
 
 /// Width of the line that stands for a colour in the legend: that of its curve, and no less than can be seen well.
@@ -185,9 +199,8 @@ fn line_width(chart: &Chart, colour: Colour) -> f64 {
     chart.curves.iter().find(|curve| curve.colour == colour).map_or(0.0, |curve| curve.width).max(2.0)
 }
 
-/// So many times the size of the text, in pixels.
-fn em(times: f64) -> f64 {
-    times * TEXT
+fn entry_width(name: &str, appearance: &Appearance) -> f64 {
+    appearance.em(BEFORE_NAME + AFTER_NAME) + appearance.letter() * name.chars().count() as f64
 }
 
 fn fine(pixels: f64) -> i32 {

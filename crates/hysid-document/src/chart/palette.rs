@@ -1,6 +1,7 @@
 //! Colours. The one place that names them.
 //!
-//! A drawing contains markers, which a style sheet turns into colours that suit a light or a dark page.
+//! A drawing in a page contains markers, which the page's style sheet turns into colours that suit a light or a dark
+//! page. A drawing for print contains the colours of a light page.
 
 use std::sync::LazyLock;
 
@@ -58,11 +59,11 @@ const LEVEL: [Tone; 12] = [
     tone((0x10, 0x20, 0x38), "#04234d", "#fdf3a0"),
 ];
 
-/// Text, axes and grid: how the style sheet calls them, the rule that colours them, and their colours.
-const FRAME: [(&str, &str, &str, &str); 3] = [
-    ("ink", "text { fill: var(--ink); }", "#1b1f24", "#e3e7ec"),
-    ("axis", "[stroke=\"#111111\"] { stroke: var(--axis); }", "#57606a", "#9aa4af"),
-    ("grid", "[stroke=\"#DDDDDD\"] { stroke: var(--grid); }", "#e3e6ea", "#30363d"),
+/// Text, axes and grid: the marker, how the style sheet calls it, what it colours, and its colours.
+const FRAME: [(RGBColor, &str, &str, &str, &str); 3] = [
+    (INK, "ink", "text", "#1b1f24", "#e3e7ec"),
+    (INK, "axis", "[stroke=\"#111111\"]", "#57606a", "#9aa4af"),
+    (GRID, "grid", "[stroke=\"#DDDDDD\"]", "#e3e6ea", "#30363d"),
 ];
 
 fn of(colour: Colour) -> &'static Tone {
@@ -101,13 +102,16 @@ pub(super) fn written(marker: RGBColor) -> String {
 pub fn style() -> &'static str {
     static STYLE: LazyLock<String> = LazyLock::new(|| {
         let variables = |light: bool| {
-            let frame = FRAME.iter().map(|&(name, _, bright, dark)| (name.to_string(), bright, dark));
+            let frame = FRAME.iter().map(|&(_, name, _, bright, dark)| (name.to_string(), bright, dark));
             let tones = all().map(|tone| (written(tone.marker)[1..].to_string(), tone.light, tone.dark));
             let one = |(name, bright, dark)| format!("--{name}: {}; ", if light { bright } else { dark });
             frame.chain(tones).map(one).collect::<String>()
         };
         let (light, dark) = (variables(true), variables(false));
-        let frame = |(_, rule, ..): &(&str, &str, &str, &str)| format!("svg.plot {rule}\n");
+        let frame = |&(_, name, what, ..): &(RGBColor, &str, &str, &str, &str)| {
+            let property = if what == "text" { "fill" } else { "stroke" };
+            format!("svg.plot {what} {{ {property}: var(--{name}); }}\n")
+        };
         let tone = |tone: &Tone| {
             let marker = written(tone.marker);
             let name = &marker[1..];
@@ -128,4 +132,26 @@ pub fn style() -> &'static str {
         )
     });
     &STYLE
+}
+
+/// The drawing with the colours of a light page in the place of the markers, for programs that read no style sheets.
+pub(super) fn fixed(drawing: &str) -> String {
+    let mut text = drawing.replace("fill=\"#111111\"", "fill=\"#000000\"");
+    let frame = FRAME.iter().filter(|(_, name, ..)| *name != "ink");
+    let frame = frame.map(|&(marker, _, _, light, _)| (marker, light));
+    for (marker, light) in frame.chain(all().map(|tone| (tone.marker, tone.light))) {
+        let marker = written(marker);
+        let (colour, opacity) = light.split_at(7);
+        for property in ["stroke", "fill"] {
+            let transparency = match u8::from_str_radix(opacity, 16) {
+                Ok(share) => format!(" {property}-opacity=\"{:.3}\"", f64::from(share) / 255.0),
+                Err(_) => String::new(),
+            };
+            text = text.replace(
+                &format!("{property}=\"{marker}\""),
+                &format!("{property}=\"{colour}\"{transparency}"),
+            );
+        }
+    }
+    text
 }

@@ -1,13 +1,11 @@
 //! The drawing of a chart.
 
 use super::Chart;
+use super::appearance::{Appearance, PIXELS_PER_MILLIMETRE};
 use super::curves::{attributes, curves};
-use super::frame::{FINE, frame};
-use super::palette::style;
+use super::frame::{FINE, frame, tick_letters};
+use super::palette::{fixed, style};
 use crate::escape::escape;
-
-/// Room between the rows of a sheet, in pixels: a legend belongs to the chart below it.
-const SHEET_GAP: f64 = 20.0;
 
 /// The page behind a drawing that stands alone.
 const STANDALONE: &str = "svg.plot { background: #ffffff; }\n\
@@ -15,7 +13,7 @@ const STANDALONE: &str = "svg.plot { background: #ffffff; }\n\
 
 /// As [`Chart::svg`].
 pub fn drawn(chart: &Chart) -> String {
-    element(chart, "", "", true)
+    element(chart, &Appearance::of_page(), "", "", true)
 }
 
 /// As [`Chart::file`].
@@ -24,40 +22,69 @@ pub fn file(chart: &Chart, generator: &str) -> String {
     let attributes =
         format!(" data-generator=\"{}\" width=\"{width}\" height=\"{height}\"", escape(generator));
     let style = format!("<style>{}{STANDALONE}</style>", style());
-    element(chart, &attributes, &style, false)
+    element(chart, &Appearance::of_page(), &attributes, &style, false)
 }
 
 /// As [`super::sheet`].
-pub fn sheet(charts: &[Chart], columns: usize, description: &str, generator: &str) -> String {
-    let largest = |of: fn(&Chart) -> f64| charts.iter().map(of).fold(0.0, f64::max);
-    let (width, height) = (largest(|chart| chart.size.0), largest(|chart| chart.size.1));
+pub fn sheet(
+    charts: &[Chart],
+    columns: usize,
+    appearance: &Appearance,
+    description: &str,
+    generator: &str,
+) -> String {
     let columns = columns.clamp(1, charts.len().max(1));
-    let rows = charts.len().div_ceil(columns);
-    let (whole, high) = (width * columns as f64, (height + SHEET_GAP) * rows as f64 - SHEET_GAP);
-    // A drawing has no size of its own: the element around it determines place and size.
-    let placed = |(index, chart): (usize, &Chart)| {
-        let (x, y) = (width * (index % columns) as f64, (height + SHEET_GAP) * (index / columns) as f64);
-        let (width, height) = chart.size;
-        let drawn = element(chart, "", "", false);
-        format!("<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\">\n{drawn}</svg>\n")
+    let widest = charts.iter().map(|chart| chart.size.0).fold(0.0, f64::max);
+    let gap = appearance.row_gap();
+    // On paper a drawing has no margin around it: the label of the lowest axis needs a little.
+    let begin = if appearance.fixed_colours { -appearance.em(0.3) } else { 0.0 };
+    let (mut drawn, mut top) = (String::new(), begin);
+    let appearance =
+        &Appearance { tick_letters: shared_letters(charts, columns, appearance), ..appearance.clone() };
+    for row in charts.chunks(columns) {
+        for (place, chart) in row.iter().enumerate() {
+            // A drawing has no size of its own: the element around it determines place and size.
+            let (x, (width, height)) = (widest * place as f64, chart.size);
+            let one = element(chart, appearance, "", "", false);
+            drawn +=
+                &format!("<svg x=\"{x}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n{one}</svg>\n");
+        }
+        top += row.iter().map(|chart| chart.size.1).fold(0.0, f64::max) + gap;
+    }
+    let (width, height) = (widest * columns as f64, top - gap - begin);
+    let background = match appearance.fixed_colours {
+        true => format!("<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"),
+        false => format!("<style>{}{STANDALONE}</style>", style()),
+    };
+    let size = |pixels: f64| match appearance.fixed_colours {
+        // A program that places the drawing on paper reads millimetres alike everywhere, and pixels not.
+        true => format!("{:.3}mm", pixels / PIXELS_PER_MILLIMETRE),
+        false => pixels.to_string(),
     };
     format!(
-        "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {whole} {high}\" \
-         xmlns=\"http://www.w3.org/2000/svg\" data-generator=\"{}\" width=\"{whole}\" height=\"{high}\">\
-         <style>{}{STANDALONE}</style>\n{}</svg>\n",
+        "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {width} {height}\" \
+         xmlns=\"http://www.w3.org/2000/svg\" data-generator=\"{}\" width=\"{}\" height=\"{}\">\
+         {background}\n{drawn}</svg>\n",
         escape(description),
         escape(generator),
-        style(),
-        charts.iter().enumerate().map(placed).collect::<String>()
+        size(width),
+        size(height),
     )
 }
 
+/// Room for the texts of the vertical axes of charts in one column, which makes these begin at the same place.
+fn shared_letters(charts: &[Chart], columns: usize, appearance: &Appearance) -> usize {
+    let letters = charts.iter().map(|chart| tick_letters(chart, appearance)).max();
+    if columns == 1 { letters.unwrap_or(0) } else { 0 }
+}
+
 /// The `svg` element; `outer` are further attributes of it and `beginning` its first content, both markup.
-fn element(chart: &Chart, outer: &str, beginning: &str, tracks: bool) -> String {
-    let frame = frame(chart);
-    let curves = curves(chart, &frame, tracks);
+fn element(chart: &Chart, appearance: &Appearance, outer: &str, beginning: &str, tracks: bool) -> String {
+    let frame = frame(chart, appearance);
+    let curves = curves(chart, &frame, appearance, tracks);
     let attributes = if tracks { attributes(chart, &frame) } else { String::new() };
     let drawing = format!("<g class=\"frame\">{}</g>\n{curves}", frame.markup);
+    let drawing = if appearance.fixed_colours { fixed(&drawing) } else { drawing };
     format!(
         "<svg class=\"plot\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {} {}\" \
          xmlns=\"http://www.w3.org/2000/svg\"{outer}{attributes}>{beginning}{drawing}</svg>\n",

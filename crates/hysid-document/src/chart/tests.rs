@@ -35,9 +35,15 @@ fn user_text_is_escaped_and_elements_balanced() {
 #[test]
 fn charts_of_a_sheet_are_in_rows_and_columns() {
     let one = chart(vec![(0.0, 0.0), (1.0, 1.0)]);
-    let sheet = sheet(&[one.clone(), one.clone(), one.sized(500.0, 300.0)], 2, "a & b", "Hysid 1");
+    let sheet = sheet(
+        &[one.clone(), one.clone(), one.sized(500.0, 300.0)],
+        2,
+        &Appearance::of_page(),
+        "a & b",
+        "Hysid 1",
+    );
     assert!(sheet.starts_with("<svg") && sheet.contains("aria-label=\"a &amp; b\""));
-    assert!(sheet.contains("width=\"1040\" height=\"740\"") && sheet.matches("<style>").count() == 1);
+    assert!(sheet.contains("width=\"1040\" height=\"680\"") && sheet.matches("<style>").count() == 1);
     for place in [
         "x=\"0\" y=\"0\" width=\"520\" height=\"360\"",
         "x=\"520\" y=\"0\"",
@@ -98,7 +104,7 @@ fn a_long_legend_goes_on_below_and_unused_colours_are_left_out() {
         ..chart(vec![])
     };
     // An entry takes about 190 of 520 pixels.
-    let lines: Vec<usize> = legend_lines(&chart).iter().map(Vec::len).collect();
+    let lines: Vec<usize> = legend_lines(&chart, &Appearance::of_page()).iter().map(Vec::len).collect();
     assert_eq!(lines, [2, 2]);
     assert_balanced(&chart.svg());
 }
@@ -132,4 +138,25 @@ fn what_cannot_be_drawn_is_not_sound() {
         assert!(!serde_json::from_value::<Chart>(changed).unwrap().is_sound(), "{place}");
     }
     assert!(sound.is_sound());
+}
+
+#[test]
+fn a_sheet_for_print_has_its_size_in_millimetres_fixed_colours_and_axes_below_each_other() {
+    let few = chart(vec![(0.0, 0.0), (1.0, 1.0)]);
+    let many = chart(vec![(0.0, 0.0), (1.0, 123_456.0)]);
+    let appearance = Appearance::of_print("DejaVu Sans, sans-serif", 8.0);
+    let drawing = sheet(&[few.clone(), many], 1, &appearance, "two charts", "Hysid 1");
+    assert_balanced(&drawing);
+    // 520 of 96 pixels an inch, and two charts of 360 with a gap of 16.
+    assert!(drawing.contains("width=\"137.583mm\" height=\"194.733mm\""), "{}", &drawing[..400]);
+    assert!(!drawing.contains("var(--") && !drawing.contains("<style"));
+    assert!(drawing.contains("font-family=\"DejaVu Sans, sans-serif\""));
+    // The curves are in the colour of a light page and not in that of a marker.
+    assert!(drawing.contains("stroke=\"#0a5fd1\"") && !drawing.contains("#0060D0"));
+    // The place of the curves begins at the same abscissa.
+    let places: Vec<&str> =
+        drawing.split("class=\"curves\" x=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert!(places.len() == 2 && places[0] == places[1], "{places:?}");
+    let alone = sheet(&[few], 1, &appearance, "one chart", "Hysid 1");
+    assert!(!alone.contains(&format!("class=\"curves\" x=\"{}\"", places[0])));
 }

@@ -1,0 +1,156 @@
+//! Figures of cycles as charts, over amplitude or frequency: of one set of cycles, or of several to compare.
+
+use hysid::diagnosis::cycles::{CycleRow, Direction, Field, Figure, LossAtFrequency, Quantity};
+use hysid_document::chart::thin::Point;
+use hysid_document::{Axis, Chart, Colour, Curve, number, unit};
+
+use super::Cycles;
+use super::pictures::MOST_CURVES;
+use super::text::present;
+
+/// Dots of a chart at most.
+const MOST_DOTS: usize = 600;
+
+/// Frequencies that differ by more than this factor are drawn.
+const SEVERAL: f64 = 1.05;
+
+/// Most amplitudes in a chart of losses over frequency: as many as there are colours.
+const MOST_AMPLITUDES: usize = hysid_document::chart::SERIES;
+
+/// Cycles, and how they are drawn beside others.
+pub struct Shown<'a> {
+    /// The cycles.
+    pub cycles: &'a Cycles<'a>,
+    /// Their colour.
+    pub colour: Colour,
+    /// Radius of their dots, in pixels.
+    pub radius: f64,
+    /// What they are cycles of, for the legend.
+    pub name: &'a str,
+}
+
+/// The figures of the field over amplitude. All sets have the columns of the first.
+pub fn figures(sets: &[Shown]) -> Vec<Chart> {
+    let Some(first) = sets.first() else { return Vec::new() };
+    let names: &[&str] = match first.cycles.table.field {
+        Field::Structure => &["energy", "damping_percent", "secant_stiffness", "residual_after_peak"],
+        Field::Magnet => &["energy", "coercive_input", "remanent_output"],
+        Field::Actuator => &["width_percent", "width", "creep"],
+        Field::General => &["energy", "width", "coercive_input", "secant_stiffness"],
+    };
+    let amplitude = ("amplitude", first.cycles.quantities.as_input("amplitude"));
+    let figures = present(first.cycles, names);
+    figures.into_iter().filter_map(|figure| over(sets, &amplitude, |row| row.amplitude, figure)).collect()
+}
+
+/// The width of the loops over frequency; `None` for a single frequency.
+pub fn width_over_frequency(sets: &[Shown]) -> Option<Chart> {
+    let first = sets.first()?.cycles;
+    let figure = *present(first, &["width_percent"]).first()?;
+    let frequencies: Vec<f64> = first.table.complete().filter_map(|row| row.frequency).collect();
+    let range = frequencies.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &f| (low.min(f), high.max(f)));
+    let frequency = ("frequency", first.quantities.as_figure("frequency", Quantity::Frequency));
+    (range.1 > SEVERAL * range.0).then(|| over(sets, &frequency, |row| row.frequency, figure)).flatten()
+}
+
+/// Dots of a figure of each complete cycle over another.
+fn over(
+    sets: &[Shown],
+    (what, name): &(&str, String),
+    abscissa: fn(&CycleRow) -> Option<f64>,
+    figure: &Figure,
+) -> Option<Chart> {
+    let point = |row: &CycleRow| Some((abscissa(row)?, (figure.of)(row)?));
+    let of_set = |set: &Shown| set.cycles.table.complete().filter_map(point).collect::<Vec<Point>>();
+    let points: Vec<Vec<Point>> = sets.iter().map(of_set).collect();
+    let all = || points.iter().flatten();
+    all().next()?;
+    let label = unit::label(&sets[0].cycles.quantities.as_figure(figure.label, figure.quantity));
+    let axis = |label: &str, of: fn(&Point) -> f64| Axis::linear(label, all().map(of).chain([0.0]));
+    let curve = |(set, points): (&Shown, &Vec<Point>)| {
+        let every = points.len().div_ceil(MOST_DOTS).max(1);
+        Curve::dots(points.iter().copied().step_by(every), set.colour, set.radius)
+    };
+    let curves = sets.iter().zip(&points).map(curve).collect();
+    let axes = (axis(&unit::label(name), |point| point.0), axis(&label, |point| point.1));
+    let chart =
+        Chart::on_axes(format!("{label} of each cycle over its {what}"), axes.0, axes.1, curves).small("");
+    Some(chart.with_legend(legend(sets)))
+}
+
+/// Colours and names of several sets; nothing for one.
+pub fn legend<'a>(sets: &'a [Shown]) -> impl Iterator<Item = (Colour, &'a str)> + use<'a> {
+    sets.iter().filter(|_| sets.len() > 1).map(|set| (set.colour, set.name))
+}
+
+/// The backbone of each record: a line from valley to peak, and its points. `sizes` are the width of the line and the
+/// radius of the points, in pixels.
+pub fn backbone(cycles: &Cycles, colour: Colour, sizes: (f64, f64)) -> Vec<Curve> {
+    let mut curves = Vec::new();
+    for record in cycles.data.records().iter().take(MOST_CURVES) {
+        let own = cycles.table.backbone.iter().filter(|point| point.record == record.name());
+        let mut points: Vec<Point> = own.clone().map(|point| (point.input, point.output)).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if own.clone().any(|point| point.direction == Direction::Up) || own.count() > 1 {
+            curves.push(Curve::dots(points.clone(), colour, sizes.1));
+            curves.push(Curve::new(points, colour, sizes.0));
+        }
+    }
+    curves
+}
+
+/// Losses of the amplitudes that have several frequencies.
+pub fn at_several_frequencies<'a>(cycles: &'a Cycles) -> Vec<&'a [LossAtFrequency]> {
+    let amplitudes =
+        cycles.table.losses.chunk_by(|a, b| b.frequency > a.frequency && alike(a.amplitude, b.amplitude));
+    let has_several =
+        |losses: &&[LossAtFrequency]| losses[losses.len() - 1].frequency > SEVERAL * losses[0].frequency;
+    if cycles.table.field == Field::Actuator { Vec::new() } else { amplitudes.filter(has_several).collect() }
+}
+
+fn alike(a: f64, b: f64) -> bool {
+    a.max(b) <= SEVERAL * a.min(b)
+}
+
+/// Loss per cycle over frequency, a colour for each amplitude; `None` for a single frequency. Those of the last set are
+/// lines with dots, those of a set before it larger dots alone.
+pub fn losses(sets: &[Shown]) -> Option<Chart> {
+    let (last, before) = sets.split_last()?;
+    let amplitudes: Vec<Vec<&[LossAtFrequency]>> =
+        sets.iter().map(|set| at_several_frequencies(set.cycles)).collect();
+    let all = || amplitudes.iter().flatten().copied().flatten();
+    all().next()?;
+    let q = &last.cycles.quantities;
+    let x = unit::label(&q.as_figure("frequency", Quantity::Frequency));
+    let y = unit::label(&q.as_energy("loss per cycle"));
+    let axes = (
+        Axis::logarithmic(&x, all().map(|loss| loss.frequency)),
+        Axis::linear(&y, all().map(|loss| loss.energy).chain([0.0])),
+    );
+    let mut curves = Vec::new();
+    for (place, of_set) in amplitudes.iter().enumerate() {
+        for (number, losses) in of_set.iter().enumerate() {
+            let points: Vec<Point> = losses.iter().map(|loss| (loss.frequency, loss.energy)).collect();
+            let colour = Colour::Series(number);
+            match place < before.len() {
+                true => curves.push(Curve::dots(points, colour, 4.5)),
+                false => {
+                    curves.extend([Curve::new(points.clone(), colour, 1.4), Curve::dots(points, colour, 2.2)])
+                }
+            }
+        }
+    }
+    let amplitude = |(number, losses): (usize, &&[LossAtFrequency])| {
+        let amplitude = unit::with(&number_of(losses), &q.input);
+        (Colour::Series(number), format!("amplitude {amplitude}"))
+    };
+    let of_last = amplitudes.last().map_or(&[][..], Vec::as_slice);
+    let legend: Vec<(Colour, String)> =
+        of_last.iter().enumerate().take(MOST_AMPLITUDES).map(amplitude).collect();
+    let description = format!("{y} over {x}, a colour for each amplitude");
+    Some(Chart::on_axes(description, axes.0, axes.1, curves).small("").with_legend(legend))
+}
+
+fn number_of(losses: &[LossAtFrequency]) -> String {
+    number(losses[0].amplitude, 3)
+}

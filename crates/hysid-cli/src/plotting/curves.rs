@@ -1,0 +1,59 @@
+//! Loops of measured data and of a model.
+
+use hysid_document::{Chart, Colour, Curve, unit};
+
+use super::Subject;
+use crate::cycles::pictures::path;
+use crate::report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
+
+/// Points of all curves of a colour together.
+const POINTS: usize = 12_000;
+
+/// Height of a chart of loops over its width.
+const SHAPE: f64 = 0.75;
+
+/// All loops in one chart.
+pub fn loops(subject: &Subject, width: f64) -> Chart {
+    let most = (POINTS / subject.data.records().len()).max(100);
+    let (mut back, mut front) = (Vec::new(), Vec::new());
+    for (record, predicted) in subject.records() {
+        let rows = scored_rows(record);
+        let (x, y) = (&record.inputs()[0][rows.clone()], &record.output()[rows.clone()]);
+        match predicted {
+            Some(predicted) if subject.is_measured() => {
+                let (measured, model, _) = path_curves(x, y, &predicted.output[rows], most);
+                back.push(measured);
+                front.push(model);
+            }
+            Some(predicted) => {
+                front.push(Curve::new(path(x, &predicted.output, most), Colour::Simulated, MODEL_WIDTH))
+            }
+            None => back.push(Curve::new(path(x, y, most), Colour::Series(0), MODEL_WIDTH)),
+        }
+    }
+    back.extend(front);
+    let names = subject.data.names();
+    let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
+    Chart::new(format!("Loops of {y} over {x}"), &x, &y, back)
+        .sized(width, SHAPE * width)
+        .with_legend(legend(subject))
+}
+
+/// The legend of measured data and a model; nothing for one of both.
+pub fn legend(subject: &Subject) -> Vec<(Colour, &'static str)> {
+    match subject.is_measured() && subject.predicted.is_some() {
+        true => vec![(Colour::Measured, "measured"), (Colour::Simulated, "model")],
+        false => Vec::new(),
+    }
+}
+
+/// Colour and width of the only curve there is: measured data without a model, or a model without measured data.
+pub fn alone(subject: &Subject) -> (Colour, f64) {
+    match subject.predicted {
+        Some(_) => (Colour::Simulated, MODEL_WIDTH),
+        None => (Colour::Series(0), MODEL_WIDTH),
+    }
+}
+
+/// Colours and widths of measured data and a model.
+pub const BOTH: [(Colour, f64); 2] = [(Colour::Measured, MEASURED_WIDTH), (Colour::Simulated, MODEL_WIDTH)];

@@ -1,0 +1,133 @@
+//! Output, input and error over time, and the error over the input.
+
+use anyhow::Result;
+use hysid::data::record::Record;
+use hysid::model::Prediction;
+use hysid_document::chart::Track;
+use hysid_document::chart::thin::{Point, thin};
+use hysid_document::{Chart, Colour, Curve, unit};
+
+use super::Subject;
+use super::curves::{BOTH, alone};
+use crate::messages::{Usage, note};
+use crate::report::histories::{Panel, error_label};
+use crate::report::tracks::times;
+use crate::report::{scored_rows, time_label};
+
+/// Most records that are drawn over time.
+const MOST_RECORDS: usize = 4;
+
+/// Points of a curve.
+const POINTS: usize = 4000;
+
+/// Most inputs that are drawn.
+const MOST_INPUTS: usize = 4;
+
+/// Heights of charts over their width: of the output, of input and error over time, and of the error over the input.
+const OUTPUT: f64 = 0.5;
+const BELOW: f64 = 0.34;
+const OVER_INPUT: f64 = 0.6;
+
+/// Output and input of each record over time.
+pub fn histories(subject: &Subject, width: f64) -> Vec<Chart> {
+    let names = subject.data.names();
+    let mut charts = Vec::new();
+    for (record, predicted) in drawn(subject) {
+        let (time, output) = (times(record), unit::label(&names.output));
+        let panel = panel(subject, record, &time);
+        let simulated = predicted.map(|predicted| predicted.output.as_slice());
+        let (only, line) = alone(subject);
+        let lines: Vec<(Colour, &str, f64, &[f64])> = match (simulated, subject.is_measured()) {
+            (Some(simulated), true) => vec![
+                (BOTH[0].0, "measured", BOTH[0].1, record.output()),
+                (BOTH[1].0, "model", BOTH[1].1, simulated),
+            ],
+            (Some(simulated), false) => vec![(only, "model", line, simulated)],
+            (None, _) => vec![(only, "measured", line, record.output())],
+        };
+        let band = predicted.filter(|_| subject.band.is_some());
+        let band = band.map(|predicted| panel.area(&predicted.low, &predicted.high));
+        let is_alone = lines.len() == 1 && band.is_none();
+        let chart = panel.chart(&output, OUTPUT * width, &lines, band);
+        let chart = if is_alone { Chart { legend: Vec::new(), ..chart } } else { chart };
+        charts.push(titled(chart, subject, record));
+        for (name, input) in names.inputs.iter().zip(record.inputs()).take(MOST_INPUTS) {
+            let line = (Colour::Input, "input", 1.1, &**input);
+            let chart = panel.chart(&unit::label(name), BELOW * width, &[line], None);
+            charts.push(Chart { legend: Vec::new(), ..chart });
+        }
+    }
+    charts.into_iter().map(|chart| wide(chart, width)).collect()
+}
+
+/// Error of each record over time, and of all over the input.
+pub fn errors(subject: &Subject, width: f64) -> Result<Vec<Chart>> {
+    if subject.predicted.is_none() {
+        return Err(Usage("errors need a model: hysid plot MODEL.json DATA.csv --kind errors".into()).into());
+    }
+    anyhow::ensure!(
+        subject.is_measured(),
+        "the data have no measured output, so there are no errors to draw"
+    );
+    let names = subject.data.names();
+    let label = error_label(&names.output);
+    let mut charts = Vec::new();
+    for (record, predicted) in drawn(subject) {
+        let (time, rows) = (times(record), scored_rows(record));
+        let panel = panel(subject, record, &time[rows.clone()]);
+        let error = &errors_of(record, predicted)[rows];
+        let chart = panel.chart(&label, OUTPUT * width, &[(Colour::Error, "error", 1.1, error)], None);
+        charts.push(titled(Chart { legend: Vec::new(), ..chart }, subject, record));
+    }
+    let over_input = |(record, predicted): (&Record, Option<&Prediction>)| {
+        let points: Vec<Point> =
+            record.inputs()[0].iter().copied().zip(errors_of(record, predicted)).collect();
+        let most = (3 * POINTS / subject.data.records().len()).max(200);
+        Curve::new(thin(&points, most), Colour::Error, 0.8)
+    };
+    let curves = subject.records().map(over_input).collect();
+    let input = unit::label(&names.inputs[0]);
+    let chart = Chart::new(format!("{label}, model less measured, over {input}"), &input, &label, curves);
+    charts.push(chart.with_height(OVER_INPUT * width));
+    Ok(charts.into_iter().map(|chart| wide(chart, width)).collect())
+}
+
+fn errors_of(record: &Record, predicted: Option<&Prediction>) -> Vec<f64> {
+    let simulated = predicted.map_or(&[][..], |predicted| &predicted.output);
+    simulated.iter().zip(record.output()).map(|(model, measured)| model - measured).collect()
+}
+
+/// The records that are drawn one by one.
+fn drawn(subject: &Subject) -> impl Iterator<Item = (&Record, Option<&Prediction>)> {
+    let count = subject.data.records().len();
+    if count > MOST_RECORDS {
+        note(format_args!(
+            "the first {MOST_RECORDS} of {count} records are drawn over time: choose others with --only RECORD"
+        ));
+    }
+    subject.records().take(MOST_RECORDS)
+}
+
+fn panel<'a>(subject: &Subject, record: &'a Record, time: &'a [f64]) -> Panel<'a> {
+    Panel {
+        time,
+        time_label: time_label(&subject.data),
+        record: record.name(),
+        points: POINTS,
+        band: subject.band.unwrap_or_default(),
+        track: Track { record: String::new(), times: None, cycles: Vec::new() },
+    }
+}
+
+/// The chart with the name of its record if there are several.
+fn titled(chart: Chart, subject: &Subject, record: &Record) -> Chart {
+    match subject.data.records().len() {
+        1 => chart,
+        _ => Chart { title: record.name().to_string(), ..chart },
+    }
+}
+
+fn wide(chart: Chart, width: f64) -> Chart {
+    let height = chart.size.1;
+    chart.sized(width, height)
+}
