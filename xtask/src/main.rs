@@ -4,6 +4,7 @@
 
 mod arguments;
 mod bench;
+mod browser;
 mod cases;
 mod check;
 mod dependencies;

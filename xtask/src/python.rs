@@ -96,7 +96,7 @@ fn install(python: &Path) -> Result<()> {
 }
 
 /// Runs a command as one step.
-fn step(name: &str, command: &mut Command) -> Result<()> {
+pub fn step(name: &str, command: &mut Command) -> Result<()> {
     println!("==> {name}");
     let status = command.status().with_context(|| format!("step `{name}` could not be started"))?;
     ensure!(status.success(), "step `{name}` failed ({status})");

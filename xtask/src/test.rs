@@ -4,13 +4,14 @@
 use anyhow::Result;
 
 use crate::proofs::Proofs;
-use crate::{cargo, fuzz, python};
+use crate::{browser, cargo, fuzz, python};
 
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
     rust(&proofs)?;
     fuzz::in_tests()?;
     python::test()?;
+    browser::test(&proofs)?;
     proofs.show();
     Ok(())
 }

@@ -1,8 +1,11 @@
 //! Which help an error points to.
 
+use std::path::Path;
+
 use clap::CommandFactory;
 
 use crate::arguments::Arguments;
+use crate::files::shown;
 use crate::messages::Usage;
 
 /// The help of the command that was typed, or of the program if no command is recognised.
@@ -21,14 +24,32 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
     }
 }
 
-/// What follows an error of a command: where its options are described, if the command line is wrong and the error names
-/// neither an option nor a command that helps; otherwise nothing.
+/// What follows an error of a command that names neither an option nor a command that helps: where its options are
+/// described, if the command line is wrong; which command shows how a table is read, if a line of it is wrong; otherwise
+/// nothing.
 pub fn pointer(error: &anyhow::Error) -> String {
+    let text = format!("{error:#}");
+    if text.contains("hysid ") || text.contains("--") {
+        return String::new();
+    }
     match error.downcast_ref::<Usage>() {
-        Some(Usage(text)) if !text.contains("hysid ") && !text.contains("--") => {
-            format!(" (see `{}`)", of_typed_command())
+        Some(_) => format!(" (see `{}`)", of_typed_command()),
+        // In parentheses, the error says itself what helps.
+        None if text.ends_with(')') => String::new(),
+        None => {
+            let typed = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+            look_at(&text, typed).map_or_else(String::new, |look| format!(" (see `{look}`)"))
         }
-        _ => String::new(),
+    }
+}
+
+/// The command that shows how the table of an error is read: one of those that were typed, with a line that is wrong.
+fn look_at(error: &str, typed: impl IntoIterator<Item = String>) -> Option<String> {
+    let mut typed = typed.into_iter().peekable();
+    let is_of = |file: &String| error.starts_with(&format!("{file}, line "));
+    match typed.peek().map(String::as_str) {
+        Some("look") => None,
+        _ => typed.find(is_of).map(|file| format!("hysid look {}", shown(Path::new(&file)))),
     }
 }
 
@@ -48,5 +69,15 @@ mod tests {
         assert_eq!(help("fot data.csv"), "hysid --help");
         assert_eq!(help("--unknown"), "hysid --help");
         assert_eq!(help(""), "hysid --help");
+    }
+
+    #[test]
+    fn a_wrong_line_of_a_typed_table_points_to_look() {
+        let look = |error: &str, line: &str| look_at(error, line.split(' ').map(String::from));
+        let wrong = "a.csv, line 3: has 2 cells where the header has 3";
+        assert_eq!(look(wrong, "fit b.csv a.csv"), Some("hysid look a.csv".into()));
+        assert_eq!(look(wrong, "look a.csv"), None);
+        assert_eq!(look(wrong, "fit b.csv"), None);
+        assert_eq!(look("a.csv: there is nothing to score", "fit a.csv"), None);
     }
 }

@@ -75,7 +75,11 @@ fn rows_and_cells() {
             with_cell(5, 2, "1,2").into(),
             ", line 7: has 4 cells where the header has 3 (decimal commas? separate the columns by semicolons)",
         ),
-        ("short row", b"t,x,y\r\n0,1,2\r\n1,2\r\n".into(), ", line 3: has 2 cells where the header has 3"),
+        (
+            "short row",
+            b"t,x,y\r\n0,1,2\r\n1,2\r\n".into(),
+            ", line 3: has 2 cells where the header has 3 (see `hysid look data.csv`)",
+        ),
         (
             "open quote",
             with_cell(4, 1, "\"0.5").into(),
@@ -109,12 +113,12 @@ fn rows_and_cells() {
         (
             "infinite input",
             with_cell(15, 1, "inf").into(),
-            ", line 17, column \"x\": \"inf\" is not a finite number",
+            ", line 17, column \"x\": \"inf\" is not a finite number (see `hysid look data.csv`)",
         ),
         (
             "text in a number",
             with_cell(15, 1, "0.5V").into(),
-            ", line 17, column \"x\": \"0.5V\" is not a number",
+            ", line 17, column \"x\": \"0.5V\" is not a number (see `hysid look data.csv`)",
         ),
         (
             "text column",
@@ -134,7 +138,7 @@ fn rows_and_cells() {
         (
             "overflow",
             with_cell(4, 1, "1e999").into(),
-            ", line 6, column \"x\": \"1e999\" is too large for a number",
+            ", line 6, column \"x\": \"1e999\" is too large for a number (see `hysid look data.csv`)",
         ),
         (
             "records torn apart",

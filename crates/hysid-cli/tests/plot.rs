@@ -29,11 +29,11 @@ fn is_drawn(bench: &Workbench, arguments: &str) -> bool {
 /// Cycles of an elastic-perfectly plastic member (2 kN/mm, 2 kN) with the amplitudes 2, 2, 4 and 4 mm, in steps of 0.05 mm
 /// and 0.1 s.
 fn member() -> String {
-    let turning = [0.0, 2.0, -2.0, 2.0, -2.0, 4.0, -4.0, 4.0, -4.0, 0.0];
+    let turning: [f64; 10] = [0.0, 2.0, -2.0, 2.0, -2.0, 4.0, -4.0, 4.0, -4.0, 0.0];
     let (mut text, mut row) = (String::from("t_s,disp_mm,force_kN\n0,0,0\n"), 0);
     let (mut last, mut force) = (0.0, 0.0f64);
     for pair in turning.windows(2) {
-        let count = ((pair[1] - pair[0] as f64).abs() / 0.05).round() as usize;
+        let count = ((pair[1] - pair[0]).abs() / 0.05).round() as usize;
         for k in 1..=count {
             let x = pair[0] + (pair[1] - pair[0]) * k as f64 / count as f64;
             force = (force + 2.0 * (x - last)).clamp(-2.0, 2.0);

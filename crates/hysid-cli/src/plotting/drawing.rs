@@ -80,7 +80,8 @@ impl Style {
 /// # Errors
 /// A machine without fonts, a height that has no room for the charts, a PNG that is too large.
 pub fn drawing(charts: Vec<Chart>, style: &Style, format: Format, title: &str) -> Result<Vec<u8>> {
-    let columns = charts.iter().all(|chart| chart.size.0 < 0.75 * style.pixels()).then_some(2).unwrap_or(1);
+    let are_side_by_side = charts.iter().all(|chart| chart.size.0 < 0.75 * style.pixels());
+    let columns = if are_side_by_side { 2 } else { 1 };
     if format == Format::Svg {
         let appearance = Appearance::of_print(fonts::as_style(&style.font), style.points);
         let charts = in_height(charts, columns, style, &appearance)?;
