@@ -164,7 +164,11 @@ fn command_lines() {
         &bench,
         &[
             ("fit", 2, "the following required arguments were not provided: <TRAIN.csv>..."),
-            ("fot data.csv", 2, "unrecognized subcommand 'fot'; a similar subcommand exists: 'fit'"),
+            (
+                "fot data.csv",
+                2,
+                "unrecognized subcommand 'fot'; some similar subcommands exist: 'plot', 'fit'",
+            ),
             (
                 "fit data.csv --start 2",
                 2,

@@ -150,9 +150,12 @@ fn charts(class: &str, charts: &[Chart]) -> String {
 fn table(table: &Table) -> String {
     let heading =
         if table.heading.is_empty() { String::new() } else { note(&format!("{}.", escape(&table.heading))) };
-    let cell = |cell: &String| format!("<th scope=\"col\">{}</th>", escape(cell));
-    let head: String = table.columns.iter().map(cell).collect();
-    let body: String = table.rows.iter().map(|row| table_row(row, &table.columns)).collect();
+    let of_words: Vec<bool> = (0..table.columns.len()).map(|column| table.is_of_words(column)).collect();
+    let cell = |(cell, &is_of_words): (&String, &bool)| {
+        format!("<th scope=\"col\"{}>{}</th>", alignment(is_of_words), escape(cell))
+    };
+    let head: String = table.columns.iter().zip(&of_words).map(cell).collect();
+    let body: String = table.rows.iter().map(|row| table_row(row, &table.columns, &of_words)).collect();
     // On a narrow screen, each row of a wide table becomes a list with the names of the columns.
     let class = if table.columns.len() > NARROW_COLUMNS { " class=\"many\"" } else { "" };
     format!(
@@ -160,20 +163,26 @@ fn table(table: &Table) -> String {
     )
 }
 
+/// Words begin at the left, numbers end at the right.
+fn alignment(is_of_words: bool) -> &'static str {
+    if is_of_words { " class=\"text\"" } else { "" }
+}
+
 /// A row; if it has fewer cells than the table has columns, its last one goes over all that are left.
-fn table_row(cells: &[Cell], columns: &[String]) -> String {
+fn table_row(cells: &[Cell], columns: &[String], of_words: &[bool]) -> String {
     let mut row = String::from("<tr>");
     for (index, cell) in cells.iter().enumerate() {
         let cell = escape(&cell.shown());
+        let class = alignment(of_words.get(index).copied().unwrap_or(false));
         row += &match index {
             0 => format!("<th scope=\"row\">{cell}</th>"),
             last if last + 1 == cells.len() && cells.len() < columns.len() => {
                 format!("<td class=\"words\" colspan=\"{}\">{cell}</td>", columns.len() - last)
             }
             _ if columns.len() > NARROW_COLUMNS && !cell.is_empty() => {
-                format!("<td data-column=\"{}\">{cell}</td>", escape(&columns[index]))
+                format!("<td{class} data-column=\"{}\">{cell}</td>", escape(&columns[index]))
             }
-            _ => format!("<td>{cell}</td>"),
+            _ => format!("<td{class}>{cell}</td>"),
         };
     }
     row + "</tr>\n"

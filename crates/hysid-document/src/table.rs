@@ -54,6 +54,22 @@ impl Table {
         self.rows.push(row.into_iter().collect());
     }
 
+    /// True if a column has words and not numbers with units: more than two letters for each digit in each cell that is
+    /// not empty, and one such cell.
+    pub fn is_of_words(&self, column: usize) -> bool {
+        let cells = || self.rows.iter().filter_map(|row| row.get(column));
+        let count = |text: &str, of: fn(char) -> bool| text.chars().filter(|&letter| of(letter)).count();
+        let is_word = |cell: &Cell| match cell {
+            Cell::Text(text) => {
+                let digits = count(text, |letter| letter.is_ascii_digit());
+                text.is_empty() || count(text, char::is_alphabetic) > 2 * digits
+            }
+            _ => false,
+        };
+        let is_filled = |cell: &Cell| matches!(cell, Cell::Text(text) if !text.is_empty());
+        cells().all(is_word) && cells().any(is_filled)
+    }
+
     /// True if there is a column, and every row has a cell for every column.
     pub fn is_complete(&self) -> bool {
         !self.columns.is_empty() && self.rows.iter().all(|row| row.len() == self.columns.len())
@@ -117,5 +133,25 @@ impl From<&str> for Cell {
 impl From<String> for Cell {
     fn from(text: String) -> Self {
         Cell::Text(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_of_words_has_no_number() {
+        let mut table = Table::new(["row", "words", "rows", "mixed", "blank"]);
+        table.push([
+            "1".into(),
+            "19 of 36 pairs of turning points".into(),
+            "3.8 um".into(),
+            "none".into(),
+            "".into(),
+        ]);
+        table.push(["2".into(), "".into(), "805-900".into(), Cell::Missing, "".into()]);
+        let words: Vec<bool> = (0..5).map(|column| table.is_of_words(column)).collect();
+        assert_eq!(words, [false, true, false, false, false]);
     }
 }

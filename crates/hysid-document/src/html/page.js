@@ -23,7 +23,7 @@
     if (!Number.isFinite(value)) return "";
     if (value === 0) return "0";
     const exponent = Math.floor(Math.log10(Math.abs(value)));
-    const text = exponent < -4 || exponent >= 6 ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
+    const text = exponent < -4 || exponent >= 6 ? Number(value.toPrecision(digits)).toExponential() : String(Number(value.toPrecision(digits)));
     return text.replace("-", "\u2212");
   }
 
@@ -50,7 +50,17 @@
       if ((to - from) * width < least) return;
       [this.low, this.high] = [this.low + from * width, this.low + to * width];
     }
+    // Round numbers and their texts: powers of ten, with 2 and 5 between few of them, on a logarithmic axis.
     ticks(count) {
+      if (this.log && this.high - this.low > 0.5) {
+        const between = this.high - this.low < 2.5 ? [1, 2, 5] : [1];
+        const every = Math.max(Math.ceil((this.high - this.low) / Math.max(count, 2)), 1);
+        const made = [];
+        for (let power = Math.floor(this.low); power <= this.high; power++) {
+          if (power % every === 0) made.push(...between.map((factor) => factor * 10 ** power));
+        }
+        return made.map((value) => [Math.log10(value), written(value, 3)]).filter(([at]) => at >= this.low && at <= this.high);
+      }
       const rough = (this.high - this.low) / Math.max(count, 2);
       const power = 10 ** Math.floor(Math.log10(rough));
       const step = power * [1, 2, 5, 10].find((factor) => factor * power >= 0.7 * rough);
