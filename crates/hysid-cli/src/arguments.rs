@@ -41,7 +41,7 @@ pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
 pub struct Arguments {
     /// Say only warnings and errors on stderr
     ///
-    /// What was understood of the data, progress and the names of written files are left out. Results on stdout stay, and
+    /// Leaves out the summary of the data, progress and the names of written files. Results on stdout stay, and
     /// so do the lines after Ctrl-C.
     #[arg(short, long, global = true, display_order = 1000)]
     pub quiet: bool,
@@ -119,7 +119,7 @@ pub enum Command {
     Cycles(Cycles),
     /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
     Plot(Box<Plot>),
-    /// Plan what to measure next: a drive, and why
+    /// Plan the next test: its input, with a reason for each segment
     Plan(Box<Plan>),
     /// Run the paper's experiments and compare the results with the paper
     Reproduce(Reproduce),
@@ -163,13 +163,13 @@ pub struct Overwriting {
 pub struct ColumnOptions {
     /// Record of each row [default: `record` or `segment`]
     ///
-    /// A column with the name of the record; the rows of a record stand together. Without such a column, each table is
+    /// A column with the name of the record; the rows of a record must follow each other. Without such a column, each table is
     /// one record.
     #[arg(long, value_name = "COLUMN")]
     pub record: Option<String>,
     /// Time stamps [default: `t` or `time`, also with a unit]
     ///
-    /// Names with a unit are such as `t_ms` or `Time (s)`.
+    /// Examples with a unit: `t_ms`, `Time (s)`.
     #[arg(long, value_name = "COLUMN")]
     pub time: Option<String>,
     /// Input; repeat for several [default: all other columns]
@@ -191,7 +191,7 @@ pub struct ColumnOptions {
 pub struct DataSetsOptions {
     /// With --band: widen it to contain that share in K of ten data sets
     ///
-    /// From 5-of-10, where the share is contained in every other data set, to 9-of-10, where the band is about twice as
+    /// From 5-of-10, where half of all data sets have that share within the band, to 9-of-10, where the band is about twice as
     /// wide.
     #[arg(long = "in", id = "of_ten", value_name = "K-of-10", default_value = "5-of-10", value_parser = of_ten, requires = "band")]
     pub of_ten: usize,

@@ -51,8 +51,8 @@ fn a_drive_has_the_columns_of_the_data_and_a_page_beside_it() {
     assert!(x.len() <= 400 && x.len() > 350 && x[0] == 0.0 && x[x.len() - 1] == 0.0);
     assert!(x.iter().all(|x| x.abs() <= 5.0));
     assert!(t.windows(2).all(|pair| (pair[1] - pair[0] - 0.01).abs() < 1e-9));
-    assert!(bench.text("data.drive.html").contains("What the data do not tell"));
-    for expected in ["what the data do not tell", "amplitudes: no swing", "hysid fit data.csv NEW.csv"] {
+    assert!(bench.text("data.drive.html").contains("What the data do not cover"));
+    for expected in ["what the data do not cover", "amplitudes: no swing", "hysid fit data.csv NEW.csv"] {
         assert!(said.stdout.contains(expected), "{expected}: {}", said.stdout);
     }
     let widest = said.stdout.lines().map(|line| line.chars().count()).max().unwrap();

@@ -1,6 +1,6 @@
 //! Plans of experiments: what to measure next, so that a model is good on data that it has not seen.
 //!
-//! 1. *What the data do not tell*: properties that [`diagnosis`](hysid_diagnosis) cannot test, swings, pairs of turning
+//! 1. *What the data do not cover*: properties that [`diagnosis`](hysid_diagnosis) cannot test, swings, pairs of turning
 //!    points and speeds that were not run.
 //! 2. *Tests* of such properties: a loop at two speeds, a repeated loop, holds.
 //! 3. *Pieces* of all kinds (loops, minor loops, reversal curves, nested loops, random reversals) at several speeds. The
@@ -97,7 +97,7 @@ pub struct Plan {
     pub input: Vec<f64>,
     /// The segments; the first row belongs to none.
     pub segments: Vec<Segment>,
-    /// What the data do not tell.
+    /// What the data do not cover.
     pub gaps: Vec<Gap>,
     /// Disagreement of the members along the plan, and along the test of the data; `None` without an ensemble.
     pub disagreement: Option<Disagreement>,

@@ -13,7 +13,7 @@ const CYCLES_EXAMPLES: &str = "\
 Examples:
   hysid cycles data.csv                  data.cycles.csv, page data.cycles.html
   hysid cycles data.csv --field magnet -o loops.csv
-  hysid cycles model.json                cycles of the model, driven by Hysid
+  hysid cycles model.json                cycles of the model, with an input by Hysid
 
 Definitions of all figures: docs/cycles.md";
 
@@ -36,7 +36,7 @@ pub struct Cycles {
     /// Which columns are what.
     #[command(flatten)]
     pub columns: ColumnOptions,
-    /// Figures to compute: structure, magnet, actuator or general (all) [default: by names and units of the columns]
+    /// Field of engineering, which selects the figures: structure, magnet, actuator or general (all) [default: by names and units of the columns]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Method")]
     pub field: Option<Field>,
     /// Where cycles begin: zero, mean or reversals [default: as suits the data]
@@ -47,7 +47,7 @@ pub struct Cycles {
     /// Ignore reversals of the input below this share of its range
     #[arg(long, value_name = "FRACTION", default_value_t = CycleOptions::default().smallest_reversal, value_parser = fraction, help_heading = "Method", hide_short_help = true)]
     pub smallest_reversal: f64,
-    /// Smooth branches before outputs are read from them
+    /// Smooth branches before the figures are computed
     #[arg(long, value_name = "BOOL", default_value_t = CycleOptions::default().smoothing, action = ArgAction::Set, help_heading = "Method", hide_short_help = true)]
     pub smoothing: bool,
     /// Smoothing factor of first-order reversal curves, 1 to 10 [default: chosen by the noise]

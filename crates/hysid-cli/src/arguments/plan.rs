@@ -21,7 +21,7 @@ Method, protocols and what they are worth: docs/plan.md";
 #[derive(Debug, Args)]
 #[command(after_help = PLAN_EXAMPLES)]
 pub struct Plan {
-    /// Plan what to measure next, after these tables
+    /// Measured data for which to plan the next test
     #[arg(long, value_name = "DATA.csv", num_args = 1.., conflicts_with = "kind")]
     pub like: Vec<PathBuf>,
     /// Plan a first test of a kind of specimen
@@ -42,15 +42,15 @@ pub struct Plan {
     pub columns: ColumnOptions,
     /// Lowest and highest input [default: of the data]
     ///
-    /// Two numbers, such as -5:5. A range beyond that of the data is run too.
+    /// Two numbers, such as -5:5. It may be wider than the range of the data.
     #[arg(long, value_name = "LOW:HIGH", value_parser = limits, help_heading = "Limits")]
     pub range: Option<(f64, f64)>,
-    /// Most rows [default: as many as the data]
+    /// Maximum number of rows [default: as many as the data]
     ///
     /// Without data, the default is 2000.
     #[arg(long, value_name = "ROWS", value_parser = whole::<usize>, help_heading = "Limits")]
     pub length: Option<usize>,
-    /// Longest duration, in the unit of time
+    /// Maximum duration, in the unit of time
     #[arg(long, value_name = "TIME", value_parser = slew, help_heading = "Limits", hide_short_help = true, conflicts_with = "length")]
     pub duration: Option<f64>,
     /// Time between rows [default: that of the data]
@@ -60,19 +60,19 @@ pub struct Plan {
     pub step: Option<f64>,
     /// Largest rate of the input [default: of the data]
     ///
-    /// The largest change of the input in a unit of time; without time stamps, from row to row. Without data, the default is the rate at which the test
-    /// has the wanted length.
+    /// The largest change of the input in a unit of time; without time stamps, from row to row. Without data, the
+    /// default is the rate that gives a test of --length rows.
     #[arg(long, value_name = "RATE", value_parser = slew, help_heading = "Limits")]
     pub max_rate: Option<f64>,
     /// Shape of swings: smooth or triangle [default: smooth if there is time]
     #[arg(long, value_name = "NAME", value_parser = wave, help_heading = "Limits", hide_short_help = true)]
     pub wave: Option<Wave>,
-    /// Ensemble of the data [default: fitted now]
+    /// Model file with an ensemble of these data [default: fit one]
     ///
     /// A model file of `hysid fit`. The default is `auto` with one start of each candidate.
     #[arg(long, value_name = "MODEL.json", help_heading = "Method", conflicts_with = "kind")]
     pub model: Option<PathBuf>,
-    /// Use no ensemble: plan by what was not run alone
+    /// Use no ensemble: plan only by what the data do not cover
     #[arg(long, help_heading = "Method", hide_short_help = true, conflicts_with_all = ["model", "kind"])]
     pub coverage_only: bool,
     /// Seed of all random numbers

@@ -19,7 +19,7 @@ pub struct ReadingOptions {
     /// The table has no names of columns: call them c1, c2 and so on
     #[arg(long, hide_short_help = true)]
     pub no_header: bool,
-    /// Treat the last line of the header as units, also if they are unknown
+    /// Treat the last line of the header as units, even if Hysid does not know them
     ///
     /// Without this option, a line below the names is taken for units if its cells are known units or in brackets.
     #[arg(long, hide_short_help = true, conflicts_with = "no_header")]

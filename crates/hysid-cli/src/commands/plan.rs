@@ -146,7 +146,7 @@ fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Resu
     let model = identify(data, work)?.model;
     if model.ensemble().is_none() {
         warning(
-            "there was no time for an ensemble, or there are too few data: planned by what was not run alone",
+            "there was no time for an ensemble, or there are too few data: planned only by what the data do not cover",
         );
         return Ok(None);
     }

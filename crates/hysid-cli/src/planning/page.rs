@@ -1,4 +1,4 @@
-//! The page of a plan: the drive, its segments and their reasons, what the data do not tell.
+//! The page of a plan: the drive, its segments and their reasons, what the data do not cover.
 
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Chart, Colour, Curve, Item, Page, Part, Table, unit};
@@ -16,9 +16,9 @@ pub fn page(planned: &Planned<'_>) -> Page {
     parts.push(Part::section("Drive", [Part::chart(drive(planned))]));
     parts.push(Part::section("Segments", [Part::Table(segments(plan)), Part::Table(reasons(planned))]));
     if !plan.gaps.is_empty() {
-        let mut table = Table::new(["", "what the data do not tell"]);
+        let mut table = Table::new(["", "what the data do not cover"]);
         plan.gaps.iter().for_each(|gap| table.push([gap.what.into(), gap.statement.as_str().into()]));
-        parts.push(Part::section("What the data do not tell", [Part::Table(table)]));
+        parts.push(Part::section("What the data do not cover", [Part::Table(table)]));
     }
     if !plan.sources.is_empty() {
         let sources =

@@ -17,7 +17,7 @@ pub fn text(planned: &Planned<'_>) -> String {
     blocks.push(format!("why\n{}", list(&mut purposes(plan).into_iter())));
     if !plan.gaps.is_empty() {
         let gaps = list(&mut plan.gaps.iter().map(|gap| format!("{}: {}", gap.what, gap.statement)));
-        blocks.push(format!("what the data do not tell\n{gaps}"));
+        blocks.push(format!("what the data do not cover\n{gaps}"));
     }
     blocks.extend(on_disagreement(plan).map(|words| lines(&words)));
     if !plan.sources.is_empty() {

@@ -76,7 +76,7 @@ class Plan:
     segments : list of Segment
         What is run and why; the first row belongs to none.
     gaps : dict
-        What the data do not tell: statements by their subject.
+        What the data do not cover: statements by their subject.
     disagreement : dict or None
         Root mean square of the disagreement of the members along the drive (``"plan"``) and along the data (``"repeat"``).
     limits : dict
@@ -145,7 +145,7 @@ def plan(
     wave: str | None = None,
     seed: int = 1,
 ) -> Plan:
-    """Plan what to measure next: a drive from what the data do not tell and where the members of an ensemble disagree.
+    """Plan what to measure next: a drive from what the data do not cover and where the members of an ensemble disagree.
 
     Parameters
     ----------

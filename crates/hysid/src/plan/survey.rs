@@ -1,4 +1,4 @@
-//! What data do not tell: properties that they cannot test, and swings, reversals and rates that were not run.
+//! What data do not cover: properties that they cannot test, and swings, reversals and rates that were not run.
 
 use hysid_diagnosis::cycles::Field;
 use hysid_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
@@ -27,7 +27,7 @@ const ONE_SPEED: f64 = 1.5;
 const HOLD_ROWS: usize = 8;
 const STILL: f64 = 1e-3;
 
-/// Something that data do not tell.
+/// Something that data do not cover.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gap {
     /// What: a property, or `amplitudes`, `minor-loops`, `turning-points`, `speeds`, `holds`.
