@@ -22,7 +22,9 @@ impl Link<'_> {
 
     /// True if the target is not a file of the repository: another site, or an anchor of the same page.
     pub fn is_elsewhere(&self) -> bool {
-        self.target.contains("://") || self.target.starts_with("mailto:") || self.file_and_anchor().0.is_empty()
+        self.target.contains("://")
+            || self.target.starts_with("mailto:")
+            || self.file_and_anchor().0.is_empty()
     }
 }
 

@@ -129,7 +129,8 @@ fn write(path: &Path, content: &[u8]) -> Result<()> {
 }
 
 fn copy(from: &Path, to: &Path) -> Result<()> {
-    let content = fs::read(from).with_context(|| format!("step `site`: {} could not be read", from.display()))?;
+    let content =
+        fs::read(from).with_context(|| format!("step `site`: {} could not be read", from.display()))?;
     write(to, &content)
 }
 

@@ -57,7 +57,9 @@ impl Book {
         let is_document =
             |path: &str| path.starts_with(DOCUMENTS) && (path.ends_with(".md") || path.ends_with(".ipynb"));
         let paths = paths.iter().map(String::as_str);
-        paths.filter(|path| is_document(path) && *path != SUMMARY && !self.pages.contains_key(*path)).collect()
+        paths
+            .filter(|path| is_document(path) && *path != SUMMARY && !self.pages.contains_key(*path))
+            .collect()
     }
 
     /// The text of the file `path` with links as the book needs them.

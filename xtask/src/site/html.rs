@@ -112,7 +112,8 @@ mod tests {
 
     #[test]
     fn a_page_that_breaks_off_is_read_to_its_end() {
-        for html in ["<", "<a", "<a href", "<a href=", "<a href=\"x", "<!-- ", "<script>", "<a =>", "<é é>"] {
+        for html in ["<", "<a", "<a href", "<a href=", "<a href=\"x", "<!-- ", "<script>", "<a =>", "<é é>"]
+        {
             Page::read(html);
         }
     }

@@ -37,7 +37,8 @@ impl Site {
                 continue;
             }
             if path.ends_with(".html") {
-                let html = fs::read_to_string(entry.path()).with_context(|| format!("{path} cannot be read"))?;
+                let html =
+                    fs::read_to_string(entry.path()).with_context(|| format!("{path} cannot be read"))?;
                 self.pages.insert(path.clone(), Page::read(&html));
             }
             self.files.insert(path);
@@ -81,10 +82,8 @@ impl Site {
         if anchor.is_empty() {
             return None;
         }
-        let has_anchor = self
-            .pages
-            .get(&resolved)
-            .is_some_and(|page| page.anchors.contains(&without_percents(anchor)));
+        let has_anchor =
+            self.pages.get(&resolved).is_some_and(|page| page.anchors.contains(&without_percents(anchor)));
         (!has_anchor).then_some("there is no such anchor")
     }
 }

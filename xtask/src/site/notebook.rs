@@ -107,9 +107,14 @@ mod tests {
 
     #[test]
     fn base64_is_read_as_rfc_4648_has_it() {
-        for (text, base64) in
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")]
-        {
+        for (text, base64) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+        ] {
             assert_eq!(bytes(base64).unwrap(), text.as_bytes(), "{base64}");
         }
         assert_eq!(bytes("\u{ff}bc="), None);
