@@ -36,8 +36,8 @@ Usage: cargo xtask COMMAND
 
 Commands:
   check          formatting, lints, documentation, licences of dependencies, tidiness
-  test [--quick] every test of the workspace, and of the Python package in an environment of its own. With --quick,
-                 only the tests inside the library's crates, and whether the rest compiles
+  test [--quick] every test of the workspace, of the Python package in an environment of its own, and of the links of
+                 the site. With --quick, only the tests inside the library's crates, and whether the rest compiles
   python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`

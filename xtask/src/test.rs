@@ -4,13 +4,14 @@
 use anyhow::Result;
 
 use crate::proofs::Proofs;
-use crate::{cargo, fuzz, python};
+use crate::{cargo, fuzz, python, site};
 
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
     rust(&proofs)?;
     fuzz::in_tests()?;
     python::test()?;
+    site::run()?;
     proofs.show();
     Ok(())
 }
