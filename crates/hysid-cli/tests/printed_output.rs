@@ -1,5 +1,5 @@
 //! `docs/how-to/read-files.md` shows what the program prints: each `console` block has a command after `$`, and below it
-//! its stdout and stderr to the letter.
+//! its stdout and stderr to the letter. `docs/options.md` and `docs/files.md` explain every option of `hysid fit`.
 
 mod workbench;
 
@@ -27,5 +27,24 @@ fn the_page_shows_what_is_printed() {
         let ran = bench.run(command);
         let printed = format!("{}{}", ran.stdout, ran.stderr);
         assert_eq!(printed.trim_end(), shown, "`hysid {command}`");
+    }
+}
+
+#[test]
+fn every_option_of_a_fit_is_on_a_page() {
+    let page = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
+        fs::read_to_string(path).unwrap()
+    };
+    let pages = page("options.md") + &page("files.md");
+    let help = Workbench::new().run("fit --help").stdout;
+    let words = help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(str::split_whitespace);
+    let options: Vec<&str> = words.filter_map(|word| word.strip_prefix("--")).collect();
+    assert!(options.len() > 40);
+    for option in options {
+        let keyword = option.replace('-', "_");
+        let is_there = pages.contains(&format!("### `{keyword}`"))
+            || ["`", " "].iter().any(|end| pages.contains(&format!("`--{option}{end}")));
+        assert!(is_there || option == "help", "no page explains `--{option}`");
     }
 }
