@@ -17,7 +17,8 @@ fn blocks(page: &str) -> Vec<(&str, &str)> {
 #[test]
 fn the_page_shows_what_is_printed() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let page = fs::read_to_string(root.join("../../docs/how-to/read-files.md")).unwrap().replace("\r\n", "\n");
+    let page =
+        fs::read_to_string(root.join("../../docs/how-to/read-files.md")).unwrap().replace("\r\n", "\n");
     let blocks = blocks(&page);
     assert!(blocks.len() > 5);
     let bench = Workbench::new();
@@ -38,7 +39,8 @@ fn every_option_of_a_fit_is_on_a_page() {
     };
     let pages = page("options.md") + &page("files.md");
     let help = Workbench::new().run("fit --help").stdout;
-    let words = help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(str::split_whitespace);
+    let words =
+        help.lines().filter(|line| line.trim_start().starts_with('-')).flat_map(str::split_whitespace);
     let options: Vec<&str> = words.filter_map(|word| word.strip_prefix("--")).collect();
     assert!(options.len() > 40);
     for option in options {

@@ -72,14 +72,33 @@ fn collect(value: &Value, path: &str, fields: &mut Fields) {
     }
 }
 
-fn data() -> Dataset {
-    let records = ["one", "two", "three"].map(|name| small_models::record(120, name)).into();
+/// Three records whose input is shifted by `offset`.
+fn data(offset: f64) -> Dataset {
+    let shifted = |name| {
+        let record = small_models::record(120, name);
+        let x = record.inputs()[0].iter().map(|x| x + offset).collect();
+        Record::new(name, vec![x], record.output().to_vec())
+            .and_then(|shifted| shifted.with_time(record.time().unwrap().to_vec()))
+            .unwrap()
+    };
+    let records = ["one", "two", "three"].map(shifted).into();
     let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
     Dataset::new(names, records).unwrap()
 }
 
-fn fitted(spec: &FitSpec) -> Model {
-    identify(&data(), spec, &mut |_| ControlFlow::Continue(())).unwrap().model
+fn fitted(spec: &FitSpec, offset: f64) -> Model {
+    identify(&data(offset), spec, &mut |_| ControlFlow::Continue(())).unwrap().model
+}
+
+/// The same request with the parts of a model that its default leaves out.
+fn with_other_parts(spec: FitSpec) -> FitSpec {
+    match spec {
+        FitSpec::Classical(mut options) => {
+            options.free_weights = Some(false);
+            FitSpec::Classical(options)
+        }
+        other => other,
+    }
 }
 
 /// The same request with everything that adds parts to a model.
@@ -114,6 +133,10 @@ fn with_all_parts(spec: FitSpec) -> FitSpec {
 fn with_rare_parts(model: &Model) -> Model {
     let mut file: Value = serde_json::from_str(&model.to_json()).unwrap();
     let training = &mut file["training"];
+    training["runs"] = json!([{
+        "phase": "starts", "start": 0, "method": "genetic", "history": [], "termination": "stalled", "fold": 1,
+        "validation_nrmse_percent": 1.0
+    }]);
     training["lead_ins"] = json!([{"record": "one", "lead_in": [1.0]}]);
     let options = training["options"].as_object_mut().unwrap();
     options.insert("ridge".into(), json!(1e-6));
@@ -153,10 +176,10 @@ fn the_page_has_every_field_and_no_other() {
     let mut add = |model: &Model| collect(&serde_json::from_str(&model.to_json()).unwrap(), "", &mut written);
     for name in ModelName::all() {
         let spec = small_models::small(name, Some(RateMethod::Backward));
-        add(&fitted(&spec));
-        add(&fitted(&with_all_parts(spec)));
+        add(&fitted(&with_other_parts(spec.clone()), 0.0));
+        add(&fitted(&with_all_parts(spec), 5.0));
     }
-    let automatic = fitted(&small_models::small(ModelName::AUTO, Some(RateMethod::Backward)));
+    let automatic = fitted(&small_models::small(ModelName::AUTO, Some(RateMethod::Backward)), 0.0);
     add(&automatic);
     add(&with_rare_parts(&automatic));
 
@@ -169,7 +192,10 @@ fn the_page_has_every_field_and_no_other() {
     assert!(written.len() > 200);
     let missing: Vec<_> = written.difference(&documented).collect();
     let unknown: Vec<_> = documented.difference(&written).collect();
-    assert!(missing.is_empty() && unknown.is_empty(), "not on the page: {missing:#?}\nin no file: {unknown:#?}");
+    assert!(
+        missing.is_empty() && unknown.is_empty(),
+        "not on the page: {missing:#?}\nin no file: {unknown:#?}"
+    );
 }
 
 /// The model files on the page.
@@ -182,7 +208,8 @@ fn examples(page: &str) -> Vec<Model> {
 fn table(page: &str, first: &str) -> Vec<Vec<f64>> {
     let rows = page.lines().skip_while(|line| !line.starts_with(&format!("| `{first}` |")));
     let rows = rows.skip(2).take_while(|line| line.starts_with('|'));
-    rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().parse().unwrap()).collect()).collect()
+    rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().parse().unwrap()).collect())
+        .collect()
 }
 
 fn assert_row(printed: &[f64], computed: &[f64]) {
