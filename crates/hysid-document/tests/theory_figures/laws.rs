@@ -33,7 +33,7 @@ pub fn generalized_play() -> Vec<Chart> {
     ];
     let chart = chart("generalized play", "input x", "play S", curves);
     let labels =
-        vec![label((0.55, -0.25), 0.0, "γ_l(x) - r, up"), label((-1.95, 0.45), 0.0, "γ_r(x) + r, down")];
+        vec![label((0.55, -0.25), 0.0, "γ_l(x) - r, up"), label((-1.95, 0.75), 0.0, "γ_r(x) + r, down")];
     vec![Chart { labels, ..chart }]
 }
 
