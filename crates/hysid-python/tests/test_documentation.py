@@ -67,6 +67,7 @@ def test_pages_are_true(page, tmp_path, monkeypatch):
         exec(compile(block, page, "exec"), names)
 
 
+@pytest.mark.filterwarnings("ignore::hysid.HysidWarning")
 def test_the_checksum_of_the_page_on_model_files_is_that_of_a_file():
     """As docs/model-file.md computes it."""
     page = (Path(__file__).parents[3] / "docs/model-file.md").read_text(encoding="utf-8")
