@@ -85,18 +85,18 @@ fn write_source(root: &Path, source: &Path) -> Result<()> {
 
     remove(source)?;
     let pages = source.join(PAGES);
-    let mut images = BTreeSet::new();
+    let mut files = BTreeSet::new();
     for (path, place) in book.pages().chain([(SUMMARY, "SUMMARY.md")]) {
         let mut text = read(root, path)?;
         if path.ends_with(".ipynb") {
             text = write_images_of_notebook(path, &text, &pages)?;
         }
         let page = book.page(path, &text);
-        images.extend(page.images);
+        files.extend(page.files);
         write(&pages.join(place), page.text.as_bytes())?;
     }
-    // An image that is not there, unlike those of notebooks, is found by the check of links.
-    for path in images.intersection(&paths) {
+    // A file that is neither there nor written with a notebook is found by the check of links.
+    for path in files.intersection(&paths) {
         copy(&root.join(path), &pages.join(place(path)))?;
     }
     for path in SETTINGS {

@@ -38,9 +38,9 @@ fn every_command_of_every_page_works() {
         let commands = commands(&page);
         assert!(!commands.is_empty(), "{} has no command", path.display());
         let bench = Workbench::new();
-        // Pages tell their readers to copy these.
-        bench.put("closed_loop.c", include_str!("../../../examples/closed_loop.c"));
         bench.put("testing-machine.csv", include_str!("files/testing-machine.csv"));
+        // A page tells its reader to copy it.
+        bench.put("closed_loop.c", include_str!("../../../examples/closed_loop.c"));
         for command in commands {
             let ran = bench.shell(command);
             assert_eq!(ran.status, Some(0), "{}: `{command}`: {}", path.display(), ran.stderr);

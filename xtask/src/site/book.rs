@@ -1,8 +1,8 @@
 //! Which files of the repository are pages of the book, and what their links become there.
 //!
 //! The pages are those of `docs/SUMMARY.md`. Links in the repository lead from file to file, so that they also work
-//! where the repository is browsed; in the book, a link to another page stays within the book, an image is copied, and
-//! a link to any other file leads to the repository on the net.
+//! where the repository is browsed; in the book, a link to another page stays within the book, images and other files
+//! of `docs/` are copied, and a link to anything else leads to the repository on the net.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,8 +28,8 @@ pub struct Book {
 /// A page with the links of the book.
 pub struct BookPage {
     pub text: String,
-    /// The images that it shows, by their path in the repository.
-    pub images: BTreeSet<String>,
+    /// The files beside pages that it shows or links, by their path in the repository.
+    pub files: BTreeSet<String>,
 }
 
 impl Book {
@@ -65,7 +65,7 @@ impl Book {
     /// The text of the file `path` with links as the book needs them.
     pub fn page(&self, path: &str, text: &str) -> BookPage {
         let from = self.pages.get(path).cloned().unwrap_or_else(|| place(path));
-        let mut page = BookPage { text: String::with_capacity(text.len()), images: BTreeSet::new() };
+        let mut page = BookPage { text: String::with_capacity(text.len()), files: BTreeSet::new() };
         let mut copied = 0;
         for link in links(text).into_iter().filter(|link| !link.is_elsewhere()) {
             let (file, anchor) = link.file_and_anchor();
@@ -74,9 +74,9 @@ impl Book {
             copied = link.range.end;
             if let Some(to) = self.pages.get(&target) {
                 page.text.push_str(&relative(&from, to));
-            } else if is_image(&target) {
+            } else if is_copied(&target) {
                 page.text.push_str(&relative(&from, &place(&target)));
-                page.images.insert(target);
+                page.files.insert(target);
             } else {
                 page.text.push_str(&format!("{REPOSITORY}/blob/main/{target}"));
             }
@@ -103,8 +103,11 @@ pub fn place(path: &str) -> String {
     }
 }
 
-fn is_image(path: &str) -> bool {
-    [".svg", ".png"].iter().any(|end| path.ends_with(end))
+/// True for images, and for files of the documents that are not pages, such as data.
+fn is_copied(path: &str) -> bool {
+    let name = path.rsplit('/').next().unwrap_or_default();
+    let is_image = [".svg", ".png"].iter().any(|end| name.ends_with(end));
+    is_image || path.starts_with(DOCUMENTS) && name.contains('.') && !name.ends_with(".md")
 }
 
 /// The link from one path to another of the same root.
@@ -146,18 +149,20 @@ mod tests {
         let page = book().page(
             "docs/how-to/fit.md",
             "[a](../theory.md#1-operators) [b](../../README.md) ![c](../images/d.svg) [e](../../crates) [f](#g) \
-             [h](https://i.org/j.md) ![k](../../benchmarks/growth.svg \"title\") [l](../notebooks/piezo.ipynb) tail",
+             [h](https://i.org/j.md) ![k](../../benchmarks/growth.svg \"title\") [l](../notebooks/piezo.ipynb) \
+             [m](../data/n.csv) [o](../data) [p](../SUMMARY.md) tail",
         );
-        let crates = format!("{REPOSITORY}/blob/main/crates");
+        let main = format!("{REPOSITORY}/blob/main");
         assert_eq!(
             page.text,
             format!(
-                "[a](../theory.md#1-operators) [b](../index.md) ![c](../images/d.svg) [e]({crates}) [f](#g) \
-                 [h](https://i.org/j.md) ![k](../benchmarks/growth.svg \"title\") [l](../notebooks/piezo.md) tail"
+                "[a](../theory.md#1-operators) [b](../index.md) ![c](../images/d.svg) [e]({main}/crates) [f](#g) \
+                 [h](https://i.org/j.md) ![k](../benchmarks/growth.svg \"title\") [l](../notebooks/piezo.md) \
+                 [m](../data/n.csv) [o]({main}/docs/data) [p]({main}/docs/SUMMARY.md) tail"
             )
         );
-        let images = ["benchmarks/growth.svg", "docs/images/d.svg"].map(str::to_owned);
-        assert_eq!(page.images, images.into());
+        let files = ["benchmarks/growth.svg", "docs/data/n.csv", "docs/images/d.svg"].map(str::to_owned);
+        assert_eq!(page.files, files.into());
         assert_eq!(book().page("README.md", "[a](docs/theory.md)").text, "[a](theory.md)");
     }
 
