@@ -1,6 +1,6 @@
 //! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | generate-files |
 //! verdicts |
-//! verdict-battery | plan-battery | fuzz | soak | same-models | tidy`.
+//! verdict-battery | plan-battery | fuzz | soak | same-models | tidy | site`.
 
 mod arguments;
 mod bench;
@@ -12,11 +12,14 @@ mod files;
 mod fuzz;
 mod generate_cases;
 mod generate_files;
+mod markdown;
 mod plan_battery;
 mod program;
 mod proofs;
 mod python;
+mod repository;
 mod same_models;
+mod site;
 mod soak;
 mod test;
 mod tidy;
@@ -34,11 +37,12 @@ Usage: cargo xtask COMMAND
 
 Commands:
   check          formatting, lints, documentation, licences of dependencies, tidiness
-  test [--quick] every test of the workspace, and of the Python package in an environment of its own. With --quick,
-                 only the tests inside the library's crates, and whether the rest compiles
+  test [--quick] every test of the workspace, of the Python package in an environment of its own, and of the links of
+                 the site. With --quick, only the tests inside the library's crates, and whether the rest compiles
   python         only the Python package's part of `test`
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
+  site           the documentation as a site, target/site/index.html, and whether its links lead somewhere
   fuzz [TARGET] [SECONDS] [--seed NUMBER] [--coverage]
                  the targets of fuzz/ (all of them) on mutated inputs, for so many seconds (60) each. The same seed (1)
                  gives the same inputs. With --coverage, one target under libFuzzer
@@ -106,6 +110,7 @@ fn main() -> ExitCode {
         ["python"] => python::test(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
+        ["site"] => site::run(),
         ["fuzz", rest @ ..] => fuzz::Request::parse(rest).and_then(|request| fuzz::run(&request)),
         ["soak", rest @ ..] if soak::kills(rest).is_some() => {
             soak::run(soak::kills(rest).unwrap_or_default())

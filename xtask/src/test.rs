@@ -4,7 +4,7 @@
 use anyhow::Result;
 
 use crate::proofs::Proofs;
-use crate::{browser, cargo, fuzz, python};
+use crate::{browser, cargo, fuzz, python, site};
 
 pub fn run() -> Result<()> {
     let proofs = Proofs::begin()?;
@@ -12,6 +12,7 @@ pub fn run() -> Result<()> {
     fuzz::in_tests()?;
     python::test()?;
     browser::test(&proofs)?;
+    site::run()?;
     proofs.show();
     Ok(())
 }

@@ -9,11 +9,10 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::workspace_root;
+use crate::{repository, workspace_root};
 
 /// A broken rule and where. The line counts from 1.
 #[derive(Debug, PartialEq, Eq)]
@@ -38,7 +37,7 @@ struct SourceFile {
 pub fn run() -> Result<()> {
     println!("==> tidy");
     let root = workspace_root();
-    let paths = repository_paths(&root)?;
+    let paths = repository::paths(&root).context("step `tidy`")?;
     let files = read_text_files(&root, &paths)?;
     let mut violations = violations(&paths, &files);
     violations.extend(circles::found(&files)?);
@@ -50,25 +49,6 @@ pub fn run() -> Result<()> {
         1 => bail!("step `tidy` failed: 1 violation"),
         count => bail!("step `tidy` failed: {count} violations"),
     }
-}
-
-/// Every file that is in the repository or would be if all were added: tracked or not, but not ignored.
-fn repository_paths(root: &Path) -> Result<BTreeSet<String>> {
-    let git = Command::new("git")
-        .args(["ls-files", "-co", "--exclude-standard", "-z"])
-        .current_dir(root)
-        .output()
-        .context("step `tidy`: git could not be started")?;
-    if !git.status.success() {
-        let message = String::from_utf8_lossy(&git.stderr);
-        bail!("step `tidy`: git ls-files failed: {}", message.trim());
-    }
-    let listing = String::from_utf8(git.stdout).context("step `tidy`: a path is not UTF-8")?;
-    Ok(listing
-        .split_terminator('\0')
-        .filter(|path| root.join(path).is_file()) // git still lists tracked files that were deleted
-        .map(str::to_owned)
-        .collect())
 }
 
 fn read_text_files(root: &Path, paths: &BTreeSet<String>) -> Result<Vec<SourceFile>> {

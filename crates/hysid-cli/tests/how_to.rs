@@ -38,6 +38,7 @@ fn every_command_of_every_page_works() {
         let commands = commands(&page);
         assert!(!commands.is_empty(), "{} has no command", path.display());
         let bench = Workbench::new();
+        bench.put("testing-machine.csv", include_str!("files/testing-machine.csv"));
         // A page tells its reader to copy it.
         bench.put("closed_loop.c", include_str!("../../../examples/closed_loop.c"));
         for command in commands {

@@ -15,6 +15,34 @@ Each option has one name: `--no-deterioration` of `hysid fit` and `hysid validat
 not use, with a warning. This page is generated from the table of options in `crates/hysid-core/src/options/table.rs`.
 ";
 
+const TAIL: &str = "
+## Only on the command line
+
+These are options of `hysid fit` that say where data come from and results go to, and the rate. In Python and in the
+library they are arguments of `fit`.
+
+| option | meaning | default |
+|---|---|---|
+| `--out` (`-o`) | model file; the report has the same name with `.html` | name of the first table with `.json` |
+| `--force` | replace a file even if Hysid did not write it | off |
+| `--no-report` | write no report | off |
+| `--json` | print the result as one JSON object | off |
+| `--quiet` (`-q`) | only warnings and errors on stderr | off |
+| `--time` | column of time stamps | a column that is named like time |
+| `--record` | column with the record of each row | `record` or `segment`; otherwise each table is a record |
+| `--input` | column of an input; repeat for several | all other columns |
+| `--output` | column of the output | the last column |
+| `--rate` | rate of the first input: `auto`, `none`, `central`, `backward`, `savitzky-golay` or a column with the rate | `auto`: central differences, if there are time stamps and the model uses a rate |
+| `--inverse` | exchange the first input and the output, to fit a model of the inverse | off |
+| `--threads` | number of threads; the model does not depend on it | one for each processor |
+| `--time-limit` | seconds after which the best model so far is used | none |
+| `--checkpoint` | file in which the state of the fit of a single network is saved every few seconds | none |
+| `--resume` | file of such a fit to resume | none |
+
+`--model` and other options above take the same values here. [files.md](files.md#options-for-reading) lists the options
+for reading tables.
+";
+
 fn values(option: &FitOption) -> String {
     match option.values {
         Values::Count(low, high) => format!("{low} to {high}"),
@@ -54,7 +82,7 @@ fn page() -> String {
             );
         }
     }
-    page
+    page + TAIL
 }
 
 #[test]

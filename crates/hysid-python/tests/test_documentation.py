@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import inspect
+import json
 import pkgutil
 import re
 from pathlib import Path
@@ -64,6 +65,17 @@ def test_pages_are_true(page, tmp_path, monkeypatch):
     names = {}
     for block in blocks:
         exec(compile(block, page, "exec"), names)
+
+
+@pytest.mark.filterwarnings("ignore::hysid.HysidWarning")
+def test_the_checksum_of_the_page_on_model_files_is_that_of_a_file():
+    """As docs/model-file.md computes it."""
+    page = (Path(__file__).parents[3] / "docs/model-file.md").read_text(encoding="utf-8")
+    names = {}
+    exec(re.search(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)[1], names)
+    x = np.sin(np.arange(60) / 5)
+    text = hysid.fit(x, x**3, model="masing").to_json()
+    assert names["checksum"](text) == json.loads(text)["checksum"]
 
 
 def test_importing_takes_in_only_numpy():

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Violation;
 use super::rust_code::{code_only, contains_word};
+use crate::markdown::{is_fence, links, resolve};
 
 /// Where the numbered equations are.
 pub const THEORY: &str = "docs/theory.md";
@@ -223,71 +224,20 @@ pub fn links_lead_somewhere(path: &str, text: &str, paths: &BTreeSet<String>) ->
     if !is_document && !at_the_door.contains(&path) {
         return Vec::new();
     }
-    let mut inside_block = false;
     let mut found = Vec::new();
-    for (number, line) in numbered(text) {
-        if is_fence(line) {
-            inside_block = !inside_block;
-        }
-        if inside_block {
-            continue;
-        }
-        for target in link_targets(line) {
-            let file = target.split('#').next().unwrap_or_default();
-            let elsewhere = target.contains("://") || target.starts_with("mailto:");
-            if file.is_empty() || elsewhere {
-                continue;
-            }
-            let leads_somewhere = resolve(path, file).is_some_and(|resolved| {
-                let folder = format!("{resolved}/");
-                resolved.is_empty()
-                    || paths.contains(&resolved)
-                    || paths.iter().any(|path| path.starts_with(&folder))
-            });
-            if !leads_somewhere {
-                found.push(violation(path, number, format!("broken link to `{target}`")));
-            }
+    for link in links(text).into_iter().filter(|link| !link.is_elsewhere()) {
+        let (file, _) = link.file_and_anchor();
+        let leads_somewhere = resolve(path, file).is_some_and(|resolved| {
+            let folder = format!("{resolved}/");
+            resolved.is_empty()
+                || paths.contains(&resolved)
+                || paths.iter().any(|path| path.starts_with(&folder))
+        });
+        if !leads_somewhere {
+            found.push(violation(path, link.line, format!("broken link to `{}`", link.target)));
         }
     }
     found
-}
-
-fn is_fence(line: &str) -> bool {
-    let line = line.trim_start();
-    line.starts_with("```") || line.starts_with("~~~")
-}
-
-/// The targets of `[text](target)`, `![text](target "title")` and `[name]: target`; code spans aside.
-fn link_targets(line: &str) -> Vec<&str> {
-    let mut targets = Vec::new();
-    if let Some(definition) = line.trim_start().strip_prefix('[')
-        && let Some((_, target)) = definition.split_once("]: ")
-    {
-        targets.extend(target.split_whitespace().next());
-    }
-    for (start, opening) in line.match_indices("](") {
-        let inside_code = line[..start].matches('`').count() % 2 == 1;
-        if !inside_code && let Some((inside, _)) = line[start + opening.len()..].split_once(')') {
-            targets.extend(inside.split_whitespace().next());
-        }
-    }
-    targets
-}
-
-/// The path from the root that `target` means in the file `path`; none if it leads out of the repository.
-fn resolve(path: &str, target: &str) -> Option<String> {
-    let mut parts: Vec<&str> = path.split('/').collect();
-    parts.pop();
-    for part in target.split('/') {
-        match part {
-            "" | "." => {}
-            ".." => {
-                parts.pop()?;
-            }
-            name => parts.push(name),
-        }
-    }
-    Some(parts.join("/"))
 }
 
 /// The changelog has a heading for the workspace's version, or one for what is not released yet.
