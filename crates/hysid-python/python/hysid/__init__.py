@@ -15,14 +15,16 @@ from hysid import _hysid, classical, operators
 from hysid._comparison import Compared, Comparison, compare
 from hysid._cycles import Cycles, cycles
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
-from hysid._fitting import Progress, fit
+from hysid._fitting import fit
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
 from hysid._plan import Plan, Segment, plan
+from hysid._progress import Progress
 from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
-from hysid.model import Errors, Member, Model, Prediction, Stepper
+from hysid._results import Errors, Member, Prediction
+from hysid.model import Model, Stepper
 from hysid.progress import tqdm_progress
 from hysid.specimens import Records, Specimen, specimen, specimens
 

@@ -141,9 +141,9 @@ def named_options(
 
 def cycles(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
-    records: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
+    records: ArrayLike | str | None = None,
     *,
     division: str | None = None,
     field: str | None = None,

@@ -6,21 +6,23 @@ import json
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
-from hysid._data import Column, Columns, columns
+from hysid._columns import Column
 from hysid._cycles import Cycles, named_options
+from hysid._data import Columns, columns, shaped_like
 from hysid._diagnosis import ModelDiagnosis
-from hysid._html import number, table
 from hysid._inverse import Inverse, Inversion, Reference
 from hysid._residuals import ParameterInterval, Residuals, intervals_of
+from hysid._results import Errors, Member, Prediction
+from hysid._summary import Summary, error_in_words
+from hysid._tables import like
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -31,83 +33,6 @@ if TYPE_CHECKING:
 __all__ = ["Errors", "Member", "Model", "Prediction", "Stepper"]
 
 Stepper = _hysid.Stepper
-
-
-@dataclass(frozen=True)
-class Errors:
-    """Errors of a free run over all scored rows.
-
-    Attributes
-    ----------
-    output : str
-        Name of the output.
-    samples, records : int
-        Scored rows, and records with at least one.
-    mse, rmse : float
-        Mean square error in the output's unit squared, and its root in the output's unit.
-    nrmse_std_percent, nrmse_range_percent : float or None
-        ``rmse`` in percent of the measured output's standard deviation, and of its range; None if it does not
-        vary.
-    fit_percent : float or None
-        100 - ``nrmse_std_percent``.
-    max_abs_error : float
-        Largest absolute error in the output's unit.
-    """
-
-    output: str
-    samples: int
-    records: int
-    mse: float
-    rmse: float
-    nrmse_std_percent: float | None
-    nrmse_range_percent: float | None
-    fit_percent: float | None
-    max_abs_error: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """Give the errors as a dict."""
-        return asdict(self)
-
-
-class Prediction(NamedTuple):
-    """A free run with its prediction band, in the unit of the training.
-
-    Attributes
-    ----------
-    output : array or Series of shape (n,)
-        The output, as `Model.simulate` gives it.
-    low, high : array or Series of shape (n,)
-        The edges of the band.
-    """
-
-    output: Any
-    low: Any
-    high: Any
-
-
-@dataclass(frozen=True)
-class Member:
-    """A member of an ensemble.
-
-    Attributes
-    ----------
-    name : str
-        Its candidate, such as a network with its transform of the input; members with the same name are fits from
-        different random starts.
-    kind : str
-        Its kind, such as ``"networks"``.
-    model : str
-        Which model, such as ``"xpnn+"``.
-    share, share_outside : float
-        Its weight in the ensemble before the input leaves the trained range, and after; the weights of all members
-        add up to 1.
-    """
-
-    name: str
-    kind: str
-    model: str
-    share: float
-    share_outside: float
 
 
 class Model:
@@ -454,10 +379,10 @@ class Model:
             Invalid inputs, an unknown precision.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, None, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
         if precision not in ("f64", "f32"):
             raise ValueError(f"precision {precision!r}: it is 'f64' or 'f32'")
-        return _like(x, self._simulated(arranged, state, precision == "f32"), f"{self.output}_model")
+        return shaped_like(x, self._simulated(arranged, state, precision == "f32"), self.output, "_model")
 
     def predict(
         self,
@@ -516,15 +441,14 @@ class Model:
         probability = real("probability", probability)
         of_ten = whole("of_ten", of_ten, 5, 9)
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, None, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
         runs = [
             self._native.predict(name, *driving, probability, of_ten, state) for name, driving in _of_records(arranged)
         ]
         self._warn_of_range(arranged)
-        name = f"{self.output}_model"
-        low_high = (f"{name}_low", f"{name}_high")
-        columns_of = (np.concatenate(parts) for parts in zip(*runs))
-        return Prediction(*(_like(x, *one) for one in zip(columns_of, (name, *low_high))))
+        of_rows = (np.concatenate(parts) for parts in zip(*runs))
+        suffixes = ("_model", "_model_low", "_model_high")
+        return Prediction(*(shaped_like(x, values, self.output, suffix) for values, suffix in zip(of_rows, suffixes)))
 
     def _simulated(
         self, arranged: Columns, initial_state: str | None = None, single_precision: bool = False
@@ -587,7 +511,7 @@ class Model:
             Invalid inputs, or no measured output.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         return self._evaluated(
             arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
         )
@@ -625,7 +549,7 @@ class Model:
             Invalid inputs, or fewer than 50 rows with a measured output.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         data = arranged.dataset()
         content = json.loads(self._native.residuals(data, state))
         if arranged.output is not None and arranged.output.name is None:
@@ -658,7 +582,7 @@ class Model:
         ValueError
             Data that the model was not fitted to.
         """
-        printed = self._native.parameter_intervals(columns(x, y, time, rate, records).dataset())
+        printed = self._native.parameter_intervals(self._columns(x, y, time, rate, records).dataset())
         return None if printed is None else intervals_of(printed)
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
@@ -879,15 +803,15 @@ class Model:
         found = inverse(preview)._run(given)
         drive = self.inputs[0]
         edges = {} if found.low is None else {
-            "low": _like(y, found.low, f"{drive}_low"),
-            "high": _like(y, found.high, f"{drive}_high"),
+            "low": like(y, found.low, drive, "_low"),
+            "high": like(y, found.high, drive, "_high"),
         }
         return replace(
             found,
-            input=_like(y, found.input, drive),
-            output=_like(y, found.output, f"{self.output}_reached"),
-            reach=_like(y, found.reach, "reach"),
-            extrapolated=_like(y, found.extrapolated, "extrapolated"),
+            input=like(y, found.input, drive),
+            output=like(y, found.output, self.output, "_reached"),
+            reach=like(y, found.reach, "reach"),
+            extrapolated=like(y, found.extrapolated, "extrapolated"),
             **edges,
         )
 
@@ -936,28 +860,84 @@ class Model:
 
     def __repr__(self) -> str:
         inputs = ", ".join(self.inputs)
-        percent = self.train.nrmse_std_percent
-        error = "" if percent is None else f", training error {percent:.3g} % of std"
         name = f"{self.name} of {len(self.members)}" if self.members else self.name
-        return f"<hysid.Model {name}: {inputs} -> {self.output}, {self.parameters} parameters{error}>"
+        errors = [f"{error_in_words(self.train)} in training"]
+        if self.validation is not None:
+            errors.append(f"{error_in_words(self.validation)} held out")
+        return f"<hysid.Model {name}: {inputs} -> {self.output}, {self.parameters} parameters, RMSE {', '.join(errors)}>"
 
-    def _repr_html_(self) -> str:
-        inputs = ", ".join(self.inputs)
+    def summary(self) -> Summary:
+        """Give what the model is, its errors and its parameters, to print or to display in a notebook.
+
+        Returns
+        -------
+        Summary
+            ``print(model.summary())`` prints it as text.
+
+        Examples
+        --------
+        >>> import hysid
+        >>> train, _ = hysid.specimen("terfenol-rod").data()
+        >>> model = hysid.fit(train.x, train.y, model="masing", thresholds=[0.5, 1.0])
+        >>> "RMSE of y" in str(model.summary())
+        True
+        """
+        return Summary(self._facts(), self._errors(), self._parts(), self.notes)
+
+    def _facts(self) -> list[tuple[str, str]]:
+        """What it is, in words."""
         rate = "" if self.rate is None else f", rate by {self.rate} differences"
         if self.rate in ("given", "savitzky-golay"):
             rate = f", rate: {self.rate}"
-        about = f"{inputs} → {self.output}{rate}; {self.parameters} parameters; {self.termination}"
+        ranges = self.description["trained_ranges"]["inputs"]
+        inputs = ", ".join(
+            f"{_hysid.axis_label(name)} from {low:.4g} to {high:.4g}" for name, (low, high) in zip(self.inputs, ranges)
+        )
+        facts = [
+            ("model", f"{self.name}: {self._kind()}"),
+            ("input", f"{inputs}{rate}"),
+            ("output", _hysid.axis_label(self.output)),
+            ("parameters", str(self.parameters)),
+        ]
+        facts += zip(("chosen", "why"), self._native.selection() or ())
+        if not self.members:
+            facts.append(("training", self.termination))
+        return facts
 
-        def row(name: str, errors: Errors) -> list[str]:
-            percents = (errors.nrmse_std_percent, errors.nrmse_range_percent)
-            return [name, *map(number, percents), number(errors.rmse), number(errors.max_abs_error)]
+    def _kind(self) -> str:
+        if self.members:
+            return f"ensemble of {len(self.members)} members"
+        network = self.description.get("network")
+        if network is None:
+            return "classical law"
+        memory, hidden = network["memory"], len((network.get("readout") or {}).get("hidden") or [])
+        relaxation = len(memory.get("relaxation") or [])
+        parts = [(len(memory["stops"]), "stops"), (hidden, "tanh neurons"), (relaxation, "relaxation neurons")]
+        return "network of " + ", ".join(f"{count} {what}" for count, what in parts if count)
 
-        rows = [row("training", self.train)]
-        if self.validation is not None:
-            rows.append(row("held out", self.validation))
-        head = ["", "% of std", "% of range", f"RMSE of {self.output}", "largest"]
-        chosen = "".join(f"<p>{escape(line)}</p>" for line in self._native.selection() or ())
-        return f"<p><b>{escape(self.name)}</b>: {escape(about)}</p>{table(head, rows)}{chosen}"
+    def _errors(self) -> list[tuple[str, Errors]]:
+        """Errors by the data that they are of."""
+        named = [("training", self.train), ("after warm-up", self.train_after_warm_up), ("held out", self.validation)]
+        return [(name, errors) for name, errors in named if errors is not None]
+
+    def _parts(self) -> tuple[list[str], list[list[str]]] | None:
+        """Heading and rows: the members of an ensemble, or the parameters of a law."""
+        if self.members:
+            members = sorted(self.members, key=lambda member: -member.share)
+            weights = [[f"{100 * member.share:.3g}", f"{100 * member.share_outside:.3g}"] for member in members]
+            rows = [[member.name, *weight] for member, weight in zip(members, weights)]
+            return ["member", "weight, %", "weight outside the trained range, %"], rows
+        parameters = self._native.law_parameters()
+        if parameters is None:
+            return None
+        rows = [[symbol, f"{value:.5g}", unit, meaning] for symbol, value, unit, meaning in parameters]
+        return ["parameter", "value", "unit", "meaning"], rows
+
+    def _repr_html_(self) -> str:
+        return self.summary()._repr_html_()
+
+    def _columns(self, x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
+        return columns(x, y, time, rate, records, self.inputs)
 
 
 def _of_records(
@@ -970,15 +950,6 @@ def _of_records(
             [column.values[rows] for column in arranged.inputs],
             arranged.rate.values[rows] if arranged.rate else None,
         )
-
-
-def _like(x: Any, values: np.ndarray, name: str) -> Any:
-    """Values as a Series if the input was a pandas object."""
-    if not hasattr(x, "iloc"):
-        return values
-    import pandas
-
-    return pandas.Series(values, index=x.index, name=name)
 
 
 def _members(

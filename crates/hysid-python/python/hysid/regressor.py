@@ -11,7 +11,8 @@ from sklearn.utils import check_array, check_consistent_length, check_random_sta
 from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_data
 
 from hysid import _hysid
-from hysid._data import Column, Columns, check_indexes, runs, warn_of_order, without_mask
+from hysid._columns import Column, without_mask
+from hysid._data import Columns, check_indexes, runs, warn_of_order
 from hysid._fitting import identified
 
 __all__ = ["HysteresisRegressor"]
