@@ -20,7 +20,9 @@ from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
 from hysid._plan import Plan, Segment, plan
 from hysid._progress import Progress
+from hysid._record_split import RecordSplit
 from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
+from hysid._summary import Summary
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
 from hysid._results import Errors, Member, Prediction
@@ -58,12 +60,14 @@ __all__ = [
     "Plan",
     "Prediction",
     "Progress",
+    "RecordSplit",
     "Records",
     "ResidualFinding",
     "Residuals",
     "Segment",
     "Specimen",
     "Stepper",
+    "Summary",
     "Validation",
     "classical",
     "compare",
@@ -80,6 +84,10 @@ __all__ = [
     "tqdm_progress",
     "validate",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
 
 
 def __getattr__(name: str) -> Any:

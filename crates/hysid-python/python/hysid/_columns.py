@@ -13,6 +13,10 @@ from hysid._time import are_stamps, seconds
 __all__ = ["Column", "column_of", "inputs_of", "without_mask"]
 
 
+_UNNAMED = {"input": "x", "output": "y", "time": "t", "rate": "rate"}
+"""Names of columns that have a unit and no name."""
+
+
 class Column(NamedTuple):
     """Numbers, and their name if they have one."""
 
@@ -32,7 +36,7 @@ def inputs_of(x: Any, wanted: Sequence[str] = ()) -> list[Column]:
         return [Column(_numbers(values, "input"), name) for name, values in named]
     values = _numbers(x, "input", dimensions=(1, 2))
     if values.ndim == 1:
-        return [Column(values, _name_of(x))]
+        return [Column(values, _name_of(x, "input"))]
     if values.shape[1] == 0:
         raise ValueError("x has no columns: there must be an input")
     return [Column(np.ascontiguousarray(values[:, place]), None) for place in range(values.shape[1])]
@@ -42,7 +46,7 @@ def column_of(values: Any, what: str) -> Column | None:
     """One column, also of a table that has no other; None for None."""
     if values is None:
         return None
-    name = _name_of(values)
+    name = _name_of(values, what)
     if isinstance(values, Mapping) or is_frame(values):
         columns = named_columns(values) or []
         if len(columns) != 1:
@@ -56,10 +60,10 @@ def column_of(values: Any, what: str) -> Column | None:
     return Column(_numbers(values, what), name)
 
 
-def _name_of(values: Any) -> str | None:
+def _name_of(values: Any, what: str) -> str | None:
     """The name of a Series or DataArray; None if it has none, and for arrays."""
     name = getattr(values, "name", None)
-    return table_name(values, None if name is None else str(name))
+    return table_name(values, None if name is None else str(name), _UNNAMED.get(what))
 
 
 def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.ndarray:

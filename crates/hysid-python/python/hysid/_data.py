@@ -98,6 +98,34 @@ def shaped_like(x: Any, values: np.ndarray, column: str, suffix: str = "") -> An
     return [like(one, part, column, suffix) for one, part in zip(x, np.split(values, ends[:-1]))]
 
 
+def continued(before: Columns, after: Columns) -> tuple[Columns, np.ndarray]:
+    """Each record that continues one of the same name in time, with the rows of that one before its own; and which rows are
+    its own."""
+    assert before.time is not None and after.time is not None
+    known = dict(before.records)
+    chosen: list[tuple[Columns, slice]] = []
+    records = []
+    own = []
+    rows_so_far = 0
+    for name, rows in after.records:
+        parts = [(after, rows)]
+        begun = known.get(name)
+        if begun is not None and before.time.values[begun][-1] < after.time.values[rows][0]:
+            parts.insert(0, (before, begun))
+        for columns, some in parts:
+            chosen.append((columns, some))
+            own.append(np.full(some.stop - some.start, columns is after))
+        count = sum(some.stop - some.start for _, some in parts)
+        records.append((name, slice(rows_so_far, rows_so_far + count)))
+        rows_so_far += count
+    inputs = [
+        Column(np.concatenate([columns.inputs[place].values[rows] for columns, rows in chosen]), column.name)
+        for place, column in enumerate(after.inputs)
+    ]
+    times = np.concatenate([columns.time.values[rows] for columns, rows in chosen if columns.time is not None])
+    return Columns(inputs, Column(times, after.time.name), None, None, records), np.concatenate(own)
+
+
 def _rows(x: Any) -> int:
     return len(next(iter(x.values()))) if isinstance(x, Mapping) else len(x)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from hysid import _hysid
 
-__all__ = ["is_frame", "like", "named_columns", "row_labels", "table_name"]
+__all__ = ["is_frame", "like", "named_columns", "row_labels", "table_name", "with_column"]
 
 UNITLESS = ("", "1", "-", "dimensionless")
 """What stands for no unit in the attributes of xarray."""
@@ -47,13 +47,15 @@ def named_columns(table: Any) -> list[tuple[str, Any]] | None:
     return [(str(name), table[name]) for name in table.columns]
 
 
-def table_name(values: Any, name: str | None) -> str | None:
-    """The name of a column, with the unit from its attributes if it has any: `H [A/m]`."""
+def table_name(values: Any, name: str | None, unnamed: str | None = None) -> str | None:
+    """The name of a column, with the unit from its attributes if it has any: `H [A/m]`; `unnamed` takes the place of a name
+    if there is a unit."""
     if not is_of_xarray(values):
         return name
     unit = str(values.attrs.get("units", "")).strip()
     if unit in UNITLESS:
         return name
+    name = name or unnamed
     if name is None:
         return None
     _, known = _hysid.name_and_unit(name)
@@ -69,6 +71,13 @@ def _is_same(one: str, other: str) -> bool:
         return _hysid.unit_factor(f"x [{one}]", f"x [{other}]") is None
     except ValueError:
         return False
+
+
+def with_column(frame: Any, name: str, values: np.ndarray) -> Any:
+    """A data frame with a column in the place of that of the same name."""
+    if is_of_pandas(frame):
+        return frame.assign(**{name: values})
+    return frame.with_columns(type(frame[name])(name, values))
 
 
 def row_labels(values: Any) -> Any:
