@@ -442,13 +442,20 @@ class Model:
         of_ten = whole("of_ten", of_ten, 5, 9)
         state = name_of("initial_state", initial_state)
         arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
-        runs = [
-            self._native.predict(name, *driving, probability, of_ten, state) for name, driving in _of_records(arranged)
-        ]
+        predicted = self._predicted(arranged, probability, of_ten, state)
         self._warn_of_range(arranged)
-        of_rows = (np.concatenate(parts) for parts in zip(*runs))
         suffixes = ("_model", "_model_low", "_model_high")
-        return Prediction(*(shaped_like(x, values, self.output, suffix) for values, suffix in zip(of_rows, suffixes)))
+        return Prediction(*(shaped_like(x, values, self.output, suffix) for values, suffix in zip(predicted, suffixes)))
+
+    def _predicted(
+        self, arranged: Columns, probability: float, of_ten: int = 5, initial_state: str | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """Output, lower and upper edge of the band."""
+        runs = [
+            self._native.predict(name, *driving, probability, of_ten, initial_state)
+            for name, driving in _of_records(arranged)
+        ]
+        return tuple(np.concatenate(parts) for parts in zip(*runs))
 
     def _simulated(
         self, arranged: Columns, initial_state: str | None = None, single_precision: bool = False
