@@ -134,7 +134,7 @@ def _of_list(x: Sequence[Any], others: dict[str, Any], records: Any, inputs: Seq
     """The columns of a list of records, one after the other."""
     names = _record_names(records, len(x))
     given = [_for_each(what, values, len(x)) for what, values in others.items()]
-    parts = []
+    parts: list[Columns] = []
     for name, one, y, time, rate in zip(names, x, *given):
         part = _of_table(one, y, time, rate, None, inputs, name)
         if parts and part.names() != parts[0].names():
@@ -240,8 +240,8 @@ def check_indexes(given: Mapping[str, Any]) -> None:
             index = row_labels(one)
             if index is not None:
                 labels[key] = (is_of_pandas(one), index)
-    first, *others = labels or {"": None}
-    for other in others:
+    first = next(iter(labels), "")
+    for other in list(labels)[1:]:
         (is_pandas, one), (is_too, another) = labels[first], labels[other]
         if is_pandas == is_too and not one.equals(another):
             raise ValueError(

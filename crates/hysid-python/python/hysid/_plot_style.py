@@ -88,7 +88,7 @@ def paper(
             raise ValueError(f"font {font!r} is not installed: choose {', '.join(GENERIC)} or an installed font") from None
     small = max(size - 1.0, 5.0)
     line = size / 10.0
-    settings = {
+    settings: dict[Any, Any] = {
         "figure.figsize": (wide / 25.4, high / 25.4),
         "font.family": font,
         "font.size": size,

@@ -17,7 +17,7 @@ UNITLESS = ("", "1", "-", "dimensionless")
 
 def is_frame(values: Any) -> bool:
     """Whether values are a data frame: a table of columns with names that is no mapping."""
-    return hasattr(values, "columns") and len(getattr(values, "shape", ())) == 2
+    return len(getattr(values, "shape", ())) == 2 and hasattr(values, "columns")
 
 
 def is_of_pandas(values: Any) -> bool:

@@ -13,7 +13,7 @@ from hysid._fitting import requested
 from hysid._html import number, table
 from hysid._progress import Listener, of_native, told
 from hysid._warning import warn
-from hysid.model import Errors
+from hysid._results import Errors
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, Union, overload
 
 import numpy as np
 
@@ -30,9 +30,40 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
 
-__all__ = ["Errors", "Member", "Model", "Prediction", "Stepper"]
+__all__ = ["Model", "Stepper"]
 
 Stepper = _hysid.Stepper
+
+
+class Series(Protocol):
+    """A Series of pandas or polars, or a DataArray of xarray."""
+
+    @property
+    def name(self) -> Any: ...
+    def to_numpy(self, *args: Any, **keywords: Any) -> Any: ...
+
+
+class Frame(Protocol):
+    """A DataFrame of pandas or polars."""
+
+    @property
+    def columns(self) -> Any: ...
+    def to_numpy(self, *args: Any, **keywords: Any) -> Any: ...
+
+
+class SupportsArray(Protocol):
+    """What NumPy makes an array of."""
+
+    def __array__(self) -> Any: ...
+
+
+AnySeries = TypeVar("AnySeries", bound=Series)
+
+Numbers: TypeAlias = Union[SupportsArray, Sequence[float], Sequence[Sequence[float]], Mapping[str, "ArrayLike"]]
+"""Numbers that are no Series: arrays, lists of numbers, and arrays by the names of their columns."""
+
+Given: TypeAlias = Union["ArrayLike", str, Sequence["ArrayLike"], None]
+"""A value for each row, the name of a column of the table `x`, or a list for the records of a list `x`."""
 
 
 class Model:
@@ -331,12 +362,84 @@ class Model:
 
     # Simulation
 
+    @overload
     def simulate(
         self,
-        x: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        x: AnySeries,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> AnySeries: ...
+    @overload
+    def simulate(
+        self,
+        x: Frame,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> Any: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[AnySeries],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[AnySeries]: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[Frame],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[Any]: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[np.ndarray] | Sequence[Mapping[str, ArrayLike]],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[np.ndarray]: ...
+    @overload
+    def simulate(
+        self,
+        x: Numbers,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> np.ndarray: ...
+    def simulate(
+        self,
+        x: Any,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -348,13 +451,14 @@ class Model:
 
         Parameters
         ----------
-        x : array of shape (n,) or (n, inputs)
-            The inputs, in the units of the training.
-        time : array of shape (n,), optional
-            Time stamps, for a model that needs them.
-        rate : array of shape (n,), optional
+        x : array of shape (n,) or (n, inputs), or list of these
+            The inputs, in the units of the training. Of a table with more columns, those with the names of the model's
+            inputs are taken. A list has an array or table of each record; then `time` and `rate` are lists too.
+        time : array of shape (n,), name of a column, or list of arrays, optional
+            Time stamps, for a model that needs them. A name is that of a column of the table `x`.
+        rate : array of shape (n,) or list of arrays, optional
             The rate of the first input, for a model that was trained with a given rate.
-        records : array of shape (n,), optional
+        records : array of shape (n,), name of a column, or list of names, optional
             A label for each row; where the label changes, a new record starts in the initial state.
         initial_state : str, optional
             State of the memory at the beginning of each record: ``"virgin"``, ``"saturated-up"`` (after a visit of the
@@ -371,7 +475,9 @@ class Model:
         Returns
         -------
         array of shape (n,)
-            The output, in the unit of the training; a Series with the index of `x` if that is a pandas object.
+            The output, in the unit of the training. A Series with the index of `x` for an object of pandas, a Series for
+            one of polars, a DataArray with the coordinates of `x` and the attribute ``units`` for one of xarray; a list of
+            these for a list.
 
         Raises
         ------
@@ -386,10 +492,10 @@ class Model:
 
     def predict(
         self,
-        x: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        x: Values | Frame | Series,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         probability: float = 0.9,
         of_ten: int = 5,
@@ -420,7 +526,7 @@ class Model:
         Returns
         -------
         Prediction
-            Output, lower edge and upper edge; each a Series with the index of `x` if that is a pandas object.
+            Output, lower edge and upper edge; each as `simulate` gives the output.
 
         Raises
         ------
@@ -481,10 +587,10 @@ class Model:
     def evaluate(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -526,10 +632,10 @@ class Model:
     def residuals(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -567,10 +673,10 @@ class Model:
     def parameter_intervals(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
     ) -> list[ParameterInterval] | None:
         """Compute 95 % confidence intervals of the parameters of a classical law from its training data.
 
@@ -773,8 +879,8 @@ class Model:
         Returns
         -------
         Inversion
-            Inputs and outputs, which of them are reached, and the preview. Columns are Series with the index of `y` if
-            that is a pandas object.
+            Inputs and outputs, which of them are reached, and the preview. Columns are Series or DataArrays with the rows
+            of `y` if that is an object of pandas, polars or xarray.
 
         Raises
         ------

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
 from hysid._arguments import real
-from hysid._data import Column, columns
+from hysid._columns import Column
+from hysid._data import columns
 
 if TYPE_CHECKING:
     from hysid._data import Values

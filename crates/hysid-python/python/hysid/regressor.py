@@ -219,7 +219,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         if self._trained is None:
             return self.model_._simulated(columns)
         whole, own = continued(self._trained, columns)
-        return self.model_._simulated(whole)[own]
+        simulated: np.ndarray = self.model_._simulated(whole)[own]
+        return simulated
 
     def score(self, X: Any, y: Any, sample_weight: Any = None) -> float:  # noqa: N803
         """Give the coefficient of determination of a free run; rows with NaN are not scored.
