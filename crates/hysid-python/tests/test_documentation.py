@@ -71,6 +71,6 @@ def test_importing_takes_in_only_numpy():
     import sys
 
     script = "import sys, hysid; print([name for name in sys.argv[1:] if name in sys.modules])"
-    heavy = ["sklearn", "matplotlib", "pandas", "tqdm", "dask", "scipy"]
+    heavy = ["sklearn", "matplotlib", "pandas", "polars", "xarray", "tqdm", "dask", "scipy", "multiprocessing"]
     said = subprocess.run([sys.executable, "-c", script, *heavy], capture_output=True, text=True, check=True)
     assert said.stdout.strip() == "[]"
