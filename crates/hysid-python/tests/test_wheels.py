@@ -42,6 +42,12 @@ def test_what_is_used_is_pinned_and_what_is_built_is_tested(jobs):
     assert f'requires-python = ">={versions[0]}"' in project and len(versions) == 2
 
 
+def test_the_package_has_the_licences_of_the_repository():
+    package = ROOT / "crates" / "hysid-python"
+    for name in ("LICENSE-MIT", "LICENSE-APACHE"):
+        assert (package / name).read_bytes() == (ROOT / name).read_bytes()
+
+
 def test_the_script_that_tests_an_installed_package_passes(capsys):
     import runpy
 
