@@ -65,6 +65,14 @@ def test_a_list_of_lists_is_a_table(spring_and_slider):
     assert hysid.fit(rows, y.tolist(), **SMALL) == hysid.fit(x, y, **SMALL)
 
 
+def test_operators_and_laws_take_one_record(records):
+    (xs, _, _), _, _ = records
+    with pytest.raises(ValueError, match="takes one record, not a list of 3"):
+        hysid.operators.play(xs, 1.0)
+    with pytest.raises(ValueError, match="masing takes one record, not a list of 3"):
+        hysid.classical.masing(xs, [1.0], [1.0, 0.5])
+
+
 def test_lists_that_do_not_agree_are_refused(records):
     (xs, ys, times), (x, y, _), _ = records
     for arguments, text in [

@@ -1,10 +1,9 @@
 """What `Model.simulate` gives for what it takes, for a type checker: `test_types.py` runs mypy over this file."""
 
-from typing import assert_type
-
 import numpy as np
 import polars
 import xarray
+from typing_extensions import assert_type
 
 import hysid
 
