@@ -35,7 +35,7 @@ pub fn source_distribution() -> Result<()> {
     if archives.exists() {
         fs::remove_dir_all(&archives).context("step `sdist`: an old archive cannot be removed")?;
     }
-    let build = ["-m", "maturin", "sdist", "--quiet", "--out"];
+    let build = ["-m", "maturin", "sdist", "--out"];
     step("maturin sdist", Command::new(&python).args(build).arg(&archives).current_dir(package()))?;
     let archive = fs::read_dir(&archives)?.next().context("step `sdist`: maturin made no archive")??.path();
 

@@ -31,14 +31,16 @@ def new_axes(ax: Axes | None) -> Axes:
     return plt.subplots(layout="constrained")[1] if ax is None else ax
 
 
-def labelled_once(ax: Axes) -> None:
-    """A legend that names each kind of line once, if there are several."""
+def labelled_once(ax: Axes, *, above: bool = False) -> None:
+    """A legend that names each kind of line once, if there are several; inside the axes, or in a line above them."""
     handles, labels = ax.get_legend_handles_labels()
     first: dict[str, Any] = {}
     for handle, label in zip(handles, labels):
         first.setdefault(label, handle)
-    if len(first) > 1:
-        ax.legend(list(first.values()), list(first), frameon=False)
+    if len(first) < 2:
+        return
+    beside: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(first), "borderaxespad": 0.2}
+    ax.legend(list(first.values()), list(first), frameon=False, **(beside if above else {}))
 
 
 @contextmanager

@@ -120,8 +120,9 @@ def histories(
     """
     run = Run(model, x, y, time, rate, records)
     edges = run.band(band)
+    is_new = ax is None
     if ax is None:
-        _, (above, ax) = plt.subplots(2, sharex=True, height_ratios=(2, 3), layout="constrained")
+        _, (above, ax) = plt.subplots(2, sharex=True, height_ratios=(3, 4), layout="constrained")
         for rows in run.records():
             above.plot(run.stamps(rows), run.x[rows], **INPUT)
         # Two lines, because this part of the figure is low.
@@ -137,7 +138,8 @@ def histories(
             ax.plot(stamps, run.simulated[rows], **MODEL)
     ax.xaxis.set_major_locator(MaxNLocator(6))
     ax.set(xlabel=run.time_label, ylabel=run.output_label)
-    labelled_once(ax)
+    # Histories fill their axes: a legend would lie on them.
+    labelled_once(ax, above=is_new)
     return ax
 
 
