@@ -14,7 +14,8 @@ from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._fitting import as_json, fitted
 from hysid._html import number, table
-from hysid._progress import Listener, Progress, told
+from hysid._progress import Listener, Progress
+from hysid._progress_line import told
 from hysid._warning import HysidWarning, warn
 from hysid._results import Errors
 from hysid.model import Model

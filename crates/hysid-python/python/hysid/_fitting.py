@@ -11,7 +11,8 @@ import numpy as np
 from hysid import _hysid
 from hysid._arguments import real, whole
 from hysid._data import columns
-from hysid._progress import Listener, of_native, told
+from hysid._progress import Listener, of_native
+from hysid._progress_line import told
 from hysid._warning import warn
 from hysid.model import Model
 

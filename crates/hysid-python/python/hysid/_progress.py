@@ -1,14 +1,11 @@
-"""Progress of long computations: what is told, and to whom."""
+"""Progress of long computations: what is told."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias, Union
 
-from hysid._progress_line import progress_line
-
-__all__ = ["Listener", "Progress", "told"]
+__all__ = ["Listener", "Progress", "of_native"]
 
 
 class Progress(NamedTuple):
@@ -44,23 +41,6 @@ class Progress(NamedTuple):
 
 Listener: TypeAlias = Union[bool, Callable[[Progress], object], None]
 """Who is told of the progress: True for a line in a terminal or notebook, False or None for nobody, or a callback."""
-
-
-@contextmanager
-def told(progress: Listener, time_limit: float | None = None) -> Iterator[Callable[[Progress], object] | None]:
-    """The callback of a computation; afterwards it is closed if it has `close`."""
-    if progress is None or isinstance(progress, bool):
-        callback: Callable[[Progress], object] | None = progress_line(time_limit) if progress else None
-    elif callable(progress):
-        callback = progress
-    else:
-        raise TypeError(f"progress {progress!r}: True, False or a function is needed")
-    try:
-        yield callback
-    finally:
-        close = getattr(callback, "close", None)
-        if close is not None:
-            close()
 
 
 def of_native(callback: Callable[[Progress], object] | None) -> Callable[..., object] | None:

@@ -1,4 +1,4 @@
-"""The line of progress that is shown without being asked for: in a terminal and in a notebook, nowhere else."""
+"""Who is told of the progress: a callback, or a line in a terminal or notebook, which is shown without being asked for."""
 
 from __future__ import annotations
 
@@ -6,23 +6,39 @@ import math
 import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from html import escape
 from time import monotonic
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
 from hysid import _hysid
+from hysid._progress import Listener, Progress
 
-if TYPE_CHECKING:
-    from hysid._progress import Progress
-
-__all__ = ["progress_line"]
+__all__ = ["told"]
 
 BEFORE_SHOWN = 0.5
 """Seconds without a line: what is done by then needs none."""
 
 COLUMNS = 80
 """Of a terminal that does not tell its width, and of a notebook."""
+
+
+@contextmanager
+def told(progress: Listener, time_limit: float | None = None) -> Iterator[Callable[[Progress], object] | None]:
+    """The callback of a computation; afterwards it is closed if it has `close`."""
+    if progress is None or isinstance(progress, bool):
+        callback: Callable[[Progress], object] | None = progress_line(time_limit) if progress else None
+    elif callable(progress):
+        callback = progress
+    else:
+        raise TypeError(f"progress {progress!r}: True, False or a function is needed")
+    try:
+        yield callback
+    finally:
+        close = getattr(callback, "close", None)
+        if close is not None:
+            close()
 
 
 def progress_line(time_limit: float | None = None) -> ProgressLine | None:

@@ -11,7 +11,8 @@ from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._fitting import requested
 from hysid._html import number, table
-from hysid._progress import Listener, of_native, told
+from hysid._progress import Listener, of_native
+from hysid._progress_line import told
 from hysid._warning import warn
 from hysid._results import Errors
 
