@@ -1,9 +1,10 @@
 """Identification of hysteresis: measured input and output in, a small, stable model out.
 
 `fit` identifies a `Model`, `validate` cross-validates it, `diagnose` determines properties of the hysteresis in data,
-`cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same data. `operators` and `classical` contain the operators and laws of the field
-as functions on arrays, `specimens` gives synthetic data. `HysteresisRegressor` is the estimator for scikit-learn,
-`plot` draws with matplotlib; both are imported when they are first used.
+`cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same
+data. `operators` and `classical` contain the operators and laws of the field as functions on arrays, `specimens` gives
+synthetic data. `HysteresisRegressor` is the estimator for scikit-learn and `RecordSplit` divides data for it; `plot` draws
+with matplotlib. The estimator and the plots are imported when they are first used.
 """
 
 from __future__ import annotations

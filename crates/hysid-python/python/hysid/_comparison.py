@@ -258,8 +258,9 @@ class _Work:
     def progress(self) -> Progress:
         """The progress of all of them together."""
         done = sum(self.shares) / max(1, len(self.shares))
-        finished = sum(share >= 1.0 for share in self.shares)
-        return Progress(done, float("nan"), 0, 0, "all-data", f"model {min(finished + 1, len(self.shares))} of {len(self.shares)}", True)
+        fits = len(self.shares)
+        place = min(sum(share >= 1.0 for share in self.shares) + 1, fits)
+        return Progress(done, float("nan"), 0, 0, "all-data", f"model {place} of {fits}", True)
 
 
 def _compared(

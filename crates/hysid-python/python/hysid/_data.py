@@ -244,10 +244,10 @@ def check_indexes(given: Mapping[str, Any]) -> None:
     for other in list(labels)[1:]:
         (is_pandas, one), (is_too, another) = labels[first], labels[other]
         if is_pandas == is_too and not one.equals(another):
+            ordered = f"reindex({first}.index)" if is_pandas else f"reindex_like({first})"
             raise ValueError(
                 f"{first} and {other} have different indexes, and rows are taken by position: bring them into the same "
-                f"order, as with {other}.{'reindex' if is_pandas else 'reindex_like'}({first}{'.index' if is_pandas else ''}), "
-                f"or give arrays, as with {other}.to_numpy()"
+                f"order, as with {other}.{ordered}, or give arrays, as with {other}.to_numpy()"
             )
 
 

@@ -32,7 +32,7 @@ def is_of_xarray(values: Any) -> bool:
 
 def is_of_polars(values: Any) -> bool:
     """Whether values are a Series or DataFrame of polars."""
-    return hasattr(values, "to_arrow") and hasattr(values, "equals") and hasattr(values, "lazy" if is_frame(values) else "alias")
+    return hasattr(values, "to_arrow") and hasattr(values, "with_columns" if is_frame(values) else "alias")
 
 
 def named_columns(table: Any) -> list[tuple[str, Any]] | None:

@@ -6,7 +6,7 @@ axes have the units of the columns' names, as in the reports: `H (A/m)`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
 import numpy as np
