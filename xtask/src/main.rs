@@ -1,4 +1,4 @@
-//! Developer commands: `cargo xtask check | test | python | bench | cases | generate-cases | generate-files |
+//! Developer commands: `cargo xtask check | test | python | sdist | bench | cases | generate-cases | generate-files |
 //! verdicts |
 //! verdict-battery | plan-battery | fuzz | soak | same-models | tidy | site`.
 
@@ -40,6 +40,7 @@ Commands:
   test [--quick] every test of the workspace, of the Python package in an environment of its own, and of the links of
                  the site. With --quick, only the tests inside the library's crates, and whether the rest compiles
   python         only the Python package's part of `test`
+  sdist          builds the Python package's source distribution and installs it alone (some minutes)
   bench [ARG]..  every benchmark; the arguments are passed on to `cargo bench`
   tidy           only the tidiness part of `check`
   site           the documentation as a site, target/site/index.html, and whether its links lead somewhere
@@ -108,6 +109,7 @@ fn main() -> ExitCode {
         ["test"] => test::run(),
         ["test", "--quick"] => test::quick(),
         ["python"] => python::test(),
+        ["sdist"] => python::source_distribution(),
         ["bench", passed_on @ ..] => bench::run(passed_on),
         ["tidy"] => tidy::run(),
         ["site"] => site::run(),

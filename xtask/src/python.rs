@@ -1,4 +1,5 @@
-//! The Python package: built, installed and tested in a virtual environment of its own, `target/python`.
+//! The Python package: built, installed and tested in a virtual environment of its own, `target/python`; and its source
+//! distribution.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -26,6 +27,45 @@ pub fn test() -> Result<()> {
     step("stubtest", Command::new(&python).args(stubtest).args(allowed).current_dir(&package))
 }
 
+/// Builds the source distribution, and installs it in an environment of its own outside of the repository, where it must
+/// fit a model. It is compiled from nothing, which takes minutes: the workflow of the wheels does the same for a release.
+pub fn source_distribution() -> Result<()> {
+    let python = environment()?;
+    let archives = program::target()?.join("sdist");
+    if archives.exists() {
+        fs::remove_dir_all(&archives).context("step `sdist`: an old archive cannot be removed")?;
+    }
+    let build = ["-m", "maturin", "sdist", "--out"];
+    step("maturin sdist", Command::new(&python).args(build).arg(&archives).current_dir(package()))?;
+    let archive = fs::read_dir(&archives)?.next().context("step `sdist`: maturin made no archive")??.path();
+
+    let folder = std::env::temp_dir().join(format!("hysid-sdist-{}", std::process::id()));
+    let outcome = install_alone(&archive, &folder);
+    fs::remove_dir_all(&folder).context("step `sdist`: the environment cannot be removed")?;
+    outcome
+}
+
+/// Installs an archive in a new environment in this folder, and runs the test of an installed package there.
+fn install_alone(archive: &Path, folder: &Path) -> Result<()> {
+    step("python -m venv", Command::new(interpreter()?).args(["-m", "venv", "--clear"]).arg(folder))?;
+    let python = python_of(folder);
+    // The folder of the archive's own build, not that of the workspace.
+    let build = folder.join("target");
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    let mut pip = Command::new(&python);
+    step("pip install", pip.args(install).arg(archive).env("CARGO_TARGET_DIR", build).current_dir(folder))?;
+    let test = package().join("tests").join("installed.py");
+    step("installed.py", Command::new(&python).arg(test).current_dir(folder))
+}
+
+/// The Python of a virtual environment.
+fn python_of(environment: &Path) -> PathBuf {
+    match cfg!(windows) {
+        true => environment.join("Scripts").join("python.exe"),
+        false => environment.join("bin").join("python"),
+    }
+}
+
 fn package() -> PathBuf {
     workspace_root().join("crates").join("hysid-python")
 }
@@ -33,10 +73,7 @@ fn package() -> PathBuf {
 /// The Python of the virtual environment, with all that is pinned; made and filled if need be.
 pub fn environment() -> Result<PathBuf> {
     let folder = program::target()?.join("python");
-    let python = match cfg!(windows) {
-        true => folder.join("Scripts").join("python.exe"),
-        false => folder.join("bin").join("python"),
-    };
+    let python = python_of(&folder);
     let requirements = package().join("requirements.txt");
     let wanted = fs::read_to_string(&requirements).context("step `python`: no list of requirements")?;
     let installed = folder.join("installed.txt");

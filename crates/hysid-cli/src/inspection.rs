@@ -242,7 +242,7 @@ struct LawParameter {
 
 fn law_parameters(model: &Model) -> Vec<LawParameter> {
     let Some(law) = model.law() else { return Vec::new() };
-    let unit = |parameter: &_| parameters::unit(model, parameter);
+    let unit = |parameter: &_| model.unit_of_parameter(parameter);
     let all = law.parameters().into_iter();
     all.map(|parameter| LawParameter {
         unit: unit(&parameter),

@@ -1,8 +1,5 @@
 //! The observer of a fit: a bar on a terminal, now and then a line elsewhere; Ctrl-C and time limit.
 
-mod line;
-mod remaining;
-
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -12,9 +9,8 @@ use hysid::model::history::Phase;
 use hysid::options::network::Method;
 use hysid::significant::Significant;
 use hysid_document::plain::WIDTH;
+use hysid_document::progress::{Line, Remaining, in_words};
 use indicatif::{ProgressBar, ProgressStyle};
-use line::Line;
-use remaining::Remaining;
 
 use crate::checkpoint::Keeper;
 use crate::interrupt;
@@ -140,7 +136,7 @@ impl Follower {
             fold: (of > 1).then_some((place + 1, of)),
             part: part(progress, self.starts, self.best),
             error: error(progress, self.best),
-            left: left.map(remaining::in_words),
+            left: left.map(in_words),
         }
     }
 

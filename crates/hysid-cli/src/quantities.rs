@@ -1,104 +1,7 @@
-//! Names of input and output, and the units of what is made of them.
+//! Names of quantities with their units, as text shows them.
 
-use hysid::data::record::ColumnNames;
 use hysid::data::unit;
-use hysid::diagnosis::cycles::Quantity;
-
-/// What the loops are loops of.
-pub struct Quantities {
-    /// Name of the input's column.
-    pub input: String,
-    /// Name of the output's column.
-    pub output: String,
-    time: Option<String>,
-}
-
-impl Quantities {
-    /// The first input and the output.
-    pub fn of(names: &ColumnNames) -> Self {
-        let of_time = |name: &String| unit::of_column(name);
-        Self {
-            input: names.inputs[0].clone(),
-            output: names.output.clone(),
-            time: names.time.as_ref().and_then(of_time),
-        }
-    }
-
-    /// A quantity in the unit of the input, named like a column.
-    pub fn as_input(&self, name: &str) -> String {
-        named(name, unit::of_column(&self.input))
-    }
-
-    /// A quantity in the unit of the output.
-    pub fn as_output(&self, name: &str) -> String {
-        named(name, unit::of_column(&self.output))
-    }
-
-    /// A quantity in the product of both units, as the area of a loop.
-    pub fn as_energy(&self, name: &str) -> String {
-        named(name, self.energy())
-    }
-
-    /// A quantity in the product of both units over that of time, as a loss.
-    pub fn as_power(&self, name: &str) -> String {
-        let power = self.energy().zip(self.time.clone());
-        named(name, power.map(|(energy, time)| unit::power(&energy, &time)))
-    }
-
-    /// A quantity in the unit of the output over that of the input.
-    pub fn as_stiffness(&self, name: &str) -> String {
-        let units = unit::of_column(&self.output).zip(unit::of_column(&self.input));
-        named(name, units.map(|(output, input)| unit::quotient(&output, &input)))
-    }
-
-    /// A quantity in the unit of the output over the square of that of the input, as a Preisach density.
-    pub fn as_density(&self, name: &str) -> String {
-        let units = unit::of_column(&self.output).zip(unit::of_column(&self.input));
-        let square = |input: String| {
-            if input.contains(['/', ' ']) { format!("({input})2") } else { format!("{input}2") }
-        };
-        named(name, units.map(|(output, input)| format!("{output}/{}", square(input))))
-    }
-
-    /// A quantity in the unit of the input over that of time.
-    pub fn as_speed(&self, name: &str) -> String {
-        let units = unit::of_column(&self.input).zip(self.time.clone());
-        named(name, units.map(|(input, time)| unit::quotient(&input, &time)))
-    }
-
-    /// A figure of a cycle, named like a column.
-    pub fn as_figure(&self, name: &str, quantity: Quantity) -> String {
-        match quantity {
-            Quantity::Input => self.as_input(name),
-            Quantity::Output | Quantity::Creep => self.as_output(name),
-            Quantity::Energy => self.as_energy(name),
-            Quantity::Power => self.as_power(name),
-            Quantity::Stiffness => self.as_stiffness(name),
-            Quantity::Time => named(name, self.time.clone()),
-            Quantity::Frequency => named(name, self.time.as_deref().map(frequency)),
-            Quantity::Percent => named(name, Some("%".into())),
-        }
-    }
-
-    fn energy(&self) -> Option<String> {
-        let units = unit::of_column(&self.output).zip(unit::of_column(&self.input));
-        units.map(|(output, input)| unit::energy(&output, &input))
-    }
-}
-
-/// The unit of a frequency.
-fn frequency(time: &str) -> String {
-    match time {
-        "s" | "sec" | "secs" | "second" | "seconds" => "Hz".into(),
-        "ms" => "kHz".into(),
-        other => format!("1/{other}"),
-    }
-}
-
-/// Without a unit where one of those it is made of is not known.
-fn named(name: &str, unit: Option<String>) -> String {
-    unit.map_or_else(|| name.to_string(), |unit| format!("{name} [{unit}]"))
-}
+pub use hysid::diagnosis::cycles::Quantities;
 
 /// The name as text shows it: `energy, J`.
 pub fn text_label(name: &str) -> String {
@@ -112,23 +15,9 @@ pub fn text_label(name: &str) -> String {
 mod tests {
     use super::*;
 
-    fn quantities(time: Option<&str>, input: &str, output: &str) -> Quantities {
-        let time = time.map(String::from);
-        Quantities::of(&ColumnNames { time, inputs: vec![input.into()], rate: None, output: output.into() })
-    }
-
     #[test]
-    fn units_are_made_of_units() {
-        let joint = quantities(Some("t_s"), "disp_mm", "force_kN");
-        assert_eq!(joint.as_energy("energy"), "energy [J]");
-        assert_eq!(joint.as_power("loss"), "loss [W]");
-        assert_eq!(joint.as_stiffness("stiffness"), "stiffness [kN/mm]");
-        assert_eq!(joint.as_speed("speed"), "speed [mm/s]");
-        let magnet = quantities(None, "H_A_per_m", "B_T");
-        assert_eq!(magnet.as_stiffness("slope"), "slope [T/(A/m)]");
-        assert_eq!(magnet.as_density("density"), "density [T/(A/m)2]");
-        assert_eq!(text_label(&magnet.as_energy("energy")), "energy, J/m3");
-        assert_eq!(magnet.as_speed("speed"), "speed");
-        assert_eq!(quantities(None, "strain", "stress_MPa").as_energy("energy"), "energy");
+    fn a_unit_follows_a_comma() {
+        assert_eq!(text_label("energy [J/m3]"), "energy, J/m3");
+        assert_eq!(text_label("energy"), "energy");
     }
 }

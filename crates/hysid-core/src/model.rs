@@ -32,9 +32,10 @@ use crate::data::initial_state::InitialState;
 use crate::data::metrics::{ErrorSums, Errors};
 use crate::data::rate::RateMethod;
 use crate::data::record::{ColumnNames, Dataset, Excitation, Fingerprint, Likeness, Record};
+use crate::data::unit::of_column;
 use crate::data::warning::Warning;
 use crate::error::{Channel, DataProblem, Error, LARGEST_VALUE, OptionError, Result};
-use crate::law::Classical;
+use crate::law::{Classical, Parameter};
 use crate::model::history::Run;
 use crate::model::input_transform::InputTransform;
 use crate::model::selection::Selection;
@@ -374,6 +375,15 @@ impl Model {
             Predictor::Law(law) => Some(law),
             Predictor::Network { .. } | Predictor::Ensemble(_) => None,
         }
+    }
+
+    /// The unit of a parameter of its law, from those of the columns; empty if it has none or one is not known.
+    pub fn unit_of_parameter(&self, parameter: &Parameter) -> String {
+        let names = self.names();
+        let is_companded = self.input_transform().companding.is_some();
+        let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
+        let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
+        parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref())
     }
 
     /// The ensemble; `None` for a single model.

@@ -11,6 +11,7 @@ mod field;
 mod figure;
 mod losses;
 mod path;
+mod quantities;
 mod reading;
 mod row;
 mod table;
@@ -26,6 +27,7 @@ pub use self::division::Division;
 pub use self::field::Field;
 pub use self::figure::{FIGURES, Figure, Quantity};
 pub use self::losses::LossAtFrequency;
+pub use self::quantities::Quantities;
 pub use self::row::CycleRow;
 pub use self::table::{CycleOptions, CycleTable};
 

@@ -23,6 +23,7 @@ pub mod markdown;
 pub mod number;
 mod part;
 pub mod plain;
+pub mod progress;
 mod table;
 mod text;
 pub mod unit;

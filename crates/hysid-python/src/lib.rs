@@ -5,11 +5,14 @@ mod cycles;
 mod data;
 mod elements;
 mod failure;
+mod folds;
 mod identification;
 mod inverse;
+mod labels;
 mod minimiser;
 mod model;
 mod plan;
+mod progress;
 mod specimens;
 
 use pyo3::prelude::*;
@@ -24,15 +27,21 @@ mod _hysid {
     #[pymodule_export]
     use crate::elements::{deteriorating_stop, law, play, relaxation, relay, stop};
     #[pymodule_export]
+    use crate::folds::folds;
+    #[pymodule_export]
     use crate::identification::{FitSpec, identify, model_names, option_names, option_table, validate};
     #[pymodule_export]
     use crate::inverse::Inverse;
+    #[pymodule_export]
+    use crate::labels::{axis_label, figure_label, name_and_unit};
     #[pymodule_export]
     use crate::minimiser::minimise;
     #[pymodule_export]
     use crate::model::{Model, Stepper};
     #[pymodule_export]
     use crate::plan::plan;
+    #[pymodule_export]
+    use crate::progress::ProgressLine;
     #[pymodule_export]
     use crate::specimens::{specimen, specimens};
 

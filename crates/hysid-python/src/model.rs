@@ -8,6 +8,7 @@ use hysid::data::record::Excitation;
 use hysid::diagnosis::ModelDiagnosis;
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::fit::intervals::ParameterIntervals;
+use hysid::law::Parameter;
 use hysid::model::selection::Selection;
 use hysid::model::{self, BandLevel, Prediction};
 use hysid_export::description::RateSource;
@@ -100,6 +101,16 @@ impl Model {
     /// Number of fitted parameters.
     fn parameters(&self) -> usize {
         self.model.parameters()
+    }
+
+    /// Symbol, value, unit and meaning of each parameter of its law; `None` for another model.
+    fn law_parameters(&self) -> Option<Vec<(String, f64, String, &'static str)>> {
+        let parameters = self.model.law()?.parameters().into_iter();
+        let told = |parameter: Parameter| {
+            let unit = self.model.unit_of_parameter(&parameter);
+            (parameter.symbol, parameter.value, unit, parameter.meaning)
+        };
+        Some(parameters.map(told).collect())
     }
 
     /// True if it needs time stamps.

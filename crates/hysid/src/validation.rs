@@ -97,14 +97,32 @@ pub(crate) fn folds_to_choose_by(data: &Dataset, most: usize) -> Vec<Fold> {
 }
 
 /// Where data are cut into a fold: a fold is a copy of the data, and a thousand of them would be too many to keep.
-#[derive(Debug, Clone)]
-enum Cut {
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cut {
     /// These records are held out.
     Records(Vec<usize>),
     /// What follows these rows of a single record is judged, up to an end; shares of the rows, in percent.
-    Forecast { record: usize, begin: usize, end: usize, percent: (f64, f64) },
-    /// A block of rows of a single record.
-    Block { record: usize, begin: usize, end: usize, percent: (f64, f64) },
+    Forecast {
+        /// The record.
+        record: usize,
+        /// The first row that is judged.
+        begin: usize,
+        /// The row after the last one.
+        end: usize,
+        /// Where the judged rows lie.
+        percent: (f64, f64),
+    },
+    /// A block of rows of a single record is held out from the rest.
+    Block {
+        /// The record.
+        record: usize,
+        /// The first row of the block.
+        begin: usize,
+        /// The row after the last one.
+        end: usize,
+        /// Where the block lies.
+        percent: (f64, f64),
+    },
 }
 
 impl Cut {
@@ -250,6 +268,11 @@ impl<'d> CrossValidator<'d> {
     /// Number of folds.
     pub fn folds(&self) -> usize {
         self.cuts.len()
+    }
+
+    /// Where the data are cut, a cut for each fold.
+    pub fn cuts(&self) -> &[Cut] {
+        &self.cuts
     }
 
     /// A fold, counted from 0, which is a copy of the data.

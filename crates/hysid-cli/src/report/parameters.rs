@@ -1,8 +1,6 @@
 //! The parameters of a classical law, in the field's symbols and the user's units.
 
-use hysid::data::unit::of_column;
 use hysid::fit::intervals::{IntervalStatus, ParameterInterval, ParameterIntervals};
-use hysid::law::Parameter;
 use hysid::model::Model;
 use hysid_document::{Cell, Part, Table, count, number};
 
@@ -41,15 +39,6 @@ fn explanation(intervals: &ParameterIntervals) -> Part {
     ))
 }
 
-/// The unit of a parameter, from those of the columns; empty if it has none or one is not known.
-pub fn unit(model: &Model, parameter: &Parameter) -> String {
-    let names = model.names();
-    let is_companded = model.input_transform().companding.is_some();
-    let input = of_column(&names.inputs[0]).filter(|_| !is_companded);
-    let (output, time) = (of_column(&names.output), names.time.as_deref().and_then(of_column));
-    parameter.unit.unit(input.as_deref(), output.as_deref(), time.as_deref())
-}
-
 /// The parameters of a law, with their intervals where there are any; `None` for another model.
 pub fn table(model: &Model, intervals: Option<&ParameterIntervals>) -> Option<Table> {
     let parameters = model.law()?.parameters();
@@ -68,7 +57,7 @@ pub fn table(model: &Model, intervals: Option<&ParameterIntervals>) -> Option<Ta
         let mut row = vec![
             parameter.symbol.as_str().into(),
             Cell::number(parameter.value, 5),
-            unit(model, parameter).into(),
+            model.unit_of_parameter(parameter).into(),
             parameter.meaning.into(),
             format!("{} to {}", bound(low), bound(high)).into(),
         ];

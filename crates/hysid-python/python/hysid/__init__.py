@@ -1,9 +1,10 @@
 """Identification of hysteresis: measured input and output in, a small, stable model out.
 
 `fit` identifies a `Model`, `validate` cross-validates it, `diagnose` determines properties of the hysteresis in data,
-`cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same data. `operators` and `classical` contain the operators and laws of the field
-as functions on arrays, `specimens` gives synthetic data. `HysteresisRegressor` is the estimator for scikit-learn,
-`plot` draws with matplotlib; both are imported when they are first used.
+`cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same
+data. `operators` and `classical` contain the operators and laws of the field as functions on arrays, `specimens` gives
+synthetic data. `HysteresisRegressor` is the estimator for scikit-learn and `RecordSplit` divides data for it; `plot` draws
+with matplotlib. The estimator and the plots are imported when they are first used.
 """
 
 from __future__ import annotations
@@ -15,14 +16,18 @@ from hysid import _hysid, classical, operators
 from hysid._comparison import Compared, Comparison, compare
 from hysid._cycles import Cycles, cycles
 from hysid._diagnosis import Diagnosis, Finding, ModelDiagnosis, diagnose
-from hysid._fitting import Progress, fit
+from hysid._fitting import fit
 from hysid._inverse import Inverse, Inversion, Inverted
 from hysid._minimiser import Minimum, minimise
 from hysid._plan import Plan, Segment, plan
+from hysid._progress import Progress
+from hysid._record_split import RecordSplit
 from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
+from hysid._summary import Summary
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
-from hysid.model import Errors, Member, Model, Prediction, Stepper
+from hysid._results import Errors, Member, Prediction
+from hysid.model import Model, Stepper
 from hysid.progress import tqdm_progress
 from hysid.specimens import Records, Specimen, specimen, specimens
 
@@ -56,12 +61,14 @@ __all__ = [
     "Plan",
     "Prediction",
     "Progress",
+    "RecordSplit",
     "Records",
     "ResidualFinding",
     "Residuals",
     "Segment",
     "Specimen",
     "Stepper",
+    "Summary",
     "Validation",
     "classical",
     "compare",
@@ -78,6 +85,10 @@ __all__ = [
     "tqdm_progress",
     "validate",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
 
 
 def __getattr__(name: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -14,8 +14,11 @@ from hysid._arguments import real, whole
 from hysid._data import columns
 from hysid._fitting import as_json, fitted
 from hysid._html import number, table
+from hysid._progress import Listener, Progress
+from hysid._progress_line import told
 from hysid._warning import HysidWarning, warn
-from hysid.model import Errors, Model
+from hysid._results import Errors
+from hysid.model import Model
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
 
 # Seconds for a model other than auto.
 _TIME_LIMIT = 20.0
+
+# Seconds between two looks at the progress.
+_PAUSE = 0.1
 
 
 @dataclass(frozen=True)
@@ -138,16 +144,17 @@ class Comparison(Sequence[Compared]):
 
 def compare(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
     rate: str | ArrayLike = "auto",
-    records: ArrayLike | None = None,
+    records: ArrayLike | str | None = None,
     *,
     test: Any = None,
     models: Sequence[str] | None = None,
     time_limit: float | None = None,
     seed: int | None = None,
     threads: int | None = None,
+    progress: Listener = True,
 ) -> Comparison:
     """Fit all models, in all their variants, to the same data and compare their errors on unseen data.
 
@@ -167,6 +174,9 @@ def compare(
         Seed of all random numbers.
     threads : int, optional
         Number of models fitted at the same time, each on one thread; by default one for each processor.
+    progress : bool or callable, default True
+        As of `hysid.fit`. If a callable returns true, the models that are being fitted end with their best fit so far, and
+        the others are not fitted.
 
     Returns
     -------
@@ -183,7 +193,7 @@ def compare(
     'generalized-prandtl-ishlinskii'
     """
     # Imported here: it is slow to import, and only this function needs it.
-    from concurrent.futures import ThreadPoolExecutor
+    from concurrent.futures import ThreadPoolExecutor, wait
 
     limit = None if time_limit is None else real("time_limit", time_limit)
     named = isinstance(rate, str)
@@ -205,17 +215,52 @@ def compare(
         except ValueError as error:
             rows.append(Compared(name, error=str(error)))
 
-    def row(request: _hysid.FitSpec) -> Compared:
-        return _compared(data, request, unseen, limit)
+    work = _Work(len(requests))
+
+    def row(place: int) -> Compared:
+        return _compared(data, requests[place], unseen, limit, work, place)
 
     workers = os.cpu_count() or 1 if threads is None else whole("threads", threads, 1, 1024)
-    with ThreadPoolExecutor(min(workers, max(1, len(requests)))) as pool, warnings.catch_warnings():
+    with (
+        told(progress) as callback,
+        ThreadPoolExecutor(min(workers, max(1, len(requests)))) as pool,
+        warnings.catch_warnings(),
+    ):
         warnings.simplefilter("ignore", HysidWarning)
+        futures = [pool.submit(row, place) for place in range(len(requests))]
         try:
-            return Comparison(rows + list(pool.map(row, requests)))
-        except KeyboardInterrupt:
-            pool.shutdown(cancel_futures=True)
+            pending = set(futures)
+            while pending:
+                pending = wait(pending, timeout=_PAUSE).not_done
+                if callback is not None and callback(work.progress()):
+                    work.ended = True
+        except BaseException:
+            # The models that are being fitted end as well.
+            work.ended = True
             raise
+        return Comparison(rows + [future.result() for future in futures])
+
+
+class _Work:
+    """What the fits of a comparison have in common: how far each is, and whether they are to end."""
+
+    def __init__(self, fits: int) -> None:
+        self.shares = [0.0] * fits
+        self.ended = False
+
+    def listener(self, place: int) -> Callable[[Progress], object]:
+        def listen(progress: Progress) -> bool:
+            self.shares[place] = progress.done
+            return self.ended
+
+        return listen
+
+    def progress(self) -> Progress:
+        """The progress of all of them together."""
+        done = sum(self.shares) / max(1, len(self.shares))
+        fits = len(self.shares)
+        place = min(sum(share >= 1.0 for share in self.shares) + 1, fits)
+        return Progress(done, float("nan"), 0, 0, "all-data", f"model {place} of {fits}", True)
 
 
 def _compared(
@@ -223,16 +268,22 @@ def _compared(
     request: _hysid.FitSpec,
     unseen: Columns | None,
     time_limit: float | None,
+    work: _Work,
+    place: int,
 ) -> Compared:
     name = request.label()
+    if work.ended:
+        return Compared(name, error="not fitted: the comparison was ended before")
     limit = time_limit if time_limit is not None or name == "auto" else _TIME_LIMIT
     began = perf_counter()
     try:
-        model = fitted(data, request, time_limit=limit, threads=1)
+        model = fitted(data, request, time_limit=limit, threads=1, progress=work.listener(place))
         seconds = perf_counter() - began
         test = None if unseen is None else model._evaluated(model._converted(unseen, same_units=False))
     except ValueError as error:
         return Compared(name, error=str(error))
+    finally:
+        work.shares[place] = 1.0
     return Compared(name, model, model.train, test, seconds)
 
 

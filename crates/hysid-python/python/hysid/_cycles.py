@@ -16,7 +16,7 @@ from hysid._data import columns
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from hysid._data import Values
+    from hysid._data import Columns, Values
 
 
 FIRST = ("record", "cycle", "first_row", "last_row", "complete")
@@ -141,9 +141,9 @@ def named_options(
 
 def cycles(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
-    records: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
+    records: ArrayLike | str | None = None,
     *,
     division: str | None = None,
     field: str | None = None,
@@ -200,4 +200,18 @@ def cycles(
     smoothing = truth("smoothing", smoothing)
     options = named_options(division, field, smoothing_factor)
     arranged = columns(x, y, time, None, records)
+    return cycles_of(arranged, *options, smallest_reversal=smallest_reversal, smoothing=smoothing)
+
+
+def cycles_of(
+    arranged: Columns,
+    division: str | None = None,
+    field: str | None = None,
+    smoothing_factor: int | None = None,
+    *,
+    smallest_reversal: float = 0.02,
+    smoothing: bool = True,
+) -> Cycles:
+    """The figures of each cycle in columns; arguments as of `cycles`."""
+    options = (division, field, smoothing_factor)
     return Cycles._of(_hysid.cycles(arranged.dataset(), smallest_reversal, smoothing, *options))

@@ -1,29 +1,24 @@
-"""From arrays and pandas objects to columns with names, and to records."""
+"""From arrays, tables and lists of records to columns with names, and to records."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hysid import _hysid
-from hysid._time import are_stamps, seconds
+from hysid._columns import Column, column_of, inputs_of
+from hysid._tables import is_frame, is_of_pandas, like, named_columns, row_labels
 from hysid._warning import warn
 
 Values: TypeAlias = Union[ArrayLike, Mapping[str, ArrayLike]]
-"""Numbers, or columns by their names; pandas objects are among the former."""
+"""Numbers, or columns by their names, or a list with these of each record; objects of pandas, polars and xarray are among
+the first."""
 
 RECORD = "data"
 """Name of the record if `records` is not given."""
-
-
-class Column(NamedTuple):
-    """Numbers, and their name if they have one."""
-
-    values: np.ndarray
-    name: str | None
 
 
 class Columns(NamedTuple):
@@ -62,55 +57,206 @@ class Columns(NamedTuple):
             ],
         )
 
+    def names(self) -> list[str | None]:
+        """The names of all columns: inputs, output, time, rate."""
+        others = (self.output, self.time, self.rate)
+        return [column.name for column in self.inputs] + [column.name for column in others if column is not None]
+
     def _input_names(self) -> list[str]:
         if len(self.inputs) == 1:
             return [self.inputs[0].name or "x"]
         return [column.name or f"x{place + 1}" for place, column in enumerate(self.inputs)]
 
 
-def columns(x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
-    """Splits the arguments into columns, and refuses columns of different length."""
+def columns(x: Any, y: Any, time: Any, rate: Any, records: Any, inputs: Sequence[str] = ()) -> Columns:
+    """Splits the arguments into columns, and refuses columns of different length.
+
+    Of a table that has more columns than `inputs`, those of these names are taken if it has them all.
+    """
+    if is_record_list(x):
+        return _of_list(x, {"y": y, "time": time, "rate": rate}, records, inputs)
+    for what, values in (("y", y), ("time", time), ("rate", rate)):
+        if is_record_list(values):
+            raise ValueError(f"{what} is a list of records, and x is not: give x as a list of as many arrays")
+    return _of_table(x, y, time, rate, records, inputs)
+
+
+def is_record_list(values: Any) -> bool:
+    """Whether values are a list of arrays, tables or mappings, one of each record. A list of lists is a table."""
+    return (
+        isinstance(values, (list, tuple))
+        and len(values) > 0
+        and all(isinstance(one, Mapping) or len(getattr(one, "shape", ())) >= 1 for one in values)
+    )
+
+
+def shaped_like(x: Any, values: np.ndarray, column: str, suffix: str = "") -> Any:
+    """Values as `x` is: an array, a Series or DataArray with its rows, or a list of these."""
+    if not is_record_list(x):
+        return like(x, values, column, suffix)
+    ends = np.cumsum([_rows(one) for one in x])
+    return [like(one, part, column, suffix) for one, part in zip(x, np.split(values, ends[:-1]))]
+
+
+def continued(before: Columns, after: Columns) -> tuple[Columns, np.ndarray]:
+    """Each record that continues one of the same name in time, with the rows of that one before its own; and which rows are
+    its own."""
+    assert before.time is not None and after.time is not None
+    known = dict(before.records)
+    chosen: list[tuple[Columns, slice]] = []
+    records = []
+    own = []
+    rows_so_far = 0
+    for name, rows in after.records:
+        parts = [(after, rows)]
+        begun = known.get(name)
+        if begun is not None and before.time.values[begun][-1] < after.time.values[rows][0]:
+            parts.insert(0, (before, begun))
+        for columns, some in parts:
+            chosen.append((columns, some))
+            own.append(np.full(some.stop - some.start, columns is after))
+        count = sum(some.stop - some.start for _, some in parts)
+        records.append((name, slice(rows_so_far, rows_so_far + count)))
+        rows_so_far += count
+    inputs = [
+        Column(np.concatenate([columns.inputs[place].values[rows] for columns, rows in chosen]), column.name)
+        for place, column in enumerate(after.inputs)
+    ]
+    times = np.concatenate([columns.time.values[rows] for columns, rows in chosen if columns.time is not None])
+    return Columns(inputs, Column(times, after.time.name), None, None, records), np.concatenate(own)
+
+
+def _rows(x: Any) -> int:
+    return len(next(iter(x.values()))) if isinstance(x, Mapping) else len(x)
+
+
+def _of_list(x: Sequence[Any], others: dict[str, Any], records: Any, inputs: Sequence[str]) -> Columns:
+    """The columns of a list of records, one after the other."""
+    names = _record_names(records, len(x))
+    given = [_for_each(what, values, len(x)) for what, values in others.items()]
+    parts: list[Columns] = []
+    for name, one, y, time, rate in zip(names, x, *given):
+        part = _of_table(one, y, time, rate, None, inputs, name)
+        if parts and part.names() != parts[0].names():
+            raise ValueError(
+                f'record "{name}" has the columns {_listed(part)}, and record "{names[0]}" has {_listed(parts[0])}: '
+                "give them the same names"
+            )
+        parts.append(part)
+    ends = np.cumsum([part.rows for part in parts]).tolist()
+
+    def joined(columns: Sequence[Column | None]) -> Column | None:
+        present = [column for column in columns if column is not None]
+        return Column(np.concatenate([column.values for column in present]), present[0].name) if present else None
+
+    return Columns(
+        [one for columns in zip(*(part.inputs for part in parts)) if (one := joined(columns)) is not None],
+        joined([part.time for part in parts]),
+        joined([part.rate for part in parts]),
+        joined([part.output for part in parts]),
+        [(name, slice(end - part.rows, end)) for name, part, end in zip(names, parts, ends)],
+    )
+
+
+def _for_each(what: str, values: Any, count: int) -> Sequence[Any]:
+    """An argument of each record; a name of a column is the same for all."""
+    if values is None or isinstance(values, str):
+        return [values] * count
+    if not isinstance(values, (list, tuple)) or len(values) != count:
+        raise ValueError(f"{what}: x is a list of {count} records, so a list of {count} arrays is needed")
+    if any(one is None for one in values):
+        raise ValueError(f"{what}: it is missing in record {[one is None for one in values].index(True) + 1}")
+    return values
+
+
+def _record_names(records: Any, count: int) -> list[str]:
+    if records is None:
+        return [str(place + 1) for place in range(count)]
+    names = [str(name) for name in records] if isinstance(records, (list, tuple)) else []
+    if len(names) != count or len(set(names)) != count:
+        raise ValueError(f"records: x is a list of {count} records, so a list of {count} different names is needed")
+    return names
+
+
+def _listed(part: Columns) -> str:
+    return ", ".join(name or "(unnamed)" for name in part.names())
+
+
+def _of_table(
+    x: Any, y: Any, time: Any, rate: Any, records: Any, inputs: Sequence[str], name: str = RECORD
+) -> Columns:
+    """The columns of one array or table, with a label for each row or without any."""
+    table = x
+    x, (y, time, records) = _taken_by_name(x, {"y": y, "time": time, "records": records})
     given = {"x": x, "y": y, "time": time, "rate": rate, "records": records}
     check_indexes(given)
-    inputs = _inputs(x)
+    found = inputs_of(x, inputs)
     arranged = Columns(
-        inputs,
-        _column(time, "time"),
-        _column(rate, "rate"),
-        _column(y, "output"),
-        _records(records, len(inputs[0].values)),
+        found,
+        column_of(time, "time"),
+        column_of(rate, "rate"),
+        column_of(y, "output"),
+        _records(records, len(found[0].values), name),
     )
     for what, column in (("time", arranged.time), ("rate", arranged.rate), ("output", arranged.output)):
         if column is not None and len(column.values) != arranged.rows:
             raise ValueError(
-                f'record "{RECORD}", {what}: has {len(column.values)} values '
+                f'record "{name}", {what}: has {len(column.values)} values '
                 f"where the first input has {arranged.rows}"
             )
-    warn_of_order(x, [rows for _, rows in arranged.records])
+    warn_of_order(table, [rows for _, rows in arranged.records])
     return arranged
 
 
+def _taken_by_name(x: Any, others: dict[str, Any]) -> tuple[Any, list[Any]]:
+    """What is given by the name of a column of `x`, and `x` without these columns."""
+    named = {what: name for what, name in others.items() if isinstance(name, str)}
+    if not named:
+        return x, list(others.values())
+    if not (is_frame(x) or isinstance(x, Mapping)):
+        ((what, name), *_) = named.items()
+        raise ValueError(f"{what} {name!r}: a name is that of a column of x, and x is no table")
+    for what, name in named.items():
+        if name not in (x if isinstance(x, Mapping) else list(x.columns)):
+            raise ValueError(f"{what}: x has no column {name!r}")
+    left = {name: values for name, values in (named_columns(x) or []) if name not in named.values()}
+    if isinstance(x, Mapping):
+        left = {name: values for name, values in x.items() if name not in named.values()}
+    return left, [_named(x, value) if isinstance(value, str) else value for value in others.values()]
+
+
+def _named(table: Any, name: str) -> Any:
+    """A column that keeps its name: those of a mapping of arrays have none."""
+    values = table[name]
+    return values if hasattr(values, "name") else {name: values}
+
+
 def check_indexes(given: Mapping[str, Any]) -> None:
-    """Refuse pandas objects of different indexes: rows are taken by position."""
-    indexed = {name: values for name, values in given.items() if _is_indexed(values)}
+    """Refuse objects of pandas or xarray with different labels of rows: rows are taken by position."""
+    labels = {}
     for name, values in given.items():
-        if isinstance(values, Mapping):
-            columns = {f"{name}[{key!r}]": column for key, column in values.items()}
-            indexed.update((key, column) for key, column in columns.items() if _is_indexed(column))
-    first, *others = indexed or {"": None}
-    for other in others:
-        if not indexed[first].index.equals(indexed[other].index):
+        of_columns = {f"{name}[{key!r}]": column for key, column in values.items()} if isinstance(values, Mapping) else {}
+        for key, one in {name: values, **of_columns}.items():
+            index = row_labels(one)
+            if index is not None:
+                labels[key] = (is_of_pandas(one), index)
+    first = next(iter(labels), "")
+    for other in list(labels)[1:]:
+        (is_pandas, one), (is_too, another) = labels[first], labels[other]
+        if is_pandas == is_too and not one.equals(another):
+            ordered = f"reindex({first}.index)" if is_pandas else f"reindex_like({first})"
             raise ValueError(
                 f"{first} and {other} have different indexes, and rows are taken by position: bring them into the same "
-                f"order, as with {other}.reindex({first}.index), or give arrays, as with {other}.to_numpy()"
+                f"order, as with {other}.{ordered}, or give arrays, as with {other}.to_numpy()"
             )
 
 
 def warn_of_order(x: Any, records: list[slice]) -> None:
-    """Warn of a pandas object whose index does not grow from row to row within a record."""
-    if not _is_indexed(x) or getattr(x.index.dtype, "kind", "O") not in "iufMm":
+    """Warn of an object whose labels of rows do not grow from row to row within a record."""
+    index = row_labels(x)
+    if index is None or getattr(index.dtype, "kind", "O") not in "iufMm":
         return
-    if not all(x.index[rows].is_monotonic_increasing for rows in records):
+    if not all(index[rows].is_monotonic_increasing for rows in records):
         warn(
             [
                 "the rows are not in the order of their index: a model with memory needs them in the order of time "
@@ -119,106 +265,22 @@ def warn_of_order(x: Any, records: list[slice]) -> None:
         )
 
 
-def _is_indexed(values: Any) -> bool:
-    return hasattr(values, "iloc") and hasattr(values, "index")
-
-
-def _inputs(x: Any) -> list[Column]:
-    if isinstance(x, Mapping):
-        if not x:
-            raise ValueError("x has no columns: there must be an input")
-        return [Column(_numbers(values, "input"), str(name)) for name, values in x.items()]
-    if hasattr(x, "columns") and hasattr(x, "iloc"):
-        if len(x.columns) == 0:
-            raise ValueError("x has no columns: there must be an input")
-        return [
-            Column(_numbers(x.iloc[:, place], "input"), str(name)) for place, name in enumerate(x.columns)
-        ]
-    if hasattr(x, "iloc"):
-        column = _column(x, "input")
-        assert column is not None
-        return [column]
-    values = _numbers(x, "input", dimensions=(1, 2))
-    if values.ndim == 1:
-        return [Column(values, None)]
-    if values.shape[1] == 0:
-        raise ValueError("x has no columns: there must be an input")
-    return [Column(np.ascontiguousarray(values[:, place]), None) for place in range(values.shape[1])]
-
-
-def _column(values: Any, what: str) -> Column | None:
-    if values is None:
-        return None
-    name = getattr(values, "name", None)
-    if isinstance(values, Mapping):
-        if len(values) != 1:
-            raise ValueError(f"{what}: one column is needed, not {len(values)}")
-        ((name, values),) = values.items()
-    if hasattr(values, "columns") and hasattr(values, "iloc"):
-        if len(values.columns) != 1:
-            raise ValueError(f"{what}: one column is needed, not {len(values.columns)}")
-        values, name = values.iloc[:, 0], values.columns[0]
-    name = None if name is None else str(name)
-    if what == "time" and are_stamps(values):
-        try:
-            return Column(seconds(values), "t_s" if name is None else f"{name} [s]")
-        except ValueError as error:
-            raise ValueError(f"time: {error}") from None
-    return Column(_numbers(values, what), name)
-
-
-def _numbers(values: Any, what: str, dimensions: tuple[int, ...] = (1,)) -> np.ndarray:
-    """Contiguous float64; the very same array if it is that already."""
-    values = without_mask(values, what)
-    if are_stamps(values):
-        raise ValueError(f"{what}: dates and times are not numbers (give them as time)")
-    try:
-        if hasattr(values, "iloc"):
-            values = values.to_numpy(dtype=np.float64, na_value=np.nan)
-        values = np.asarray(values)
-        if np.iscomplexobj(values):
-            raise ValueError("complex numbers cannot be used")
-        numbers = np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{what}: {error}") from None
-    if numbers.ndim == 2 and 2 not in dimensions and numbers.shape[1] == 1:
-        numbers = np.ascontiguousarray(numbers[:, 0])
-    # `ascontiguousarray` makes an array of one value from a number.
-    if values.ndim == 0 or values.ndim not in dimensions and numbers.ndim not in dimensions:
-        expected = "one- or two-dimensional" if 2 in dimensions else "one-dimensional"
-        raise ValueError(f"{what}: a {expected} array is needed, not one of {values.ndim} dimensions")
-    return numbers
-
-
-def without_mask(values: Any, what: str) -> Any:
-    """Values with NaN where an output is masked; of anything else, nothing may be masked."""
-    if not np.ma.isMaskedArray(values):
-        return values
-    mask = np.ma.getmaskarray(values)
-    if not mask.any():
-        return np.ma.getdata(values)
-    if what != "output":
-        row = int(np.argwhere(mask)[0][0])
-        raise ValueError(f"{what}: row {row + 1} is masked (only the output may be blank)")
-    return np.ma.filled(values.astype(np.float64), np.nan)
-
-
-def _records(records: Any, rows: int) -> list[tuple[str, slice]]:
+def _records(records: Any, rows: int, name: str) -> list[tuple[str, slice]]:
     if records is None:
-        return [(RECORD, slice(0, rows))]
-    labels = np.asarray(records)
+        return [(name, slice(0, rows))]
+    labels = np.asarray(next(iter(records.values())) if isinstance(records, Mapping) else records)
     if labels.shape != (rows,):
         raise ValueError(f"records: one label for each of the {rows} rows is needed")
     if rows == 0:
-        return [(RECORD, slice(0, 0))]
+        return [(name, slice(0, 0))]
     found = []
     begun = set()
     for piece in runs(labels):
-        name = str(labels[piece.start])
-        if name in begun:
-            raise ValueError(f'record "{name}" continues after another record (keep its rows together)')
-        begun.add(name)
-        found.append((name, piece))
+        label = str(labels[piece.start])
+        if label in begun:
+            raise ValueError(f'record "{label}" continues after another record (keep its rows together)')
+        begun.add(label)
+        found.append((label, piece))
     return found
 
 

@@ -147,9 +147,9 @@ class ModelDiagnosis(_Findings):
 
 def diagnose(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
-    records: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
+    records: ArrayLike | str | None = None,
     *,
     smallest_reversal: float = 0.02,
     smoothing: bool = True,

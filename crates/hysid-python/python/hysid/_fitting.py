@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import real, whole
 from hysid._data import columns
+from hysid._progress import Listener, of_native
+from hysid._progress_line import told
 from hysid._warning import warn
 from hysid.model import Model
 
@@ -22,43 +22,12 @@ if TYPE_CHECKING:
     from hysid._data import Columns, Values
 
 
-class Progress(NamedTuple):
-    """Progress of a fit.
-
-    Attributes
-    ----------
-    done : float
-        Share of the work done, from 0 to 1; assumes that every start uses all its epochs.
-    train_nrmse_percent : float
-        Error on the training rows, in percent of the output's standard deviation; NaN if it is not known yet.
-    start : int
-        Number of the start, from 0.
-    epoch : int
-        Finished epochs of this start in this phase.
-    phase : str
-        ``"starts"`` or ``"all-data"``.
-    model : str
-        The model that is being fitted.
-    is_part : bool
-        Whether this is one of many fits: of a candidate of ``auto``, or of a fold of `hysid.validate`. Then only
-        ``done`` is about the whole work.
-    """
-
-    done: float
-    train_nrmse_percent: float
-    start: int
-    epoch: int
-    phase: str
-    model: str
-    is_part: bool
-
-
 def fit(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
     rate: str | ArrayLike = "auto",
-    records: ArrayLike | None = None,
+    records: ArrayLike | str | None = None,
     *,
     model: str | None = None,
     members: int | None = None,
@@ -92,7 +61,7 @@ def fit(
     differential_form: bool | None = None,
     time_limit: float | None = None,
     threads: int | None = None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Listener = True,
 ) -> Model:
     """Identify a model from measured data.
 
@@ -105,18 +74,22 @@ def fit(
 
     Parameters
     ----------
-    x : array of shape (n,) or (n, inputs)
-        The inputs in the user's units; the model takes its column names from a pandas object.
-    y : array of shape (n,)
+    x : array of shape (n,) or (n, inputs), or list of these
+        The inputs in the user's units. The model takes the names of columns from objects of pandas, polars and xarray (with
+        the unit from the attribute ``units``) and from a dict. A list has an array, table or dict of each record; then `y`,
+        `time` and `rate` are lists too.
+    y : array of shape (n,), name of a column, or list of arrays
         The measured output in the user's unit. NaN or a mask means no measurement: such a row drives the memory, but
-        is neither trained on nor scored. Rows are taken by position: pandas objects must have the same index.
-    time : array of shape (n,), optional
+        is neither trained on nor scored. Rows are taken by position: pandas objects must have the same index. A name is
+        that of a column of the table `x`; the columns that are not named are the inputs.
+    time : array of shape (n,), name of a column, or list of arrays, optional
         Time stamps, increasing within each record; dates and times become seconds since the first.
     rate : str or array of shape (n,), default "auto"
         Method for the rate of the first input: ``"auto"``, ``"none"``, ``"central"``, ``"backward"``,
         ``"savitzky-golay"``, or the measured rate itself.
-    records : array of shape (n,), optional
-        A label for each row; where the label changes, a new record starts in the initial state.
+    records : array of shape (n,), name of a column, or list of names, optional
+        A label for each row; where the label changes, a new record starts in the initial state. Of a list of records, a
+        name for each, by default ``"1"``, ``"2"`` and so on.
     model : str, optional
         Model to fit. `auto` cross-validates networks and classical models and combines the best. Default: auto.
     members : int, optional
@@ -208,9 +181,10 @@ def fit(
         Time in seconds after which to stop and keep the best model so far.
     threads : int, optional
         Number of threads; the model does not depend on it. By default one for each processor.
-    progress : callable, optional
-        Called with a `Progress` up to twenty times a second. If it returns true, the fit ends with the best model
-        so far. `hysid.tqdm_progress` shows a progress bar.
+    progress : bool or callable, default True
+        True shows one line with the share done and the remaining time while the fit runs, if stderr is a terminal or in a
+        notebook; False shows nothing. A callable is called with a `Progress` up to twenty times a second. If it returns
+        true, the fit ends with the best model so far. `hysid.tqdm_progress` shows a progress bar of tqdm.
 
     Returns
     -------
@@ -253,7 +227,7 @@ def identified(
     *,
     time_limit: float | None,
     threads: int | None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Listener = None,
 ) -> Model:
     """Fits with warnings before and after."""
     data, request = requested(arranged, rate, options, threads)
@@ -266,12 +240,12 @@ def fitted(
     *,
     time_limit: float | None,
     threads: int | None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Listener = None,
 ) -> Model:
     """Fits with warnings afterwards."""
     limit = None if time_limit is None else real("time_limit", time_limit)
-    with told(progress) as tell:
-        native, _, interrupted = _hysid.identify(data, request, threads, limit, tell)
+    with told(progress, limit) as callback:
+        native, _, interrupted = _hysid.identify(data, request, threads, limit, of_native(callback))
     model = Model(native)
     warn(model.notes + (["interrupted: the best model so far is returned"] if interrupted else []))
     return model
@@ -289,27 +263,6 @@ def requested(
     request = _hysid.FitSpec(as_json(options), rate, data)
     warn(request.warnings(data) + data.warnings())
     return data, request
-
-
-@contextmanager
-def told(callback: Callable[[Progress], object] | None) -> Iterator[_Teller | None]:
-    """Calls a user's callback during the work, and closes it afterwards if it has `close`."""
-    try:
-        yield None if callback is None else _Teller(callback)
-    finally:
-        close = getattr(callback, "close", None)
-        if close is not None:
-            close()
-
-
-class _Teller:
-    """Calls a user's callback with a `Progress`."""
-
-    def __init__(self, callback: Callable[[Progress], object]) -> None:
-        self.callback = callback
-
-    def __call__(self, *told: Any) -> object:
-        return self.callback(Progress(*told))
 
 
 def as_json(options: dict[str, Any]) -> str:

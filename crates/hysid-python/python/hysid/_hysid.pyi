@@ -9,16 +9,21 @@ __all__ = [
     "Model",
     "FitSpec",
     "Inverse",
+    "ProgressLine",
     "Stepper",
     "__version__",
+    "axis_label",
     "cycles",
     "deteriorating_stop",
     "diagnose",
+    "figure_label",
     "figure_names",
+    "folds",
     "identify",
     "law",
     "minimise",
     "model_names",
+    "name_and_unit",
     "option_names",
     "option_table",
     "plan",
@@ -76,6 +81,7 @@ class Model:
         force: bool,
     ) -> tuple[list[str], str | None]: ...
     def parameters(self) -> int: ...
+    def law_parameters(self) -> list[tuple[str, float, str, str]] | None: ...
     def needs_time(self) -> bool: ...
     def simulate(
         self,
@@ -126,6 +132,20 @@ class Inverse:
     def reset(self) -> None: ...
 
 @final
+class ProgressLine:
+    def __new__(cls) -> ProgressLine: ...
+    def text(
+        self,
+        elapsed: float,
+        done: float,
+        most: float | None,
+        part: str,
+        error: float | None,
+        columns: int,
+        bar: bool,
+    ) -> str: ...
+
+@final
 class Stepper:
     def step(
         self, x: float | Sequence[float], time: float | None = None, rate: float | None = None
@@ -148,7 +168,13 @@ def cycles(
     field: str | None,
     smoothing_factor: int | None,
 ) -> str: ...
+def figure_label(figure: str, input: str, output: str, time: str | None) -> str: ...
 def figure_names() -> list[str]: ...
+def axis_label(column: str) -> str: ...
+def name_and_unit(column: str) -> tuple[str, str | None]: ...
+def folds(
+    data: Dataset, most: int
+) -> list[tuple[list[tuple[int, int, int]], list[tuple[int, int, int]]]]: ...
 def plan(
     data: Dataset | None,
     kind: str | None,

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hysid import _hysid
-from hysid._data import Column, _column, _inputs, check_indexes, warn_of_order
+from hysid._columns import Column, column_of, inputs_of
+from hysid._data import check_indexes, warn_of_order
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -91,12 +92,12 @@ class Reference:
 
     def __init__(self, y: Any, time: Any, others: Any) -> None:
         check_indexes({"y": y, "time": time, "others": others})
-        wanted = _column(y, "output")
+        wanted = column_of(y, "output")
         if wanted is None:
             raise ValueError("y: the wanted output is needed")
         self.wanted: Column = wanted
-        self.time: Column | None = _column(time, "time")
-        self.others: list[Column] = [] if others is None else _inputs(others)
+        self.time: Column | None = column_of(time, "time")
+        self.others: list[Column] = [] if others is None else inputs_of(others)
         rows = len(wanted.values)
         if self.time is not None and len(self.time.values) != rows:
             raise ValueError(f"time: {len(self.time.values)} values for {rows} rows of y")

@@ -13,6 +13,7 @@ from hysid import _hysid
 from hysid._arguments import name_of, pair, real, whole
 from hysid._data import columns
 from hysid._fitting import fit
+from hysid._progress import Listener
 
 if TYPE_CHECKING:
     import os
@@ -132,9 +133,9 @@ class Plan:
 
 def plan(
     x: Values | None = None,
-    y: Values | None = None,
-    time: ArrayLike | None = None,
-    records: ArrayLike | None = None,
+    y: Values | str | None = None,
+    time: ArrayLike | str | None = None,
+    records: ArrayLike | str | None = None,
     *,
     kind: str | None = None,
     model: Model | str | None = "auto",
@@ -144,6 +145,7 @@ def plan(
     max_rate: float | None = None,
     wave: str | None = None,
     seed: int = 1,
+    progress: Listener = True,
 ) -> Plan:
     """Plan what to measure next: a drive from what the data do not cover and where the members of an ensemble disagree.
 
@@ -175,6 +177,8 @@ def plan(
         ``"smooth"`` or ``"triangle"``; smooth if there is time by default.
     seed : int
         Seed of all random numbers.
+    progress : bool or callable, default True
+        As of `hysid.fit`, while the ensemble is fitted.
 
     Returns
     -------
@@ -213,7 +217,7 @@ def plan(
         raise ValueError("x and y are needed")
     arranged = columns(x, y, time, None, records)
     if model == "auto":
-        model = fit(x, y, time, records=records, starts=1, seed=seed)
+        model = fit(x, y, time, records=records, starts=1, seed=seed, progress=progress)
     elif isinstance(model, str):
         raise ValueError(f"model {model!r}: a Model, 'auto' or None is needed")
     native = None if model is None else model._native

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
 from hysid._arguments import real, whole
 from hysid._data import columns
-from hysid._fitting import requested, told
+from hysid._fitting import requested
 from hysid._html import number, table
+from hysid._progress import Listener, of_native
+from hysid._progress_line import told
 from hysid._warning import warn
-from hysid.model import Errors
+from hysid._results import Errors
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from hysid._data import Values
-    from hysid._fitting import Progress
 
 
 @dataclass(frozen=True)
@@ -70,15 +70,15 @@ class Validation:
 
 def validate(
     x: Values,
-    y: Values,
-    time: ArrayLike | None = None,
+    y: Values | str,
+    time: ArrayLike | str | None = None,
     rate: str | ArrayLike = "auto",
-    records: ArrayLike | None = None,
+    records: ArrayLike | str | None = None,
     *,
     folds: int = 5,
     time_limit: float | None = None,
     threads: int | None = None,
-    progress: Callable[[Progress], object] | None = None,
+    progress: Listener = True,
     **options: Any,
 ) -> Validation:
     """Cross-validate a model: fit to a part of the data, evaluate free runs on the rest, fold by fold.
@@ -97,7 +97,7 @@ def validate(
         Time in seconds after which to stop; the current fold is evaluated with its best model so far.
     threads : int, optional
         As of `hysid.fit`.
-    progress : callable, optional
+    progress : bool or callable, default True
         As of `hysid.fit`.
     **options
         Options of the model and its training, as of `hysid.fit`.
@@ -125,8 +125,8 @@ def validate(
     arranged = columns(x, y, time, None if named else rate, records)
     data, request = requested(arranged, str(rate) if named else "given", options, threads)
     limit = None if time_limit is None else real("time_limit", time_limit)
-    with told(progress) as tell:
-        text, interrupted = _hysid.validate(data, request, folds, threads, limit, tell)
+    with told(progress) as callback:
+        text, interrupted = _hysid.validate(data, request, folds, threads, limit, of_native(callback))
     if interrupted:
         warn(["interrupted: only the finished folds are returned"])
     found = json.loads(text)

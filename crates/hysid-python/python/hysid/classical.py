@@ -55,6 +55,8 @@ DETERIORATION = (
 
 def _run(law: str, parameters: dict[str, Any], x: Any, time: Any = None, rate: str | None = None) -> np.ndarray:
     taken = columns(x, None, time, None, None)
+    if len(taken.records) != 1:
+        raise ValueError(f"{law} takes one record, not a list of {len(taken.records)}")
     if len(taken.inputs) != 1:
         raise ValueError(f"{law} takes one input, not {len(taken.inputs)}")
     stamps = None if taken.time is None else taken.time.values

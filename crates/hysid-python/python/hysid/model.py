@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import json
-import os
-import re
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
-from functools import cached_property
-from html import escape
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import name_of, pair, real, truth, whole
-from hysid._data import Column, Columns, columns
+from hysid._columns import Column
 from hysid._cycles import Cycles, named_options
+from hysid._data import Columns, columns, shaped_like
 from hysid._diagnosis import ModelDiagnosis
-from hysid._html import number, table
 from hysid._inverse import Inverse, Inversion, Reference
 from hysid._residuals import ParameterInterval, Residuals, intervals_of
+from hysid._results import Errors, Prediction
+from hysid._stored_model import StoredModel
+from hysid._tables import like
+from hysid._types import AnySeries, Frame, Given, Numbers, Series
 from hysid._warning import warn
 
 if TYPE_CHECKING:
@@ -28,89 +28,12 @@ if TYPE_CHECKING:
 
     from hysid._data import Values
 
-__all__ = ["Errors", "Member", "Model", "Prediction", "Stepper"]
+__all__ = ["Model", "Stepper"]
 
 Stepper = _hysid.Stepper
 
 
-@dataclass(frozen=True)
-class Errors:
-    """Errors of a free run over all scored rows.
-
-    Attributes
-    ----------
-    output : str
-        Name of the output.
-    samples, records : int
-        Scored rows, and records with at least one.
-    mse, rmse : float
-        Mean square error in the output's unit squared, and its root in the output's unit.
-    nrmse_std_percent, nrmse_range_percent : float or None
-        ``rmse`` in percent of the measured output's standard deviation, and of its range; None if it does not
-        vary.
-    fit_percent : float or None
-        100 - ``nrmse_std_percent``.
-    max_abs_error : float
-        Largest absolute error in the output's unit.
-    """
-
-    output: str
-    samples: int
-    records: int
-    mse: float
-    rmse: float
-    nrmse_std_percent: float | None
-    nrmse_range_percent: float | None
-    fit_percent: float | None
-    max_abs_error: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """Give the errors as a dict."""
-        return asdict(self)
-
-
-class Prediction(NamedTuple):
-    """A free run with its prediction band, in the unit of the training.
-
-    Attributes
-    ----------
-    output : array or Series of shape (n,)
-        The output, as `Model.simulate` gives it.
-    low, high : array or Series of shape (n,)
-        The edges of the band.
-    """
-
-    output: Any
-    low: Any
-    high: Any
-
-
-@dataclass(frozen=True)
-class Member:
-    """A member of an ensemble.
-
-    Attributes
-    ----------
-    name : str
-        Its candidate, such as a network with its transform of the input; members with the same name are fits from
-        different random starts.
-    kind : str
-        Its kind, such as ``"networks"``.
-    model : str
-        Which model, such as ``"xpnn+"``.
-    share, share_outside : float
-        Its weight in the ensemble before the input leaves the trained range, and after; the weights of all members
-        add up to 1.
-    """
-
-    name: str
-    kind: str
-    model: str
-    share: float
-    share_outside: float
-
-
-class Model:
+class Model(StoredModel):
     """A fitted model, which simulates in the units of its training data.
 
     `hysid.fit` and `Model.load` return models. Models can be pickled and compared.
@@ -141,277 +64,89 @@ class Model:
     """
 
     def __init__(self, native: _hysid.Model) -> None:
-        self._native = native
+        super().__init__(native)
         self._stepper: _hysid.Stepper | None = None
-
-    # Files
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Model:
-        """Read a model file, of Python or of the program `hysid`.
-
-        Parameters
-        ----------
-        path : path
-            The file.
-
-        Returns
-        -------
-        Model
-            The model.
-
-        Raises
-        ------
-        ValueError
-            The file is damaged, of a later version, or not a model file.
-        """
-        with open(path, encoding="utf-8") as file:
-            try:
-                text = file.read()
-            except UnicodeDecodeError:
-                text = "?"
-        try:
-            return cls.from_json(text)
-        except ValueError as error:
-            raise ValueError(f"{os.fspath(path)}: {error}") from None
-
-    @classmethod
-    def from_json(cls, text: str) -> Model:
-        """Read the text of a model file.
-
-        Parameters
-        ----------
-        text : str
-            What `to_json` gave.
-
-        Returns
-        -------
-        Model
-            The model.
-        """
-        if not isinstance(text, str):
-            raise TypeError(f"text: the text of a model file is needed, not {type(text).__name__}")
-        return cls(_hysid.Model.from_json(text))
-
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Write the model file.
-
-        A failed write leaves an old file unchanged. An old model file with other content is kept as ``NAME.bak``.
-        Links are followed, permissions are kept, and pipes and devices are written to directly.
-
-        Parameters
-        ----------
-        path : path
-            The file; it can be read by the program `hysid` too.
-        force : bool
-            Replace a file even if it is not a model file of Hysid.
-
-        Raises
-        ------
-        FileExistsError
-            The file exists, is not a model file of Hysid, and `force` is False.
-        OSError
-            The file cannot be written.
-        """
-        self._native.save(path, truth("force", force))
-
-    def export(
-        self,
-        to: str,
-        folder: str | os.PathLike[str],
-        *,
-        name: str | None = None,
-        precision: str = "f64",
-        rate: str = "backward",
-        fmi: int = 3,
-        band: float | None = None,
-        of_ten: int = 5,
-        inverse: bool = False,
-        limits: tuple[float, float] | None = None,
-        slew: float | None = None,
-        force: bool = False,
-    ) -> list[str]:
-        """Write the model as source code for other programs, with tests and test vectors.
-
-        The folder appears whole or not at all.
-
-        Parameters
-        ----------
-        to : {"c", "fmu", "matlab", "python", "rust"}
-            Where the model is to run.
-        folder : path
-            The folder of the export. One that is there already is replaced only if Hysid wrote all that is in it.
-        name : str, optional
-            Identifier with which all names of the export begin. By default, the name of the folder.
-        precision : {"f64", "f32"}
-            Precision of the arithmetic.
-        rate : {"backward", "argument"}
-            How the model gets the rate of its first input: by backward differences, from the time step, or as an
-            argument of each step. A model without rate ignores it.
-        fmi : {3, 2}
-            Version of the Functional Mock-up Interface of `to="fmu"`.
-        band : float, optional
-            Also compute half the width of the prediction band that contains this share of the rows (0.5 to 0.99).
-        of_ten : int
-            The band contains that share, or more, in so many of ten data sets (5 to 9).
-        inverse : bool
-            Also export the inverse, which gives the first input for a wanted output (``to="c"`` or ``"fmu"``).
-        limits : (float, float), optional
-            Lowest and highest input of the inverse, in its unit. By default, the trained range.
-        slew : float, optional
-            Largest change of the input of the inverse in a unit of time.
-        force : bool
-            Replace a folder even if Hysid did not write it, with all that is in it.
-
-        Returns
-        -------
-        list of str
-            The files, by their paths in the folder.
-
-        Raises
-        ------
-        ValueError
-            A target, precision, rate or name that cannot be used; an inverse that the target does not have; limits that
-            cannot be used; a model that cannot be exported.
-        FileExistsError
-            The folder has other files, and `force` is False.
-        OSError
-            The folder cannot be written.
-        """
-        for what, given, known in (
-            ("precision", precision, ("f64", "f32")),
-            ("rate", rate, ("backward", "argument")),
-            ("fmi", fmi, (3, 2)),
-        ):
-            if given not in known:
-                raise ValueError(f"{what} {given!r}: it is {' or '.join(map(repr, known))}")
-        if name is None:
-            name = re.sub(r"\W", "_", os.path.basename(os.path.normpath(folder)), flags=re.ASCII)
-        level = None if band is None else (real("band", band), whole("of_ten", of_ten))
-        if limits is not None:
-            limits = pair("limits", limits)
-        if slew is not None:
-            slew = real("slew", slew)
-        inverse = truth("inverse", inverse)
-        if not inverse and (limits, slew) != (None, None):
-            raise ValueError("limits and slew are for the input of an inverse: add inverse=True")
-        force = truth("force", force)
-        files, note = self._native.export(
-            to, folder, name, precision, rate, fmi, level, inverse, limits, slew, force
-        )
-        warn([] if note is None else [note])
-        return files
-
-    def to_json(self) -> str:
-        """Give the text of the model file.
-
-        Returns
-        -------
-        str
-            JSON with a version and a checksum.
-        """
-        return self._native.to_json()
-
-    # Properties
-
-    @cached_property
-    def description(self) -> dict[str, Any]:
-        """Content of the model file."""
-        described: dict[str, Any] = json.loads(self.to_json())
-        return described
-
-    @property
-    def name(self) -> str:
-        """Name of the model."""
-        return str(self.description["model"])
-
-    @property
-    def inputs(self) -> list[str]:
-        """Names of the inputs."""
-        return list(self.description["columns"]["inputs"])
-
-    @property
-    def output(self) -> str:
-        """Name of the output."""
-        return str(self.description["columns"]["output"])
-
-    @property
-    def rate(self) -> str | None:
-        """Method for the rate of the first input."""
-        rate: str | None = self.description["rate"]
-        return rate
-
-    @property
-    def parameters(self) -> int:
-        """Number of fitted parameters."""
-        return self._native.parameters()
-
-    @property
-    def needs_time(self) -> bool:
-        """Whether the model needs time stamps."""
-        return self._native.needs_time()
-
-    @cached_property
-    def members(self) -> tuple[Member, ...]:
-        """Members of an ensemble; empty for a single model."""
-        ensemble = self.description.get("ensemble")
-        if ensemble is None:
-            return ()
-        models = [member["model"] for member in ensemble["members"]]
-        found = sorted(_members(ensemble["group"], (), 1.0, 1.0), key=lambda one: one[0])
-        # The innermost group is the candidate, whose kind the selection tells.
-        candidates = (self.description["training"].get("selection") or {}).get("candidates", [])
-        kinds = {one["name"]: one["kind"] for one in candidates}
-        return tuple(
-            Member(path[-1], kinds.get(path[-1], path[-1]), models[place], inside, outside)
-            for place, path, inside, outside in found
-        )
-
-    @property
-    def has_band(self) -> bool:
-        """Whether the model has a prediction band, see `predict`."""
-        return "band" in self.description
-
-    @property
-    def train(self) -> Errors:
-        """Errors on the training data."""
-        return Errors(**self.description["training"]["train"])
-
-    @property
-    def validation(self) -> Errors | None:
-        """Errors on held-out data; None if no data were held out."""
-        errors = self.description["training"]["validation"]
-        return None if errors is None else Errors(**errors)
-
-    @property
-    def train_after_warm_up(self) -> Errors | None:
-        """As `train`, without the rows of the warm-up; None for a model without one."""
-        errors = self.description["training"].get("train_after_warm_up")
-        return None if errors is None else Errors(**errors)
-
-    @property
-    def warm_up(self) -> int:
-        """Rows at the beginning of each record that drove the memory and were not trained on."""
-        return self._native.warm_up()
-
-    @property
-    def notes(self) -> list[str]:
-        """Notes on the limits of this model, in sentences."""
-        return self._native.notes()
-
-    @property
-    def termination(self) -> str:
-        """Why the last training run ended."""
-        return str(self.description["training"]["termination"])
 
     # Simulation
 
+    @overload
     def simulate(
         self,
-        x: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        x: AnySeries,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> AnySeries: ...
+    @overload
+    def simulate(
+        self,
+        x: Frame,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> Any: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[AnySeries],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[AnySeries]: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[Frame],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[Any]: ...
+    @overload
+    def simulate(
+        self,
+        x: Sequence[np.ndarray] | Sequence[Mapping[str, ArrayLike]],
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> list[np.ndarray]: ...
+    @overload
+    def simulate(
+        self,
+        x: Numbers,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
+        *,
+        initial_state: str | None = None,
+        same_units: bool = False,
+        precision: str = "f64",
+    ) -> np.ndarray: ...
+    def simulate(
+        self,
+        x: Any,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -423,13 +158,14 @@ class Model:
 
         Parameters
         ----------
-        x : array of shape (n,) or (n, inputs)
-            The inputs, in the units of the training.
-        time : array of shape (n,), optional
-            Time stamps, for a model that needs them.
-        rate : array of shape (n,), optional
+        x : array of shape (n,) or (n, inputs), or list of these
+            The inputs, in the units of the training. Of a table with more columns, those with the names of the model's
+            inputs are taken. A list has an array or table of each record; then `time` and `rate` are lists too.
+        time : array of shape (n,), name of a column, or list of arrays, optional
+            Time stamps, for a model that needs them. A name is that of a column of the table `x`.
+        rate : array of shape (n,) or list of arrays, optional
             The rate of the first input, for a model that was trained with a given rate.
-        records : array of shape (n,), optional
+        records : array of shape (n,), name of a column, or list of names, optional
             A label for each row; where the label changes, a new record starts in the initial state.
         initial_state : str, optional
             State of the memory at the beginning of each record: ``"virgin"``, ``"saturated-up"`` (after a visit of the
@@ -446,7 +182,9 @@ class Model:
         Returns
         -------
         array of shape (n,)
-            The output, in the unit of the training; a Series with the index of `x` if that is a pandas object.
+            The output, in the unit of the training. A Series with the index of `x` for an object of pandas, a Series for
+            one of polars, a DataArray with the coordinates of `x` and the attribute ``units`` for one of xarray; a list of
+            these for a list.
 
         Raises
         ------
@@ -454,17 +192,17 @@ class Model:
             Invalid inputs, an unknown precision.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, None, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
         if precision not in ("f64", "f32"):
             raise ValueError(f"precision {precision!r}: it is 'f64' or 'f32'")
-        return _like(x, self._simulated(arranged, state, precision == "f32"), f"{self.output}_model")
+        return shaped_like(x, self._simulated(arranged, state, precision == "f32"), self.output, "_model")
 
     def predict(
         self,
-        x: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        x: Values | Frame | Series,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         probability: float = 0.9,
         of_ten: int = 5,
@@ -495,7 +233,7 @@ class Model:
         Returns
         -------
         Prediction
-            Output, lower edge and upper edge; each a Series with the index of `x` if that is a pandas object.
+            Output, lower edge and upper edge; each as `simulate` gives the output.
 
         Raises
         ------
@@ -516,15 +254,21 @@ class Model:
         probability = real("probability", probability)
         of_ten = whole("of_ten", of_ten, 5, 9)
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, None, time, rate, records), same_units)
-        runs = [
-            self._native.predict(name, *driving, probability, of_ten, state) for name, driving in _of_records(arranged)
-        ]
+        arranged = self._converted(self._columns(x, None, time, rate, records), same_units)
+        predicted = self._predicted(arranged, probability, of_ten, state)
         self._warn_of_range(arranged)
-        name = f"{self.output}_model"
-        low_high = (f"{name}_low", f"{name}_high")
-        columns_of = (np.concatenate(parts) for parts in zip(*runs))
-        return Prediction(*(_like(x, *one) for one in zip(columns_of, (name, *low_high))))
+        suffixes = ("_model", "_model_low", "_model_high")
+        return Prediction(*(shaped_like(x, values, self.output, suffix) for values, suffix in zip(predicted, suffixes)))
+
+    def _predicted(
+        self, arranged: Columns, probability: float, of_ten: int = 5, initial_state: str | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """Output, lower and upper edge of the band."""
+        runs = [
+            self._native.predict(name, *driving, probability, of_ten, initial_state)
+            for name, driving in _of_records(arranged)
+        ]
+        return tuple(np.concatenate(parts) for parts in zip(*runs))
 
     def _simulated(
         self, arranged: Columns, initial_state: str | None = None, single_precision: bool = False
@@ -550,10 +294,10 @@ class Model:
     def evaluate(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -587,7 +331,7 @@ class Model:
             Invalid inputs, or no measured output.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         return self._evaluated(
             arranged, after_warm_up=truth("after_warm_up", after_warm_up), initial_state=state
         )
@@ -595,10 +339,10 @@ class Model:
     def residuals(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
         *,
         initial_state: str | None = None,
         same_units: bool = False,
@@ -625,7 +369,7 @@ class Model:
             Invalid inputs, or fewer than 50 rows with a measured output.
         """
         state = name_of("initial_state", initial_state)
-        arranged = self._converted(columns(x, y, time, rate, records), same_units)
+        arranged = self._converted(self._columns(x, y, time, rate, records), same_units)
         data = arranged.dataset()
         content = json.loads(self._native.residuals(data, state))
         if arranged.output is not None and arranged.output.name is None:
@@ -636,10 +380,10 @@ class Model:
     def parameter_intervals(
         self,
         x: Values,
-        y: Values,
-        time: ArrayLike | None = None,
-        rate: ArrayLike | None = None,
-        records: ArrayLike | None = None,
+        y: Values | str,
+        time: Given = None,
+        rate: Given = None,
+        records: Given = None,
     ) -> list[ParameterInterval] | None:
         """Compute 95 % confidence intervals of the parameters of a classical law from its training data.
 
@@ -658,7 +402,7 @@ class Model:
         ValueError
             Data that the model was not fitted to.
         """
-        printed = self._native.parameter_intervals(columns(x, y, time, rate, records).dataset())
+        printed = self._native.parameter_intervals(self._columns(x, y, time, rate, records).dataset())
         return None if printed is None else intervals_of(printed)
 
     def _converted(self, arranged: Columns, same_units: bool) -> Columns:
@@ -842,8 +586,8 @@ class Model:
         Returns
         -------
         Inversion
-            Inputs and outputs, which of them are reached, and the preview. Columns are Series with the index of `y` if
-            that is a pandas object.
+            Inputs and outputs, which of them are reached, and the preview. Columns are Series or DataArrays with the rows
+            of `y` if that is an object of pandas, polars or xarray.
 
         Raises
         ------
@@ -879,15 +623,15 @@ class Model:
         found = inverse(preview)._run(given)
         drive = self.inputs[0]
         edges = {} if found.low is None else {
-            "low": _like(y, found.low, f"{drive}_low"),
-            "high": _like(y, found.high, f"{drive}_high"),
+            "low": like(y, found.low, drive, "_low"),
+            "high": like(y, found.high, drive, "_high"),
         }
         return replace(
             found,
-            input=_like(y, found.input, drive),
-            output=_like(y, found.output, f"{self.output}_reached"),
-            reach=_like(y, found.reach, "reach"),
-            extrapolated=_like(y, found.extrapolated, "extrapolated"),
+            input=like(y, found.input, drive),
+            output=like(y, found.output, self.output, "_reached"),
+            reach=like(y, found.reach, "reach"),
+            extrapolated=like(y, found.extrapolated, "extrapolated"),
             **edges,
         )
 
@@ -923,41 +667,8 @@ class Model:
         """
         return Cycles._of(self._native.cycles(*named_options(division, field, smoothing_factor)))
 
-    # Comparison and display
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Model) and self.to_json() == other.to_json()
-
-    def __hash__(self) -> int:
-        return hash(self.to_json())
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Model.from_json, (self.to_json(),)
-
-    def __repr__(self) -> str:
-        inputs = ", ".join(self.inputs)
-        percent = self.train.nrmse_std_percent
-        error = "" if percent is None else f", training error {percent:.3g} % of std"
-        name = f"{self.name} of {len(self.members)}" if self.members else self.name
-        return f"<hysid.Model {name}: {inputs} -> {self.output}, {self.parameters} parameters{error}>"
-
-    def _repr_html_(self) -> str:
-        inputs = ", ".join(self.inputs)
-        rate = "" if self.rate is None else f", rate by {self.rate} differences"
-        if self.rate in ("given", "savitzky-golay"):
-            rate = f", rate: {self.rate}"
-        about = f"{inputs} → {self.output}{rate}; {self.parameters} parameters; {self.termination}"
-
-        def row(name: str, errors: Errors) -> list[str]:
-            percents = (errors.nrmse_std_percent, errors.nrmse_range_percent)
-            return [name, *map(number, percents), number(errors.rmse), number(errors.max_abs_error)]
-
-        rows = [row("training", self.train)]
-        if self.validation is not None:
-            rows.append(row("held out", self.validation))
-        head = ["", "% of std", "% of range", f"RMSE of {self.output}", "largest"]
-        chosen = "".join(f"<p>{escape(line)}</p>" for line in self._native.selection() or ())
-        return f"<p><b>{escape(self.name)}</b>: {escape(about)}</p>{table(head, rows)}{chosen}"
+    def _columns(self, x: Any, y: Any, time: Any, rate: Any, records: Any) -> Columns:
+        return columns(x, y, time, rate, records, self.inputs)
 
 
 def _of_records(
@@ -970,27 +681,3 @@ def _of_records(
             [column.values[rows] for column in arranged.inputs],
             arranged.rate.values[rows] if arranged.rate else None,
         )
-
-
-def _like(x: Any, values: np.ndarray, name: str) -> Any:
-    """Values as a Series if the input was a pandas object."""
-    if not hasattr(x, "iloc"):
-        return values
-    import pandas
-
-    return pandas.Series(values, index=x.index, name=name)
-
-
-def _members(
-    group: dict[str, Any], above: tuple[str, ...], inside: float, outside: float
-) -> Iterator[tuple[int, tuple[str, ...], float, float]]:
-    """Index of each member of a group, the names of its groups, and its weights."""
-    path = (*above, group["name"])
-    sums = [sum(voice["weights"][where] for voice in group["voices"]) for where in ("inside", "outside")]
-    for voice in group["voices"]:
-        weights, ((kind, who),) = voice["weights"], voice["who"].items()
-        shares = (inside * weights["inside"] / sums[0], outside * weights["outside"] / sums[1])
-        if kind == "member":
-            yield who, path, *shares
-        else:
-            yield from _members(who, path, *shares)

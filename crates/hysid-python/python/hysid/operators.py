@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from hysid import _hysid
 from hysid._arguments import real
-from hysid._data import Column, columns
+from hysid._columns import Column
+from hysid._data import columns
 
 if TYPE_CHECKING:
     from hysid._data import Values
@@ -21,6 +22,8 @@ __all__ = ["deteriorating_stop", "play", "relaxation", "relay", "stop"]
 
 def _signal(x: Any, time: Any = None) -> tuple[np.ndarray, Column | None]:
     taken = columns(x, None, time, None, None)
+    if len(taken.records) != 1:
+        raise ValueError(f"takes one record, not a list of {len(taken.records)}")
     if len(taken.inputs) != 1:
         raise ValueError(f"takes one input, not {len(taken.inputs)}")
     return taken.inputs[0].values, taken.time

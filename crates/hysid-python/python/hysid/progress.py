@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hysid._fitting import Progress
+    from hysid._progress import Progress
 
 __all__ = ["tqdm_progress"]
 

@@ -11,8 +11,10 @@ from sklearn.utils import check_array, check_consistent_length, check_random_sta
 from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_data
 
 from hysid import _hysid
-from hysid._data import Column, Columns, check_indexes, runs, warn_of_order, without_mask
+from hysid._columns import Column, without_mask
+from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
 from hysid._fitting import identified
+from hysid._tables import is_frame, with_column
 
 __all__ = ["HysteresisRegressor"]
 
@@ -23,8 +25,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     Rows are samples in the order of time, because the output of a model with memory depends on earlier rows.
     `predict` is a free run over the rows in this order, from the initial state; it does not use measured outputs. Time
     stamps and labels of records are columns of `X`, named by `time` and `record`, so that they stay with their rows in
-    a pipeline or a cross-validation. For cross-validation use ``GroupKFold`` over the records; `fit` warns of a
-    shuffled split, such as ``ShuffleSplit``, because it destroys the order.
+    a pipeline or a cross-validation. For cross-validation use `RecordSplit`, or ``GroupKFold`` over the records; `fit`
+    warns of a shuffled split, such as ``ShuffleSplit``, because it destroys the order.
 
     Parameters
     ----------
@@ -34,6 +36,10 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     record : str or int, optional
         The column of `X` with the labels of the records; where the label changes, a new record starts in the initial
         state.
+    continue_records : bool, default False
+        Carry the memory over from training: rows of `predict` whose label is that of a training record and whose time is
+        behind it continue this record, so that the model runs over the training inputs first. For splits in time, such as
+        those of `RecordSplit` and ``TimeSeriesSplit``; needs `time`.
     rate : str, default "auto"
         As of `hysid.fit`: auto, none, central, backward or savitzky-golay.
     model : str, optional
@@ -74,6 +80,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         *,
         time: str | int | None = None,
         record: str | int | None = None,
+        continue_records: bool = False,
         rate: str = "auto",
         model: str | None = None,
         members: int | None = None,
@@ -110,6 +117,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     ) -> None:
         self.time = time
         self.record = record
+        self.continue_records = continue_records
         self.rate = rate
         self.model = model
         self.members = members
@@ -163,6 +171,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         if y is None:
             name = type(self).__name__
             raise ValueError(f"This {name} estimator requires y to be passed, but the target y is None.")
+        if self.continue_records and self.time is None:
+            raise ValueError("continue_records needs the time stamps: name their column with time")
         output_name = getattr(y, "name", None)
         check_indexes({"X": X, "y": y})
         y = without_mask(y, "output")
@@ -174,8 +184,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         check_consistent_length(values, measured)
         output = Column(np.ascontiguousarray(measured), None if output_name is None else str(output_name))
         options = {name: getattr(self, name) for name in _hysid.option_names() if name != "seed"}
-        columns = self._columns(values)
+        columns = self._columns(X, values)
         warn_of_order(X, [rows for _, rows in columns.records])
+        self._trained = columns if self.continue_records else None
         self.model_ = identified(
             columns._replace(output=output),
             self.rate,
@@ -203,9 +214,13 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             The output, in the unit of the training.
         """
         check_is_fitted(self)
-        columns = self._columns(self._validated(X, reset=False))
+        columns = self._columns(X, self._validated(X, reset=False))
         warn_of_order(X, [rows for _, rows in columns.records])
-        return self.model_._simulated(columns)
+        if self._trained is None:
+            return self.model_._simulated(columns)
+        whole, own = continued(self._trained, columns)
+        simulated: np.ndarray = self.model_._simulated(whole)[own]
+        return simulated
 
     def score(self, X: Any, y: Any, sample_weight: Any = None) -> float:  # noqa: N803
         """Give the coefficient of determination of a free run; rows with NaN are not scored.
@@ -231,14 +246,14 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
 
     def _validated(self, X: Any, reset: bool) -> np.ndarray:  # noqa: N803
         X = without_mask(X, "X")  # noqa: N806
-        if hasattr(X, "columns") and self.record in getattr(X, "columns", ()):
-            # Labels may be words; it matters only where they change.
-            labels = X[self.record].to_numpy()
-            X = X.assign(**{str(self.record): np.unique(labels, return_inverse=True)[1]})  # noqa: N806
+        if isinstance(self.record, str) and is_frame(X) and self.record in X.columns:
+            # Labels may be words, which scikit-learn refuses; they are read from the table itself.
+            numbers = np.unique(X[self.record].to_numpy(), return_inverse=True)[1]
+            X = with_column(X, self.record, numbers)  # noqa: N806
         few = 2 if reset else 1
         return np.asarray(validate_data(self, X, dtype=np.float64, reset=reset, ensure_min_samples=few))
 
-    def _columns(self, values: np.ndarray) -> Columns:
+    def _columns(self, X: Any, values: np.ndarray) -> Columns:  # noqa: N803
         """Inputs, time stamps and records of a table."""
         names = list(getattr(self, "feature_names_in_", []))
         place = {what: self._place(what, names) for what in ("time", "record")}
@@ -252,8 +267,9 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
 
         records = [("data", slice(0, len(values)))]
         if place["record"] is not None:
-            labels = values[:, place["record"]]
-            records = [(f"{labels[rows.start]:g}", rows) for rows in runs(labels)]
+            by_name = isinstance(self.record, str)
+            labels = np.asarray(X[self.record].to_numpy() if by_name else values[:, place["record"]])
+            records = [(str(labels[rows.start]), rows) for rows in runs(labels)]
         time = None if place["time"] is None else column(place["time"])
         return Columns([column(index) for index in inputs], time, None, None, records)
 

@@ -1,0 +1,32 @@
+//! Names of columns and figures as axes and tables show them.
+
+use hysid::data::record::ColumnNames;
+use hysid::diagnosis::cycles::{FIGURES, Quantities};
+use hysid_document::unit::{label, split};
+use pyo3::prelude::*;
+
+use crate::failure::refused;
+
+/// The quantity and the unit in the name of a column, as a page shows them.
+#[pyfunction]
+pub fn name_and_unit(column: &str) -> (String, Option<String>) {
+    split(column)
+}
+
+/// The name of a column as an axis shows it: `force (kN)`.
+#[pyfunction]
+pub fn axis_label(column: &str) -> String {
+    label(column)
+}
+
+/// A figure of a cycle as an axis shows it, with its unit where those of the columns give it: `energy (J)`.
+#[pyfunction]
+#[pyo3(signature = (figure, input, output, time))]
+pub fn figure_label(figure: &str, input: String, output: String, time: Option<String>) -> PyResult<String> {
+    let Some(found) = FIGURES.iter().find(|one| one.name == figure) else {
+        let names: Vec<&str> = FIGURES.iter().map(|figure| figure.name).collect();
+        return Err(refused(format!("there is no figure {figure:?}: choose one of {}", names.join(", "))));
+    };
+    let names = ColumnNames { time, inputs: vec![input], rate: None, output };
+    Ok(label(&Quantities::of(&names).as_figure(found.label, found.quantity)))
+}

@@ -1,0 +1,21 @@
+"""What `Model.simulate` gives for what it takes, for a type checker: `test_types.py` runs mypy over this file."""
+
+import numpy as np
+import polars
+import xarray
+from typing_extensions import assert_type
+
+import hysid
+
+
+def of_each_kind(model: hysid.Model, array: np.ndarray, series: polars.Series, field: xarray.DataArray) -> None:
+    assert_type(model.simulate(array), np.ndarray)
+    assert_type(model.simulate([1.0, 2.0]), np.ndarray)
+    assert_type(model.simulate({"x": array}), np.ndarray)
+    assert_type(model.simulate(series), polars.Series)
+    assert_type(model.simulate(field, time=field), xarray.DataArray)
+    assert_type(model.simulate([array, array]), list[np.ndarray])
+    assert_type(model.simulate((array, array), time=[array, array]), list[np.ndarray])
+    assert_type(model.simulate([series, series]), list[polars.Series])
+    assert_type(model.simulate([{"x": array}]), list[np.ndarray])
+    assert_type(model.simulate([[1.0], [2.0]]), np.ndarray)
