@@ -10,7 +10,7 @@ mod time;
 use std::path::Path;
 
 use hysid_core::operator::{Operator, Stop};
-use hysid_document::chart::{Axis, Chart, Colour, Curve, Label, sheet};
+use hysid_document::chart::{Appearance, Axis, Chart, Colour, Curve, Label, sheet};
 
 /// Step of the input between two samples.
 const STEP: f64 = 0.02;
@@ -108,7 +108,8 @@ fn figures_are_as_the_library_draws_them() {
         ("band", "Output of an ensemble with its prediction band", time::band()),
     ];
     for (name, description, charts) in figures {
-        let drawn = sheet(&charts, 2, description, "hysid-document/tests/theory_figures");
+        let drawn =
+            sheet(&charts, 2, &Appearance::of_page(), description, "hysid-document/tests/theory_figures");
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../docs/images/{name}.svg"));
         if std::env::var_os("HYSID_WRITE").is_some() {
             std::fs::write(&place, &drawn).unwrap();
