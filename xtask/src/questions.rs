@@ -9,6 +9,7 @@ mod errors;
 mod inverses;
 mod models;
 mod one_loop;
+mod processor;
 mod rates;
 mod request;
 mod statistics;

@@ -7,14 +7,8 @@ use super::statistics::{geometric_mean, median, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
 
-const SPECIMENS: [&str; 6] = [
-    "timber-growing",
-    "structural-steel-growing",
-    "thin-sheet-loops",
-    "stack-reversals",
-    "brace-irregular",
-    "bender-random",
-];
+const SPECIMENS: [&str; 4] =
+    ["timber-growing", "structural-steel-growing", "thin-sheet-loops", "stack-reversals"];
 const SEEDS: u64 = 2;
 const ROWS: usize = 700;
 

@@ -9,13 +9,8 @@ use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives};
 
-const SPECIMENS: [&str; 5] = [
-    "stack-reversals",
-    "bender-random",
-    "sma-actuator-reversals",
-    "creeping-piezo-frequencies",
-    "rate-actuator-frequencies",
-];
+const SPECIMENS: [&str; 4] =
+    ["stack-reversals", "sma-actuator-reversals", "creeping-piezo-frequencies", "rate-actuator-frequencies"];
 const SEEDS: u64 = 2;
 const ROWS: usize = 1000;
 

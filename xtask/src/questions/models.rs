@@ -1,10 +1,9 @@
 //! Which model first: error on unseen data, size and time of models that are fitted with their defaults.
 
-use std::time::Instant;
-
 use anyhow::Result;
 
 use super::fit;
+use super::processor;
 use super::statistics::{geometric_mean, largest, median, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
@@ -22,7 +21,6 @@ const SPECIMENS: [&str; 8] = [
 const SEED: u64 = 1;
 const ROWS: usize = 700;
 
-/// Models, and whether they are tried at all: a law of another field is no candidate.
 const MODELS: [&str; 12] = [
     "auto",
     "xpnn+",
@@ -40,7 +38,7 @@ const MODELS: [&str; 12] = [
 
 /// A row for each model.
 pub fn table() -> Result<String> {
-    let columns = ["unseen, %", "largest, %", "best of all in", "numbers", "fit, s"];
+    let columns = ["unseen, %", "largest, %", "best of all in", "numbers", "fit, processor s"];
     let rigs: Vec<Rig> = SPECIMENS.iter().map(|name| Rig::new(name, SEED, ROWS)).collect::<Result<_>>()?;
     let mut errors = Vec::new();
     let mut sizes = Vec::new();
@@ -50,9 +48,9 @@ pub fn table() -> Result<String> {
         for rig in &rigs {
             let train = rig.measured("test", &drives::random(&rig.path, ROWS, 500), SEED)?;
             let train = rig.data([train])?;
-            let begun = Instant::now();
+            let begun = processor::seconds()?;
             let model = fit(name, &train, SEED)?;
-            time.push(begun.elapsed().as_secs_f64());
+            time.push(processor::seconds()? - begun);
             parameters.push(model.parameters() as f64);
             of_model.push(error_of(&model, &rig.unseen(SEED)?)?);
         }
