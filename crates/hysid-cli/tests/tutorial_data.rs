@@ -37,9 +37,19 @@ fn through(turns: &[f64], step: f64) -> Vec<f64> {
     path
 }
 
-/// The forces in kN of a new column of the tests, with noise.
+/// The forces in kN of a new column, with noise: two hinges, of which one yields later and degrades less. No model of
+/// Hysid has this law.
 fn forces(displacement: &[f64], seed: u64) -> Vec<f64> {
-    let exact = ReinforcedConcreteJoint::new(BoucWenBaberNoori::joint()).run(displacement);
+    let weak = BoucWenBaberNoori { force_scale: 230.0, ..BoucWenBaberNoori::joint() };
+    let strong = BoucWenBaberNoori {
+        force_scale: 120.0,
+        displacement_scale: 30.0,
+        delta_nu: 0.1,
+        zeta_s: 0.6,
+        ..BoucWenBaberNoori::joint()
+    };
+    let [weak, strong] = [weak, strong].map(|hinge| ReinforcedConcreteJoint::new(hinge).run(displacement));
+    let exact: Vec<f64> = weak.iter().zip(strong).map(|(weak, strong)| weak + strong).collect();
     let data = Dataset::from_slices(displacement, &exact).unwrap();
     with_noise(&data, NOISE, seed).unwrap().records()[0].output().to_vec()
 }
@@ -49,11 +59,11 @@ fn comma(value: f64, decimals: usize) -> String {
     format!("{value:.decimals$}").replace('.', ",")
 }
 
-/// Seven amplitudes up to 60 mm, two cycles each, 0.5 mm/s.
+/// Seven amplitudes up to 60 mm, three cycles each, 0.5 mm/s.
 #[test]
 fn the_column_test_is_that_of_its_law() {
     let levels = [5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0];
-    let turns = levels.iter().flat_map(|level| [*level, -level, *level, -level]);
+    let turns = levels.iter().flat_map(|level| [*level, -level].repeat(3));
     let turns: Vec<f64> = [0.0].into_iter().chain(turns).chain([0.0]).collect();
     let displacement = through(&turns, 1.0);
     let mut text = String::from(
@@ -83,14 +93,14 @@ fn earthquake() -> Vec<f64> {
 /// Three new columns in the same earthquake, scaled to 30, 60 and 90 mm.
 #[test]
 fn the_earthquakes_are_those_of_the_same_law() {
-    let mut text = String::from("record,t_s,Displacement_mm,Force_kN\n");
     for (seed, peak) in (11..).zip([30.0, 60.0, 90.0]) {
         let displacement: Vec<f64> = earthquake().iter().map(|x| peak * x).collect();
+        let mut text = String::from("t_s,Displacement_mm,Force_kN\n");
         for (row, (x, y)) in displacement.iter().zip(forces(&displacement, seed)).enumerate() {
-            writeln!(text, "{peak} mm,{:.2},{x:.3},{y:.2}", 0.02 * row as f64).unwrap();
+            writeln!(text, "{:.2},{x:.3},{y:.2}", 0.02 * row as f64).unwrap();
         }
+        check(&format!("earthquake-{peak}.csv"), &text);
     }
-    check("earthquakes.csv", &text);
 }
 
 /// A sheet of electrical steel behind eddy currents: sines of three amplitudes at five frequencies, and two waveforms
@@ -162,11 +172,11 @@ fn the_stage_is_that_of_its_law() {
 #[test]
 fn the_scan_is_that_of_its_formula() {
     let lines = (0..8).flat_map(|line| {
-        let offset = 1.0 + 0.1 * f64::from(line);
+        let offset = 4.0 + 0.1 * f64::from(line);
         [(offset + 6.0, 40), (offset + 0.1, 40)]
     });
-    let steps = [(4.0, 25), (4.0, 50), (2.5, 25), (2.5, 50), (5.5, 25), (5.5, 50)];
-    let wanted = swings(0.0, [(1.0, 40)].into_iter().chain(lines).chain(steps));
+    let steps = [(7.0, 25), (7.0, 50), (5.5, 25), (5.5, 50), (8.5, 25), (8.5, 50)];
+    let wanted = swings(3.0, [(4.0, 40)].into_iter().chain(lines).chain(steps));
     let mut text = String::from("t_s,y_um\n");
     for (row, y) in wanted.iter().enumerate() {
         writeln!(text, "{:.3},{y:.4}", STAGE_STEP * row as f64).unwrap();
