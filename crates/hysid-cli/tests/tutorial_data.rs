@@ -10,8 +10,9 @@ use hysid::data::record::{Dataset, Record};
 use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
 use hysid::specimens::{BoucWenBaberNoori, ReinforcedConcreteJoint, with_noise};
 
-/// Noise of the load cell and of the coil, in percent of the standard deviation.
+/// Noise of the load cell, and of the coil, in percent of the standard deviation of the output.
 const NOISE: f64 = 1.0;
+const COIL_NOISE: f64 = 0.3;
 
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorials/data").join(name)
@@ -121,14 +122,14 @@ fn the_sheet_is_that_of_its_law() {
             sines.push(record(&name, 121, step, &|t| amplitude * (TAU * frequency * t).sin()));
         }
     }
-    check("sheet.csv", &table(&sheet.names, sines, 1, NOISE));
+    check("sheet.csv", &table(&sheet.names, sines, 1, COIL_NOISE));
     let inverter = |t: f64| 0.75 * (TAU * 50.0 * t).sin() + 0.25 * (TAU * 250.0 * t).sin();
     let biased = |t: f64| 0.3 * (1.0 - (-t / 0.01).exp()) + 0.5 * (TAU * 50.0 * t).sin();
     let waveforms = vec![
         record("fifth harmonic", 361, 1.0 / 6000.0, &inverter),
         record("bias", 361, 1.0 / 6000.0, &biased),
     ];
-    check("waveforms.csv", &table(&sheet.names, waveforms, 2, NOISE));
+    check("waveforms.csv", &table(&sheet.names, waveforms, 2, COIL_NOISE));
 }
 
 /// Time step of the stage's controller, in s.
@@ -187,7 +188,7 @@ fn the_scan_is_that_of_its_formula() {
 /// The positions of the stage in the columns of measurements are those at the drives beside them.
 #[test]
 fn the_driven_stage_is_that_of_its_law() {
-    for (name, seed) in [("driven-by-line.csv", 4), ("driven-by-inverse.csv", 5)] {
+    for (name, seed) in [("driven-by-line.csv", 4), ("driven-by-inverse.csv", 5), ("driven-again.csv", 6)] {
         let stored = fs::read_to_string(file(name)).unwrap_or_default();
         let voltage: Vec<f64> =
             stored.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect();
@@ -199,6 +200,27 @@ fn the_driven_stage_is_that_of_its_law() {
             writeln!(text, "{:.3},{x:.3},{y:.5}", STAGE_STEP * row as f64).unwrap();
         }
         check(name, &text);
+    }
+}
+
+/// A column of numbers of a file.
+fn column(name: &str, column: usize) -> Vec<f64> {
+    let text = fs::read_to_string(file(name)).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').nth(column).unwrap().parse().unwrap()).collect()
+}
+
+/// The deviations from the wanted scan in um that the page of the stage tells: RMS and largest.
+#[test]
+fn the_deviations_of_the_stage_are_those_of_its_page() {
+    let wanted = column("scan.csv", 1);
+    let page = fs::read_to_string(file("../piezo-control.md")).unwrap();
+    for name in ["driven-by-line.csv", "driven-by-inverse.csv", "driven-again.csv"] {
+        let errors: Vec<f64> =
+            column(name, 2).iter().zip(&wanted).map(|(y, wanted)| (y - wanted).abs()).collect();
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        let largest = errors.iter().copied().fold(0.0_f64, f64::max);
+        let row = format!("| `{name}` | {rms:.3} | {largest:.3} |");
+        assert!(page.contains(&row), "the page has no row {row}");
     }
 }
 

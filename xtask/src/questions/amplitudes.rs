@@ -18,8 +18,7 @@ const TRAINED: f64 = 0.5;
 /// Range of the unseen tests as multiples of the trained one.
 const MULTIPLES: [f64; 5] = [1.0, 1.1, 1.25, 1.5, 2.0];
 
-const MODELS: [&str; 6] =
-    ["auto", "xpnn+", "preisach", "prandtl-ishlinskii", "modified-prandtl-ishlinskii", "bouc-wen"];
+const MODELS: [&str; 5] = ["auto", "xpnn+", "preisach", "prandtl-ishlinskii", "bouc-wen"];
 
 /// Share of the rows in the band.
 const LEVEL: f64 = 0.9;

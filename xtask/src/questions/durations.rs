@@ -15,16 +15,7 @@ const ROWS: [usize; 4] = [250, 1000, 4000, 16_000];
 /// Simulations of which the time is taken, because that of one is too short for the clock.
 const REPEATED: usize = 100;
 
-const MODELS: [&str; 8] = [
-    "auto",
-    "xpnn+",
-    "xpnn",
-    "duhem-nn",
-    "bouc-wen",
-    "rate-dependent-prandtl-ishlinskii",
-    "preisach",
-    "prandtl-ishlinskii",
-];
+const MODELS: [&str; 7] = ["auto", "xpnn+", "xpnn", "duhem-nn", "bouc-wen", "preisach", "prandtl-ishlinskii"];
 
 /// A row for each model, with its defaults.
 pub fn table() -> Result<String> {

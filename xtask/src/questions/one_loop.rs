@@ -8,16 +8,8 @@ use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::error_of;
 
-const MODELS: [&str; 8] = [
-    "auto",
-    "xpnn+",
-    "preisach",
-    "prandtl-ishlinskii",
-    "modified-prandtl-ishlinskii",
-    "bouc-wen",
-    "jiles-atherton",
-    "peak-oriented",
-];
+const MODELS: [&str; 6] =
+    ["auto", "xpnn+", "preisach", "prandtl-ishlinskii", "modified-prandtl-ishlinskii", "bouc-wen"];
 
 /// Cases: each law that needs no time once.
 const CASES: usize = 26;
