@@ -7,7 +7,7 @@ use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
 
-const SPECIMENS: [&str; 3] = ["timber-growing", "stack-reversals", "damper-random"];
+const SPECIMENS: [&str; 3] = ["timber-growing", "structural-steel-growing", "stack-reversals"];
 const SEEDS: u64 = 2;
 
 /// Numbers of cycles of growing amplitude.

@@ -10,7 +10,7 @@ use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
 
-const SPECIMENS: [&str; 2] = ["brace-irregular", "damper-random"];
+const SPECIMENS: [&str; 2] = ["brace-irregular", "stack-reversals"];
 const SEEDS: u64 = 2;
 const ROWS: usize = 750;
 
