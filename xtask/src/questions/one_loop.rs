@@ -13,7 +13,8 @@ const MODELS: [&str; 6] =
 
 /// Cases: laws that need no time, of every field.
 const CASES: usize = 14;
-const SEED: u64 = 1;
+/// The prior of `auto` for data of one loop was determined on the cases of seed 1; these are others.
+const SEED: u64 = 3;
 
 /// Fields by the name of the input.
 const FIELDS: [(&str, &[&str]); 3] = [
