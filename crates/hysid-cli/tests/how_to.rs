@@ -52,7 +52,7 @@ fn follow(path: &Path, bench: &Workbench) {
 
 #[test]
 fn every_command_of_every_page_works() {
-    let single = ["cycles.md", "plan.md"].map(|page| docs().join(page));
+    let single = ["cycles.md", "plan.md", "questions.md"].map(|page| docs().join(page));
     for path in pages("how-to").into_iter().chain(single) {
         let bench = Workbench::new();
         // A page tells its reader to copy it.
