@@ -1,6 +1,5 @@
 //! Developer commands: `cargo xtask check | test | python | sdist | bench | cases | generate-cases | generate-files |
-//! verdicts |
-//! verdict-battery | plan-battery | fuzz | soak | same-models | tidy | site`.
+//! verdicts | verdict-battery | plan-battery | questions | fuzz | soak | same-models | tidy | site`.
 
 mod arguments;
 mod bench;
@@ -17,7 +16,9 @@ mod plan_battery;
 mod program;
 mod proofs;
 mod python;
+mod questions;
 mod repository;
+mod rig;
 mod same_models;
 mod site;
 mod soak;
@@ -75,6 +76,10 @@ Commands:
   plan-battery [--first constant|rising] [--seeds NUMBER] [--specimens LIST] [--out FILE.md]
                  the error on unseen data after a first test and a second one: the same again, the plan of
                  `hysid plan`, random reversals. Long: run it as `cargo run --release -p xtask -- plan-battery`
+  questions [--only NAME] [--out FILE.md]
+                 the tables of docs/questions.md, all or one: cycles, columns, one-loop, rates,
+                 wear, durations, models, inverses, disturbances, amplitudes or errors.
+                 Long: run it as `cargo run --release -p xtask -- questions`
 ";
 
 /// A command line that cannot be obeyed; the exit status is 2.
@@ -132,6 +137,9 @@ fn main() -> ExitCode {
         }
         ["plan-battery", rest @ ..] => {
             plan_battery::Request::parse(rest).and_then(|request| plan_battery::run(&request))
+        }
+        ["questions", rest @ ..] => {
+            questions::Request::parse(rest).and_then(|request| questions::run(&request))
         }
         ["verdict-battery", rest @ ..] => {
             verdict_battery::Request::parse(rest).and_then(|request| verdict_battery::run(&request))

@@ -1,7 +1,6 @@
 //! `cargo xtask plan-battery`: which second test lowers the error on unseen data most: the first one again, the plan of
 //! `hysid plan`, or random reversals of the same length.
 
-mod drives;
 mod page;
 mod request;
 mod trial;

@@ -166,11 +166,12 @@ impl Roles {
         } else {
             let (expected, found) = (needed.len(), options.input.len());
             if expected != found {
-                let (what, inputs) = match expected {
-                    0 => ("further inputs", String::from("none")),
-                    _ if expected < names.inputs.len() => ("further inputs", listed(needed)),
-                    _ => ("inputs", listed(needed)),
-                };
+                if expected == 0 {
+                    let advice = "leave --input away: the drive is named after the model's input";
+                    return Err(Usage(format!("the model has no further inputs; {advice}")).into());
+                }
+                let what = if expected < names.inputs.len() { "further inputs" } else { "inputs" };
+                let inputs = listed(needed);
                 return Err(Usage(format!(
                     "--input names {found} columns, but the model's {what} are {expected}: {inputs}"
                 ))

@@ -346,6 +346,11 @@ fn bad_references_are_refused_with_their_place() {
         ("stage.json taken_too.csv -o d.csv", 1, "taken_too.csv: there is already a column \"x_mm_inverse\""),
         ("stage.json one.csv --json", 2, "--json prints to stdout in place of the table"),
         ("stage.json one.csv --limits 3:1", 2, "the low limit 3 is not below the high one"),
+        (
+            "stage.json one.csv --input F_kN -o d.csv",
+            2,
+            "the model has no further inputs; leave --input away",
+        ),
         ("stage.json one.csv --slew 0", 2, "a number above 0 is needed"),
         ("stage.json one.csv --preview soon", 2, "`auto` or a time of 0 or more is needed"),
         ("stage.json one.csv -o train.csv", 2, "train.csv"),

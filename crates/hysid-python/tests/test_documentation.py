@@ -52,7 +52,7 @@ def test_everything_public_is_explained():
     assert seen > 30
 
 
-@pytest.mark.parametrize("page", ["docs/python.md", "crates/hysid-python/README.md"])
+@pytest.mark.parametrize("page", ["docs/python.md", "docs/tutorials/data-science.md", "crates/hysid-python/README.md"])
 @pytest.mark.filterwarnings("ignore::hysid.HysidWarning")
 def test_pages_are_true(page, tmp_path, monkeypatch):
     """The Python blocks of a page, one after the other, in a folder of their own."""

@@ -1,24 +1,14 @@
 //! One specimen, one first test, one seed: the errors after each second test.
 
-use anyhow::{Context, Result};
-use hysid::data::record::{Dataset, Record};
-use hysid::plan::{Limits, Path, Plan, PlanOptions, Wave};
-use hysid::specimens::cases::{DrivenSpecimen, driven_specimen};
-use hysid::specimens::with_noise;
+use anyhow::Result;
+use hysid::data::record::Dataset;
+use hysid::plan::{Limits, Path, Plan, PlanOptions};
 use hysid::{Fit, Model};
 
-use super::drives;
+use crate::rig::{Rig, drives, error_of};
 
-/// Rows of a swing over the whole range, and of the first test.
-const ROWS_OF_A_SWING: f64 = 50.0;
+/// Rows of the first test.
 const ROWS: usize = 525;
-
-/// Noise, in percent of the standard deviation of the output.
-const NOISE: f64 = 1.0;
-
-/// Unseen tests and their rows.
-const UNSEEN: u64 = 3;
-const ROWS_UNSEEN: usize = 700;
 
 /// What was run first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,29 +94,22 @@ impl Trial {
 
 /// Fits models after the first test and after each second one.
 pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
-    let specimen = driven_specimen(name, seed)?.with_context(|| format!("there is no plan `{name}`"))?;
-    let rig = Rig { path: path(&specimen), specimen };
+    let rig = Rig::new(name, seed, ROWS)?;
     let path = &rig.path;
     let one = rig.measured("first", &first.drive(path), seed)?;
     let model = fit(&rig.data([one.clone()])?, seed)?;
-    let unseen = (0..UNSEEN)
-        .map(|number| rig.run("unseen", &drives::random(path, ROWS_UNSEEN, 1000 * seed + number)))
-        .collect::<Result<Vec<_>>>()?;
-    let unseen = Dataset::new(rig.specimen.names.clone(), unseen)?;
-    let error = |model: &Model| -> Result<f64> {
-        model.evaluate(&unseen)?.nrmse_std_percent.context("the unseen output varies")
-    };
+    let unseen = rig.unseen(seed)?;
     let plan =
         Plan::of(&rig.data([one.clone()])?, Some(&model), &PlanOptions { seed, ..PlanOptions::default() })?;
     let after = |drive: &[f64], noise: u64| -> Result<f64> {
         let second = rig.measured("second", drive, noise)?;
-        error(&fit(&rig.data([one.clone(), second])?, seed)?)
+        error_of(&fit(&rig.data([one.clone(), second])?, seed)?, &unseen)
     };
     Ok(Trial {
         name,
         first,
         seed,
-        before: error(&model)?,
+        before: error_of(&model, &unseen)?,
         repeated: after(&first.drive(path), seed + 100)?,
         planned: after(&plan.input, seed + 200)?,
         random: after(&drives::random(path, ROWS, 1000 * seed + 500), seed + 300)?,
@@ -137,37 +120,4 @@ pub fn trial(name: &'static str, first: FirstTest, seed: u64) -> Result<Trial> {
 /// The default model, with one start of each candidate.
 fn fit(data: &Dataset, seed: u64) -> Result<Model> {
     Ok(Fit::new().option("starts", 1).option("initial_state", "virgin").seed(seed).run(data)?)
-}
-
-/// How a specimen is driven: as fast as half its highest frequency over the whole range.
-fn path(specimen: &DrivenSpecimen) -> Path {
-    let (low, high) = specimen.range;
-    let start = 0.0_f64.clamp(low, high);
-    let wave = if specimen.frequencies.is_some() { Wave::Smooth } else { Wave::Triangle };
-    let step = specimen.frequencies.map(|(_, highest)| 1.0 / (0.5 * highest * 2.0 * ROWS_OF_A_SWING));
-    let max_rate = wave.peak() * (high - low) / (ROWS_OF_A_SWING * step.unwrap_or(1.0));
-    Path { limits: Limits { range: (low, high), start, step, max_rate, rows: ROWS }, wave }
-}
-
-/// A specimen in its machine.
-struct Rig {
-    specimen: DrivenSpecimen,
-    path: Path,
-}
-
-impl Rig {
-    /// An untouched specimen along a drive, without noise.
-    fn run(&self, name: &str, drive: &[f64]) -> Result<Record> {
-        Ok(self.specimen.run(name, drive, self.path.limits.step)?)
-    }
-
-    /// The same with noise.
-    fn measured(&self, name: &str, drive: &[f64], noise: u64) -> Result<Record> {
-        let data = with_noise(&self.data([self.run(name, drive)?])?, NOISE, noise)?;
-        Ok(data.records()[0].clone())
-    }
-
-    fn data<const N: usize>(&self, records: [Record; N]) -> Result<Dataset> {
-        Ok(Dataset::new(self.specimen.names.clone(), records.into())?)
-    }
 }

@@ -1,0 +1,86 @@
+//! What a causal rate costs: the error on unseen data with the rate as a central difference, as a backward difference,
+//! and without rate.
+
+use anyhow::Result;
+use hysid::data::metrics::ErrorSums;
+use hysid::data::rate::RateMethod;
+use hysid::data::record::Dataset;
+use hysid::{Fit, Model};
+
+use super::statistics::{geometric_mean, shown};
+use crate::cases::{aligned, row};
+use crate::rig::{Rig, drives, error_of};
+
+const SPECIMENS: [&str; 5] = [
+    "damper-random",
+    "bush-random",
+    "rate-actuator-frequencies",
+    "creeping-piezo-frequencies",
+    "ferroelectric-frequencies",
+];
+const SEEDS: u64 = 2;
+
+/// Rows of the fastest swing: a fine and a coarse sampling.
+const SAMPLINGS: [usize; 2] = [50, 10];
+
+/// Swings of the whole range at the largest rate that training data are as long as.
+const SWINGS: usize = 20;
+
+const COLUMNS: [&str; 4] = ["central", "central, in steps", "backward", "none"];
+
+/// A row for each specimen and sampling.
+pub fn table() -> Result<String> {
+    let mut rows = vec![row("specimen, rows a swing", &COLUMNS)];
+    for rows_of_a_swing in SAMPLINGS {
+        let mut all: [Vec<f64>; 4] = Default::default();
+        for name in SPECIMENS {
+            let mut of_specimen: [Vec<f64>; 4] = Default::default();
+            for seed in 1..=SEEDS {
+                for (column, error) in of_specimen.iter_mut().zip(errors(name, rows_of_a_swing, seed)?) {
+                    column.push(error);
+                }
+            }
+            let cells = of_specimen.each_ref().map(|errors| shown(geometric_mean(errors)));
+            rows.push(row(&format!("{name}, {rows_of_a_swing}"), &cells));
+            for (column, errors) in all.iter_mut().zip(of_specimen) {
+                column.extend(errors);
+            }
+        }
+        let cells = all.map(|errors| shown(geometric_mean(&errors)));
+        rows.push(row(&format!("geometric mean, {rows_of_a_swing}"), &cells));
+    }
+    Ok(aligned(&rows))
+}
+
+fn errors(name: &str, rows_of_a_swing: usize, seed: u64) -> Result<[f64; 4]> {
+    let rows = SWINGS * rows_of_a_swing;
+    let rig = Rig::sampled(name, seed, rows, rows_of_a_swing as f64)?;
+    let train = rig.measured("test", &drives::random(&rig.path, rows, 1000 * seed + 500), seed)?;
+    let train = rig.data([train])?;
+    let unseen = rig.unseen(seed)?;
+    let fit = |rate| -> Result<Model> { Ok(Fit::new().model("xpnn").rate(rate).seed(seed).run(&train)?) };
+    let central = fit(Some(RateMethod::Central))?;
+    Ok([
+        error_of(&central, &unseen)?,
+        error_in_steps(&central, &unseen)?,
+        error_of(&fit(Some(RateMethod::Backward))?, &unseen)?,
+        error_of(&fit(None)?, &unseen)?,
+    ])
+}
+
+/// The error of a model that is run sample by sample without a rate, as in a controller: it forms backward differences.
+fn error_in_steps(model: &Model, unseen: &Dataset) -> Result<f64> {
+    let mut sums = ErrorSums::default();
+    for record in unseen.records() {
+        let mut stepper = model.stepper();
+        let time = record.time().unwrap_or_default();
+        let output = record.inputs()[0]
+            .iter()
+            .zip(time)
+            .map(|(x, t)| stepper.step(&[*x], *t, None))
+            .collect::<hysid::Result<Vec<f64>>>()?;
+        sums.add(record.output(), &output);
+    }
+    let errors = sums.errors(&unseen.names().output);
+    Ok(errors.and_then(|errors| errors.nrmse_std_percent).unwrap_or(f64::NAN))
+}
