@@ -103,7 +103,8 @@ impl Noise {
     /// Standard deviation of a value, without the walk.
     pub fn deviation(&self) -> f64 {
         let of_value = self.parts.iter().filter(|part| part.0 != Correlation::Walking);
-        of_value.map(|part| part.1).sum::<f64>().sqrt()
+        // The sum of nothing would be -0.
+        of_value.fold(0.0, |sum, part| sum + part.1).sqrt()
     }
 
     /// Standard deviation of the walk from a row to one so many rows away.
@@ -184,6 +185,12 @@ impl Noise {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    #[test]
+    fn no_noise_is_not_minus_nought() {
+        let none = Noise { parts: Vec::new(), ..Noise::white(1.0) };
+        assert!(none.deviation() == 0.0 && none.deviation().is_sign_positive());
+    }
 
     #[test]
     fn the_deviation_of_a_sum_is_that_of_its_covariances() {
