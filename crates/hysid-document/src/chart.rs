@@ -15,6 +15,7 @@ pub use appearance::{Appearance, PIXELS_PER_MILLIMETRE, PIXELS_PER_POINT};
 pub use axis::Axis;
 pub use heat_map::{HeatCell, heat_map};
 pub use palette::style;
+pub use svg::sheet;
 use thin::Point;
 
 /// What a curve shows, which determines its colour.
@@ -199,19 +200,6 @@ impl Chart {
     pub fn file(&self, generator: &str) -> String {
         svg::file(self, generator)
     }
-}
-
-/// Several charts as one file, `columns` of them beside each other, in columns as wide as the widest chart and rows as high
-/// as the highest chart of the row. `description` is for readers who cannot see them; `generator` names the program that
-/// made the file.
-pub fn sheet(
-    charts: &[Chart],
-    columns: usize,
-    appearance: &Appearance,
-    description: &str,
-    generator: &str,
-) -> String {
-    svg::sheet(charts, columns, appearance, description, generator)
 }
 
 /// Points in a file: one that is not finite is nothing.

@@ -4,14 +4,13 @@
 //! a published crate holds only its own files. `HYSID_WRITE=1 cargo test -p hysid-document --test figures` draws the
 //! loops anew.
 
+mod paths;
+
 use std::path::{Path, PathBuf};
 
 use hysid_core::operator::{DeterioratingStop, Operator, Play, Stop};
 use hysid_document::chart::{Axis, Chart, Colour, Curve, Label};
-
-/// Step of the input between two samples. All thresholds and amplitudes below are multiples of it, so each corner of a
-/// loop is a sample.
-const STEP: f64 = 0.02;
+use paths::{corners, path};
 
 const SIZE: (f64, f64) = (460.0, 320.0);
 
@@ -25,30 +24,10 @@ fn places(in_core: &str) -> [PathBuf; 2] {
     [root().join("docs/images").join(core.file_name().unwrap()), core]
 }
 
-/// The input through these turning points, from 0 on.
-fn path(turning: impl IntoIterator<Item = f64>) -> Vec<f64> {
-    let mut x = vec![0.0];
-    let mut at = 0_i64;
-    for target in turning {
-        let target = (target / STEP).round() as i64;
-        while at != target {
-            at += (target - at).signum();
-            x.push(at as f64 * STEP);
-        }
-    }
-    x
-}
-
 /// Input and output of an operator, without the samples in the middle of a straight piece.
 fn curve(mut operator: impl Operator, x: &[f64], colour: Colour) -> Curve {
     let points: Vec<(f64, f64)> = x.iter().copied().zip(operator.run(x)).collect();
-    let is_corner = |k: usize| {
-        let ((x0, y0), (x1, y1), (x2, y2)) = (points[k - 1], points[k], points[k + 1]);
-        ((x1 - x0) * (y2 - y1) - (x2 - x1) * (y1 - y0)).abs() > 1e-9 || (x1 - x0) * (x2 - x1) < 0.0
-    };
-    let last = points.len() - 1;
-    let corners = (0..=last).filter(|&k| k == 0 || k == last || is_corner(k)).map(|k| points[k]).collect();
-    Curve::new(corners, colour, 2.0)
+    Curve::new(corners(&points), colour, 2.0)
 }
 
 fn label(x: f64, y: f64, rise: f64, text: &str) -> Label {
@@ -63,7 +42,7 @@ fn chart(description: &str, output: &str, curves: Vec<Curve>, labels: Vec<Label>
 }
 
 fn stop() -> Chart {
-    let cycles = curve(Stop::new(1.0).unwrap(), &path([2.0, -2.0, 2.0]), Colour::Simulated);
+    let cycles = curve(Stop::new(1.0).unwrap(), &path(&[2.0, -2.0, 2.0]), Colour::Simulated);
     let labels = vec![
         label(0.3, 1.0, 12.0, "slides: ε = r"),
         label(1.4, 0.3, 0.0, "sticks"),
@@ -74,7 +53,7 @@ fn stop() -> Chart {
 }
 
 fn play() -> Chart {
-    let cycles = curve(Play::new(1.0).unwrap(), &path([2.0, -2.0, 2.0]), Colour::Simulated);
+    let cycles = curve(Play::new(1.0).unwrap(), &path(&[2.0, -2.0, 2.0]), Colour::Simulated);
     let labels = vec![
         label(0.8, 1.0, 12.0, "rests"),
         label(-0.5, -0.5, 0.0, "p = x - r"),
@@ -87,9 +66,10 @@ fn play() -> Chart {
 /// Equation (1.9) of the theory gives a life of 4.8 cycles for this amplitude and capacity.
 fn deteriorating_stop() -> Chart {
     let (r, beta, amplitude) = (1.0, 8.0, 1.42);
-    let x = path((0..11).map(|k| if k % 2 == 0 { amplitude } else { -amplitude }));
+    let turning: Vec<f64> = (0..11).map(|k| if k % 2 == 0 { amplitude } else { -amplitude }).collect();
+    let x = path(&turning);
     let worn = curve(DeterioratingStop::new(r, beta).unwrap(), &x, Colour::Simulated);
-    let fresh = curve(Stop::new(r).unwrap(), &path([amplitude, -amplitude, amplitude]), Colour::Faint);
+    let fresh = curve(Stop::new(r).unwrap(), &path(&[amplitude, -amplitude, amplitude]), Colour::Faint);
     let description = "Output of a deteriorating stop with threshold 1 and capacity 8 over an input between -1.42 and \
                        1.42: its loops shrink to nothing within 5 cycles";
     chart(

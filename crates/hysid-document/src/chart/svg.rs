@@ -25,7 +25,9 @@ pub fn file(chart: &Chart, generator: &str) -> String {
     element(chart, &Appearance::of_page(), &attributes, &style, false)
 }
 
-/// As [`super::sheet`].
+/// Several charts as one file, `columns` of them beside each other, in columns as wide as the widest chart and rows as high
+/// as the highest chart of the row. `description` is for readers who cannot see them; `generator` names the program that
+/// made the file.
 pub fn sheet(
     charts: &[Chart],
     columns: usize,

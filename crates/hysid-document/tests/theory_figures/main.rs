@@ -4,6 +4,8 @@
 
 mod laws;
 mod memory;
+#[path = "../paths/mod.rs"]
+mod paths;
 mod superposition;
 mod time;
 
@@ -11,9 +13,7 @@ use std::path::Path;
 
 use hysid_core::operator::{Operator, Stop};
 use hysid_document::chart::{Appearance, Axis, Chart, Colour, Curve, Label, sheet};
-
-/// Step of the input between two samples.
-const STEP: f64 = 0.02;
+use paths::{corners, path};
 
 /// Size of a chart that stands beside another, in pixels.
 const SIZE: (f64, f64) = (430.0, 320.0);
@@ -23,33 +23,9 @@ const MOST_BYTES: usize = 100_000;
 
 type Points = Vec<(f64, f64)>;
 
-/// The input from 0 through these turning points, in equal steps.
-fn path(turning: &[f64]) -> Vec<f64> {
-    let mut x = vec![0.0];
-    let mut at = 0_i64;
-    for target in turning {
-        let target = (target / STEP).round() as i64;
-        while at != target {
-            at += (target - at).signum();
-            x.push(at as f64 * STEP);
-        }
-    }
-    x
-}
-
 /// The last row of the path at which each of these turning points is reached.
 fn rows(turning: &[f64]) -> Vec<usize> {
     (1..=turning.len()).map(|count| path(&turning[..count]).len() - 1).collect()
-}
-
-/// The points without those in the middle of a straight piece.
-fn corners(points: &[(f64, f64)]) -> Points {
-    let is_corner = |k: usize| {
-        let ((x0, y0), (x1, y1), (x2, y2)) = (points[k - 1], points[k], points[k + 1]);
-        ((x1 - x0) * (y2 - y1) - (x2 - x1) * (y1 - y0)).abs() > 1e-9 || (x1 - x0) * (x2 - x1) < 0.0
-    };
-    let last = points.len() - 1;
-    (0..=last).filter(|&k| k == 0 || k == last || is_corner(k)).map(|k| points[k]).collect()
 }
 
 fn line(points: &[(f64, f64)], colour: Colour) -> Curve {
