@@ -161,6 +161,21 @@ fn understood(file: &str, model: &Model, driven: &ModelCycles) -> Vec<(String, S
             ),
         ),
     ];
+    let speeds = &driven.probing.speeds;
+    if !speeds.is_empty() {
+        let unit = hysid::data::unit::of_column(&Quantities::of(model.names()).as_speed("speed"));
+        let unit = hysid::data::unit::suffix(unit.as_deref());
+        let number = |speed: f64| format!("{:.3}", hysid::significant::Significant(speed));
+        let others: Vec<String> = speeds.iter().map(|&speed| number(speed)).collect();
+        let slow = number(driven.probing.vanishing_speed);
+        lines.push((
+            "speed".to_string(),
+            format!(
+                "record \"slow\" at {slow}{unit}, an extrapolation unless the training was as slow; the others at {}{unit}",
+                others.join(", ")
+            ),
+        ));
+    }
     for (name, &held) in model.names().inputs.iter().skip(1).zip(&driven.probing.held) {
         lines.push(("input".into(), format!("{name}: held at {}", value(held, name))));
     }

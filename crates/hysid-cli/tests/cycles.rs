@@ -243,3 +243,18 @@ fn poor_data_leave_cells_empty_and_say_why() {
     assert!(rows[0]["notes"].contains("40 rows of the cycle have no output"), "{:?}", rows[0]);
     assert!((number(&rows[1], "energy [J]") - 8.0).abs() < 1e-6);
 }
+
+#[test]
+fn cycles_of_a_model_with_a_rate_say_at_which_speeds_they_are() {
+    let bench = Workbench::with_model();
+    let ran = succeeds(&bench, "cycles model.json --no-report");
+    let line = ran.stderr.lines().find(|line| line.starts_with("speed ")).expect("a line of speeds");
+    assert!(line.contains("record \"slow\" at "), "{line}");
+    // The slow one is a millionth of the fastest.
+    let number = |text: &str| text.trim().parse::<f64>().unwrap();
+    let text = ran.stderr.replace('\n', " ");
+    let slow = number(text.split("record \"slow\" at ").nth(1).unwrap().split(',').next().unwrap());
+    let others = text.split("the others at ").nth(1).unwrap().split("  ").next().unwrap();
+    let fastest = others.split(',').map(number).fold(0.0, f64::max);
+    assert!((slow / fastest / 1e-6 - 1.0).abs() < 0.01, "{text}");
+}
