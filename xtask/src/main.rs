@@ -22,6 +22,7 @@ mod rig;
 mod same_models;
 mod site;
 mod soak;
+mod statistics;
 mod test;
 mod tidy;
 mod verdict_battery;

@@ -1,6 +1,7 @@
 //! `cargo xtask questions`: the tables of docs/questions.md, measured on specimens whose laws are known.
 
 mod amplitudes;
+mod by_specimen;
 mod columns;
 mod cycles;
 mod disturbances;
@@ -12,7 +13,6 @@ mod one_loop;
 mod processor;
 mod rates;
 mod request;
-mod statistics;
 mod wear;
 
 use std::io::{self, Write};
@@ -83,4 +83,24 @@ fn fit(model: &str, data: &Dataset, seed: u64) -> Result<Model> {
         "auto" => auto(data, seed),
         name => Ok(Fit::new().model(name).seed(seed).run(data)?),
     }
+}
+
+/// Probability of the bands that are judged.
+const BAND: f64 = 0.9;
+
+/// The rows within the band of the model, in percent of those with an output.
+fn percent_in_band(model: &Model, data: &Dataset) -> Result<f64> {
+    let (mut inside, mut scored) = (0, 0);
+    for record in data.records() {
+        let (covered, all) = model.predict(&record.excitation(), BAND)?.covered(record.output());
+        inside += covered;
+        scored += all;
+    }
+    Ok(100.0 * inside as f64 / scored as f64)
+}
+
+/// The error on the held-out data of the fit, NRMSE in percent of the standard deviation of the output.
+fn validation_error(model: &Model) -> Result<f64> {
+    let validation = model.provenance().validation.as_ref();
+    validation.and_then(|errors| errors.nrmse_std_percent).context("the default fit has a validation error")
 }

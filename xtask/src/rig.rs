@@ -55,6 +55,11 @@ impl Rig {
         Ok(data.records()[0].clone())
     }
 
+    /// Random reversals over the whole range with the noise of a measurement, to fit to.
+    pub fn training(&self, rows: usize, seed: u64) -> Result<Dataset> {
+        self.data([self.measured("test", &drives::random(&self.path, rows, 1000 * seed + 500), seed)?])
+    }
+
     /// Records as one data set.
     pub fn data<const N: usize>(&self, records: [Record; N]) -> Result<Dataset> {
         Ok(Dataset::new(self.specimen.names.clone(), records.into())?)

@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::iter;
 
 use super::answer::{Case, Figures};
+use crate::statistics::geometric_mean;
 
 /// What stands in the cells.
 pub type Measure = fn(&Figures) -> Option<f64>;
@@ -94,10 +95,6 @@ fn geometric_means(rows: &[Vec<Result<f64, &str>>], columns: usize) -> Vec<Strin
         count => format!("{} ({count})", shown(geometric_mean(column))),
     };
     columns.iter().map(cell).collect()
-}
-
-fn geometric_mean(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
 /// The least of the values, as it is shown.

@@ -2,6 +2,7 @@
 
 use super::trial::{FirstTest, Trial};
 use crate::cases::{aligned, row};
+use crate::statistics::median;
 
 const COLUMNS: [&str; 7] =
     ["before", "repeated", "planned", "random", "repeated/planned", "lowest", "highest"];
@@ -59,9 +60,4 @@ fn sorted(trials: &[&Trial], of: impl Fn(&Trial) -> f64) -> Vec<f64> {
     let mut all: Vec<f64> = trials.iter().map(|trial| of(trial)).collect();
     all.sort_by(f64::total_cmp);
     all
-}
-
-fn median(sorted: &[f64]) -> f64 {
-    let middle = sorted.len() / 2;
-    if sorted.len() % 2 == 1 { sorted[middle] } else { 0.5 * (sorted[middle - 1] + sorted[middle]) }
 }

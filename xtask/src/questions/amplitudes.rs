@@ -2,10 +2,10 @@
 
 use anyhow::Result;
 
-use super::fit;
-use super::statistics::{geometric_mean, median, shown};
+use super::{fit, percent_in_band};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
+use crate::statistics::{geometric_mean, median, shown};
 
 const SPECIMENS: [&str; 4] =
     ["timber-growing", "structural-steel-growing", "thin-sheet-loops", "stack-reversals"];
@@ -19,9 +19,6 @@ const TRAINED: f64 = 0.5;
 const MULTIPLES: [f64; 5] = [1.0, 1.1, 1.25, 1.5, 2.0];
 
 const MODELS: [&str; 5] = ["auto", "xpnn+", "preisach", "prandtl-ishlinskii", "bouc-wen"];
-
-/// Share of the rows in the band.
-const LEVEL: f64 = 0.9;
 
 /// A row for each model, and one for the band of `auto`.
 pub fn table() -> Result<String> {
@@ -42,10 +39,7 @@ pub fn table() -> Result<String> {
                     let unseen = rig.data([rig.run("unseen", &drive)?])?;
                     errors[index].push(error_of(&model, &unseen)?);
                     if name == "auto" {
-                        let record = &unseen.records()[0];
-                        let band = model.predict(&record.excitation(), LEVEL)?;
-                        let (covered, scored) = band.covered(record.output());
-                        in_band[index].push(100.0 * covered as f64 / scored as f64);
+                        in_band[index].push(percent_in_band(&model, &unseen)?);
                     }
                 }
             }

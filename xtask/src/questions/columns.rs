@@ -4,10 +4,9 @@
 use anyhow::Result;
 use hysid::data::record::{Dataset, Record};
 
-use super::auto;
-use super::statistics::{geometric_mean, shown};
+use super::{auto, by_specimen};
 use crate::cases::{aligned, row};
-use crate::rig::{Rig, drives, error_of};
+use crate::rig::{Rig, error_of};
 
 const SPECIMENS: [&str; 6] = [
     "timber-growing",
@@ -43,26 +42,19 @@ const COLUMNS: [(&str, Change); 4] = [
 /// A row for each specimen.
 pub fn table() -> Result<String> {
     let mut rows = vec![row("specimen", &COLUMNS.map(|(name, _)| name))];
-    let mut all: [Vec<f64>; 4] = Default::default();
-    for name in SPECIMENS {
-        let mut of_specimen: [Vec<f64>; 4] = Default::default();
-        for seed in 1..=SEEDS {
-            let rig = Rig::new(name, seed, ROWS)?;
-            let train = rig.measured("test", &drives::random(&rig.path, ROWS, 1000 * seed + 500), seed)?;
-            let train = rig.data([train])?;
-            let unseen = rig.unseen(seed)?;
-            for (errors, (_, change)) in of_specimen.iter_mut().zip(COLUMNS) {
-                let error = error_of(&auto(&change(&train)?, seed)?, &change(&unseen)?)?;
-                errors.push(error);
-            }
-        }
-        rows.push(row(name, &of_specimen.each_ref().map(|errors| shown(geometric_mean(errors)))));
-        for (column, errors) in all.iter_mut().zip(of_specimen) {
-            column.extend(errors);
-        }
-    }
-    rows.push(row("geometric mean", &all.map(|errors| shown(geometric_mean(&errors)))));
+    rows.extend(by_specimen::rows(&SPECIMENS, SEEDS, "", errors)?);
     Ok(aligned(&rows))
+}
+
+/// The unseen errors after a fit to each choice of columns.
+fn errors(name: &str, seed: u64) -> Result<[f64; 4]> {
+    let rig = Rig::new(name, seed, ROWS)?;
+    let (train, unseen) = (rig.training(ROWS, seed)?, rig.unseen(seed)?);
+    let mut errors = [0.0; 4];
+    for (error, (_, change)) in errors.iter_mut().zip(COLUMNS) {
+        *error = error_of(&auto(&change(&train)?, seed)?, &change(&unseen)?)?;
+    }
+    Ok(errors)
 }
 
 /// The data with another input, from input and output.

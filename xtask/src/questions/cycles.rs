@@ -2,8 +2,7 @@
 
 use anyhow::Result;
 
-use super::auto;
-use super::statistics::{geometric_mean, shown};
+use super::{auto, by_specimen};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
 
@@ -21,20 +20,7 @@ const COLUMNS: [&str; 7] = ["1", "2", "4", "8", "16", "8 of one amplitude", "ran
 /// A row for each specimen.
 pub fn table() -> Result<String> {
     let mut rows = vec![row("specimen", &COLUMNS)];
-    let mut all: [Vec<f64>; 7] = Default::default();
-    for name in SPECIMENS {
-        let mut of_specimen: [Vec<f64>; 7] = Default::default();
-        for seed in 1..=SEEDS {
-            for (column, error) in of_specimen.iter_mut().zip(errors(name, seed)?) {
-                column.push(error);
-            }
-        }
-        rows.push(row(name, &of_specimen.each_ref().map(|errors| shown(geometric_mean(errors)))));
-        for (column, errors) in all.iter_mut().zip(of_specimen) {
-            column.extend(errors);
-        }
-    }
-    rows.push(row("geometric mean", &all.map(|errors| shown(geometric_mean(&errors)))));
+    rows.extend(by_specimen::rows(&SPECIMENS, SEEDS, "", errors)?);
     Ok(aligned(&rows))
 }
 

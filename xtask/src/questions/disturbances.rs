@@ -6,9 +6,9 @@ use hysid::Fit;
 use hysid::data::record::{Dataset, Record};
 use hysid::specimens::with_noise;
 
-use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
+use crate::statistics::{geometric_mean, shown};
 
 const SPECIMENS: [&str; 2] = ["brace-irregular", "stack-reversals"];
 const SEEDS: u64 = 2;

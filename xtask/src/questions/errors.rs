@@ -1,11 +1,11 @@
 //! What the error means: training, validation and unseen error, and the share of rows in the band.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 
-use super::auto;
-use super::statistics::{geometric_mean, median, shown};
+use super::{auto, percent_in_band, validation_error};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
+use crate::statistics::{geometric_mean, median, shown};
 
 const SPECIMENS: [&str; 6] = [
     "timber-growing",
@@ -19,9 +19,6 @@ const SEEDS: u64 = 2;
 
 /// Cycles of growing amplitude, or random reversals of as many rows.
 const CYCLES: usize = 8;
-
-/// Share of the rows in the band.
-const LEVEL: f64 = 0.9;
 
 /// A row for each specimen and kind of training data; unseen data are random reversals.
 pub fn table() -> Result<String> {
@@ -57,19 +54,12 @@ fn figures(name: &str, data: &str, seed: u64) -> Result<[f64; 4]> {
     };
     let train = rig.data([rig.measured("test", &drive, seed)?])?;
     let model = auto(&train, seed)?;
-    let validation = model.provenance().validation.as_ref().and_then(|errors| errors.nrmse_std_percent);
     let unseen = rig.unseen(seed)?;
-    let (mut inside, mut scored) = (0, 0);
-    for record in unseen.records() {
-        let (covered, all) = model.predict(&record.excitation(), LEVEL)?.covered(record.output());
-        inside += covered;
-        scored += all;
-    }
     Ok([
         error_of(&model, &train)?,
-        validation.context("the default fit has a validation error")?,
+        validation_error(&model)?,
         error_of(&model, &unseen)?,
-        100.0 * inside as f64 / scored as f64,
+        percent_in_band(&model, &unseen)?,
     ])
 }
 

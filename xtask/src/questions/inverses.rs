@@ -4,8 +4,7 @@ use anyhow::Result;
 use hysid::plan::Path;
 use hysid::{Model, Record, Reference};
 
-use super::auto;
-use super::statistics::{geometric_mean, shown};
+use super::{auto, by_specimen};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives};
 
@@ -25,20 +24,7 @@ const COLUMNS: [&str; 3] = ["straight line", "fitted to one loop", "fitted to ra
 /// A row for each specimen.
 pub fn table() -> Result<String> {
     let mut rows = vec![row("deviation, % of the range", &COLUMNS)];
-    let mut all: [Vec<f64>; 3] = Default::default();
-    for name in SPECIMENS {
-        let mut of_specimen: [Vec<f64>; 3] = Default::default();
-        for seed in 1..=SEEDS {
-            for (column, deviation) in of_specimen.iter_mut().zip(deviations(name, seed)?) {
-                column.push(deviation);
-            }
-        }
-        rows.push(row(name, &of_specimen.each_ref().map(|values| shown(geometric_mean(values)))));
-        for (column, values) in all.iter_mut().zip(of_specimen) {
-            column.extend(values);
-        }
-    }
-    rows.push(row("geometric mean", &all.map(|values| shown(geometric_mean(&values)))));
+    rows.extend(by_specimen::rows(&SPECIMENS, SEEDS, "", deviations)?);
     Ok(aligned(&rows))
 }
 

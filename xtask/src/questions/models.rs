@@ -4,9 +4,9 @@ use anyhow::Result;
 
 use super::fit;
 use super::processor;
-use super::statistics::{geometric_mean, largest, median, shown};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
+use crate::statistics::{geometric_mean, largest, median, shown};
 
 const SPECIMENS: [&str; 8] = [
     "timber-growing",

@@ -4,9 +4,9 @@ use anyhow::{Context, Result};
 use hysid::specimens::cases::{Case, one_loop};
 
 use super::fit;
-use super::statistics::{geometric_mean, shown};
 use crate::cases::{aligned, row};
 use crate::rig::error_of;
+use crate::statistics::{geometric_mean, shown};
 
 const MODELS: [&str; 6] =
     ["auto", "xpnn+", "preisach", "prandtl-ishlinskii", "modified-prandtl-ishlinskii", "bouc-wen"];

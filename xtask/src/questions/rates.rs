@@ -7,9 +7,9 @@ use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
 use hysid::{Fit, Model};
 
-use super::statistics::{geometric_mean, shown};
+use super::by_specimen;
 use crate::cases::{aligned, row};
-use crate::rig::{Rig, drives, error_of};
+use crate::rig::{Rig, error_of};
 
 const SPECIMENS: [&str; 5] = [
     "damper-random",
@@ -31,23 +31,9 @@ const COLUMNS: [&str; 4] = ["central", "central, in steps", "backward", "none"];
 /// A row for each specimen and sampling.
 pub fn table() -> Result<String> {
     let mut rows = vec![row("specimen, rows a swing", &COLUMNS)];
-    for rows_of_a_swing in SAMPLINGS {
-        let mut all: [Vec<f64>; 4] = Default::default();
-        for name in SPECIMENS {
-            let mut of_specimen: [Vec<f64>; 4] = Default::default();
-            for seed in 1..=SEEDS {
-                for (column, error) in of_specimen.iter_mut().zip(errors(name, rows_of_a_swing, seed)?) {
-                    column.push(error);
-                }
-            }
-            let cells = of_specimen.each_ref().map(|errors| shown(geometric_mean(errors)));
-            rows.push(row(&format!("{name}, {rows_of_a_swing}"), &cells));
-            for (column, errors) in all.iter_mut().zip(of_specimen) {
-                column.extend(errors);
-            }
-        }
-        let cells = all.map(|errors| shown(geometric_mean(&errors)));
-        rows.push(row(&format!("geometric mean, {rows_of_a_swing}"), &cells));
+    for sampling in SAMPLINGS {
+        let errors = |name: &str, seed: u64| errors(name, sampling, seed);
+        rows.extend(by_specimen::rows(&SPECIMENS, SEEDS, &format!(", {sampling}"), errors)?);
     }
     Ok(aligned(&rows))
 }
@@ -55,9 +41,7 @@ pub fn table() -> Result<String> {
 fn errors(name: &str, rows_of_a_swing: usize, seed: u64) -> Result<[f64; 4]> {
     let rows = SWINGS * rows_of_a_swing;
     let rig = Rig::sampled(name, seed, rows, rows_of_a_swing as f64)?;
-    let train = rig.measured("test", &drives::random(&rig.path, rows, 1000 * seed + 500), seed)?;
-    let train = rig.data([train])?;
-    let unseen = rig.unseen(seed)?;
+    let (train, unseen) = (rig.training(rows, seed)?, rig.unseen(seed)?);
     let fit = |rate| -> Result<Model> { Ok(Fit::new().model("xpnn").rate(rate).seed(seed).run(&train)?) };
     let central = fit(Some(RateMethod::Central))?;
     Ok([

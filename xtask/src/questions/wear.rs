@@ -6,10 +6,10 @@ use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::residuals::{ResidualOptions, Residuals};
 use hysid::operator::{Operator, Play};
 
-use super::auto;
-use super::statistics::{geometric_mean, median, shown};
+use super::{auto, percent_in_band, validation_error};
 use crate::cases::{aligned, row};
 use crate::rig::{Rig, drives, error_of};
+use crate::statistics::{geometric_mean, median, shown};
 
 /// Specimens that do not deteriorate by themselves.
 const SPECIMENS: [&str; 5] = [
@@ -21,9 +21,6 @@ const SPECIMENS: [&str; 5] = [
 ];
 const SEEDS: u64 = 2;
 const ROWS: usize = 1050;
-
-/// Share of the rows in the band.
-const LEVEL: f64 = 0.9;
 
 /// A change of the specimen since the fit.
 #[derive(Debug, Clone, Copy)]
@@ -55,6 +52,7 @@ struct Check {
     error: f64,
     /// The error over that of the held-out data of the fit.
     ratio: f64,
+    /// Rows in the band, in percent.
     in_band: f64,
     has_structure: bool,
 }
@@ -65,8 +63,7 @@ pub fn table() -> Result<String> {
     for name in SPECIMENS {
         for seed in 1..=SEEDS {
             let rig = Rig::new(name, seed, ROWS)?;
-            let train = rig.measured("test", &drives::random(&rig.path, ROWS, 1000 * seed + 500), seed)?;
-            let model = auto(&rig.data([train])?, seed)?;
+            let model = auto(&rig.training(ROWS, seed)?, seed)?;
             let later = drives::random(&rig.path, ROWS, 1000 * seed + 700);
             for (checks, change) in checks.iter_mut().zip(CHANGES) {
                 checks.push(check(&model, &change.measured(&rig, &later, seed + 50)?)?);
@@ -81,7 +78,7 @@ pub fn table() -> Result<String> {
         let cells = [
             shown(geometric_mean(&of(|check| check.error))),
             shown(geometric_mean(&of(|check| check.ratio))),
-            format!("{:.0}", 100.0 * median(&of(|check| check.in_band))),
+            format!("{:.0}", median(&of(|check| check.in_band))),
             format!("{found} of {}", checks.len()),
         ];
         rows.push(row(&change.words(), &cells));
@@ -91,18 +88,11 @@ pub fn table() -> Result<String> {
 
 fn check(model: &Model, data: &Dataset) -> Result<Check> {
     let error = error_of(model, data)?;
-    let validation = model.provenance().validation.as_ref().and_then(|errors| errors.nrmse_std_percent);
-    let (mut inside, mut all) = (0, 0);
-    for record in data.records() {
-        let (covered, scored) = model.predict(&record.excitation(), LEVEL)?.covered(record.output());
-        inside += covered;
-        all += scored;
-    }
     let residuals = Residuals::of_model(model, data, &ResidualOptions::default())?;
     Ok(Check {
         error,
-        ratio: error / validation.unwrap_or(f64::NAN),
-        in_band: inside as f64 / all as f64,
+        ratio: error / validation_error(model)?,
+        in_band: percent_in_band(model, data)?,
         has_structure: residuals.found().next().is_some(),
     })
 }

@@ -37,16 +37,8 @@ pub enum PlotKind {
 
 impl PlotKind {
     /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Loops => "loops",
-            Self::Histories => "histories",
-            Self::Errors => "errors",
-            Self::Cycles => "cycles",
-            Self::Backbone => "backbone",
-            Self::Energy => "energy",
-            Self::Frequency => "frequency",
-        }
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string())
     }
 }
 
@@ -68,6 +60,18 @@ pub struct Plot {
     /// The default is the name of DATA with `.KIND.svg`, in the current folder.
     #[arg(short, long, value_name = "FIGURE")]
     pub out: Option<PathBuf>,
+    /// Draw only this record; repeat for several
+    #[arg(long, value_name = "RECORD")]
+    pub only: Vec<String>,
+    /// In histories, a band of this probability, such as 0.9
+    #[arg(long, value_name = "PROBABILITY", value_parser = probability)]
+    pub band: Option<f64>,
+    /// In how many data sets the band is to contain its share.
+    #[command(flatten)]
+    pub data_sets: DataSetsOptions,
+    /// How the memory begins.
+    #[command(flatten)]
+    pub beginning: BeginningOptions,
     /// Which files may be replaced.
     #[command(flatten)]
     pub overwriting: Overwriting,
@@ -77,18 +81,6 @@ pub struct Plot {
     /// How units are taken.
     #[command(flatten)]
     pub units: UnitOptions,
-    /// Draw only this record; repeat for several
-    #[arg(long, value_name = "RECORD", help_heading = "Columns")]
-    pub only: Vec<String>,
-    /// In histories, a band of this probability, such as 0.9
-    #[arg(long, value_name = "PROBABILITY", value_parser = probability, help_heading = "Columns")]
-    pub band: Option<f64>,
-    /// In how many data sets the band is to contain its share.
-    #[command(flatten)]
-    pub data_sets: DataSetsOptions,
-    /// How the memory begins.
-    #[command(flatten)]
-    pub beginning: BeginningOptions,
     /// Field of engineering: structure, magnet, actuator or general [default: by the columns]
     #[arg(long, value_name = "FIELD", value_parser = named::<Field>, help_heading = "Cycles", hide_short_help = true)]
     pub field: Option<Field>,

@@ -25,10 +25,10 @@ pub fn loops(subject: &Subject, width: f64) -> Chart {
                 back.push(measured);
                 front.push(model);
             }
-            Some(predicted) => {
-                front.push(Curve::new(path(x, &predicted.output, most), Colour::Simulated, MODEL_WIDTH))
+            only => {
+                let y = only.map_or(y, |predicted| &predicted.output);
+                front.push(Curve::new(path(x, y, most), alone(subject), MODEL_WIDTH));
             }
-            None => back.push(Curve::new(path(x, y, most), Colour::Series(0), MODEL_WIDTH)),
         }
     }
     back.extend(front);
@@ -47,12 +47,9 @@ pub fn legend(subject: &Subject) -> Vec<(Colour, &'static str)> {
     }
 }
 
-/// Colour and width of the only curve there is: measured data without a model, or a model without measured data.
-pub fn alone(subject: &Subject) -> (Colour, f64) {
-    match subject.predicted {
-        Some(_) => (Colour::Simulated, MODEL_WIDTH),
-        None => (Colour::Series(0), MODEL_WIDTH),
-    }
+/// Colour of the only curve there is: of a model without measured data, or of measured data without a model.
+pub fn alone(subject: &Subject) -> Colour {
+    if subject.predicted.is_some() { Colour::Simulated } else { Colour::Series(0) }
 }
 
 /// Colours and widths of measured data and a model.

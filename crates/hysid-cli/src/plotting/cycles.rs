@@ -14,8 +14,8 @@ use crate::cycles::Cycles;
 use crate::cycles::over_amplitude::{self, Shown};
 use crate::cycles::pictures::path;
 use crate::quantities::Quantities;
-use crate::report::time_label;
 use crate::report::tracks::times;
+use crate::report::{MODEL_WIDTH, time_label};
 
 /// Height of a chart over its width.
 const SHAPE: f64 = 0.7;
@@ -61,7 +61,7 @@ pub fn backbone(subject: &Subject, options: &CycleOptions, width: f64) -> Result
     let (x, y) = (unit::label(&names.inputs[0]), unit::label(&names.output));
     let of_loops = if subject.is_measured() { "measured loops" } else { "loops of the model" };
     let mut entries = match legend(subject) {
-        both if both.is_empty() => vec![(alone(subject).0, "backbone")],
+        both if both.is_empty() => vec![(alone(subject), "backbone")],
         both => both,
     };
     entries.push((Colour::Faint, of_loops));
@@ -157,10 +157,7 @@ impl<'a> Sets<'a> {
             (Some(_), Some(_)) => {
                 BOTH.iter().zip(RADII).map(|(&(colour, line), radius)| (colour, line, radius)).collect()
             }
-            _ => {
-                let (colour, line) = alone(subject);
-                vec![(colour, line, 3.0)]
-            }
+            _ => vec![(alone(subject), MODEL_WIDTH, 3.0)],
         }
     }
 

@@ -10,9 +10,9 @@ use hysid_document::{Chart, Colour, Curve, unit};
 use super::Subject;
 use super::curves::{BOTH, alone};
 use crate::messages::{Usage, note};
-use crate::report::histories::{Panel, error_label};
+use crate::report::histories::{Panel, difference, error_label};
 use crate::report::tracks::times;
-use crate::report::{scored_rows, time_label};
+use crate::report::{MODEL_WIDTH, scored_rows, time_label};
 
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;
@@ -36,14 +36,14 @@ pub fn histories(subject: &Subject, width: f64) -> Vec<Chart> {
         let (time, output) = (times(record), unit::label(&names.output));
         let panel = panel(subject, record, &time);
         let simulated = predicted.map(|predicted| predicted.output.as_slice());
-        let (only, line) = alone(subject);
+        let only = alone(subject);
         let lines: Vec<(Colour, &str, f64, &[f64])> = match (simulated, subject.is_measured()) {
             (Some(simulated), true) => vec![
                 (BOTH[0].0, "measured", BOTH[0].1, record.output()),
                 (BOTH[1].0, "model", BOTH[1].1, simulated),
             ],
-            (Some(simulated), false) => vec![(only, "model", line, simulated)],
-            (None, _) => vec![(only, "measured", line, record.output())],
+            (Some(simulated), false) => vec![(only, "model", MODEL_WIDTH, simulated)],
+            (None, _) => vec![(only, "measured", MODEL_WIDTH, record.output())],
         };
         let band = predicted.filter(|_| subject.band.is_some());
         let band = band.map(|predicted| panel.area(&predicted.low, &predicted.high));
@@ -71,30 +71,28 @@ pub fn errors(subject: &Subject, width: f64) -> Result<Vec<Chart>> {
     );
     let names = subject.data.names();
     let label = error_label(&names.output);
+    let error = |(record, predicted): (&Record, Option<&Prediction>)| {
+        predicted.map_or_else(Vec::new, |predicted| difference(&predicted.output, record.output()))
+    };
+    let errors: Vec<Vec<f64>> = subject.records().map(error).collect();
     let mut charts = Vec::new();
-    for (record, predicted) in drawn(subject) {
+    for ((record, _), error) in drawn(subject).zip(&errors) {
         let (time, rows) = (times(record), scored_rows(record));
         let panel = panel(subject, record, &time[rows.clone()]);
-        let error = &errors_of(record, predicted)[rows];
-        let chart = panel.chart(&label, OUTPUT * width, &[(Colour::Error, "error", 1.1, error)], None);
+        let line = (Colour::Error, "error", 1.1, &error[rows]);
+        let chart = panel.chart(&label, OUTPUT * width, &[line], None);
         charts.push(titled(Chart { legend: Vec::new(), ..chart }, subject, record));
     }
-    let over_input = |(record, predicted): (&Record, Option<&Prediction>)| {
-        let points: Vec<Point> =
-            record.inputs()[0].iter().copied().zip(errors_of(record, predicted)).collect();
-        let most = (3 * POINTS / subject.data.records().len()).max(200);
+    let most = (3 * POINTS / errors.len()).max(200);
+    let over_input = |(record, error): (&Record, &Vec<f64>)| {
+        let points: Vec<Point> = record.inputs()[0].iter().copied().zip(error.iter().copied()).collect();
         Curve::new(thin(&points, most), Colour::Error, 0.8)
     };
-    let curves = subject.records().map(over_input).collect();
+    let curves = subject.data.records().iter().zip(&errors).map(over_input).collect();
     let input = unit::label(&names.inputs[0]);
     let chart = Chart::new(format!("{label}, model less measured, over {input}"), &input, &label, curves);
     charts.push(chart.with_height(OVER_INPUT * width));
     Ok(charts.into_iter().map(|chart| wide(chart, width)).collect())
-}
-
-fn errors_of(record: &Record, predicted: Option<&Prediction>) -> Vec<f64> {
-    let simulated = predicted.map_or(&[][..], |predicted| &predicted.output);
-    simulated.iter().zip(record.output()).map(|(model, measured)| model - measured).collect()
 }
 
 /// The records that are drawn one by one.

@@ -48,10 +48,14 @@ fn rmse(set: &ReportSet, index: usize) -> f64 {
     if rows == 0 { -1.0 } else { (sum / rows as f64).sqrt() }
 }
 
-/// Simulated less measured output.
+/// Simulated less measured output of a record.
 fn errors(set: &ReportSet, index: usize) -> Vec<f64> {
-    let measured = set.data.records()[index].output();
-    set.simulated[index].iter().zip(measured).map(|(model, measured)| model - measured).collect()
+    difference(&set.simulated[index], set.data.records()[index].output())
+}
+
+/// Simulated less measured output.
+pub fn difference(simulated: &[f64], measured: &[f64]) -> Vec<f64> {
+    simulated.iter().zip(measured).map(|(model, measured)| model - measured).collect()
 }
 
 /// The charts of a record, one below the other.

@@ -10,7 +10,7 @@ import numpy as np
 from hysid._tables import is_frame, is_of_pandas, named_columns, table_name
 from hysid._time import are_stamps, seconds
 
-__all__ = ["Column", "column_of", "inputs_of", "without_mask"]
+__all__ = ["Column", "column_of", "inputs_of", "place_of", "without_mask"]
 
 
 _UNNAMED = {"input": "x", "output": "y", "time": "t", "rate": "rate"}
@@ -58,6 +58,19 @@ def column_of(values: Any, what: str) -> Column | None:
         except ValueError as error:
             raise ValueError(f"time: {error}") from None
     return Column(_numbers(values, what), name)
+
+
+def place_of(what: str, column: str | int | None, names: Sequence[str], count: int) -> int | None:
+    """The place of a column that is given by its name or number, in a table of `count` columns; None for None."""
+    if column is None:
+        return None
+    if isinstance(column, str):
+        if column not in names:
+            raise ValueError(f"{what}: X has no column {column!r}")
+        return list(names).index(column)
+    if not -count <= column < count:
+        raise ValueError(f"{what}: X has no column {column}")
+    return int(column) % count
 
 
 def _name_of(values: Any, what: str) -> str | None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from hysid import _hysid
 from hysid._arguments import whole
+from hysid._columns import place_of
 from hysid._data import columns
 from hysid._tables import named_columns
 
@@ -115,17 +116,9 @@ class RecordSplit:
             values = np.asarray(X)
             values = values.reshape(-1, 1) if values.ndim == 1 else values
             named = [(f"x{place}", values[:, place]) for place in range(values.shape[1])]
-        places = [self._place(what, [name for name, _ in named]) for what in ("time", "record")]
+        names = [name for name, _ in named]
+        given = {"time": self.time, "record": self.record}
+        places = [place_of(what, column, names, len(names)) for what, column in given.items()]
         time, record = (None if place is None else np.asarray(named[place][1]) for place in places)
         inputs = {name: np.asarray(column) for place, (name, column) in enumerate(named) if place not in places}
         return inputs, time, record
-
-    def _place(self, what: str, names: list[str]) -> int | None:
-        column = getattr(self, what)
-        if column is None:
-            return None
-        if isinstance(column, str) and column in names:
-            return names.index(column)
-        if not isinstance(column, str) and -len(names) <= column < len(names):
-            return int(column) % len(names)
-        raise ValueError(f"{what}: X has no column {column!r}")

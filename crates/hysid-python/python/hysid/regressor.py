@@ -11,7 +11,7 @@ from sklearn.utils import check_array, check_consistent_length, check_random_sta
 from sklearn.utils.validation import check_is_fitted, column_or_1d, validate_data
 
 from hysid import _hysid
-from hysid._columns import Column, without_mask
+from hysid._columns import Column, place_of, without_mask
 from hysid._data import Columns, check_indexes, continued, runs, warn_of_order
 from hysid._fitting import identified
 from hysid._tables import is_frame, with_column
@@ -256,7 +256,8 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
     def _columns(self, X: Any, values: np.ndarray) -> Columns:  # noqa: N803
         """Inputs, time stamps and records of a table."""
         names = list(getattr(self, "feature_names_in_", []))
-        place = {what: self._place(what, names) for what in ("time", "record")}
+        given = {"time": self.time, "record": self.record}
+        place = {what: place_of(what, column, names, self.n_features_in_) for what, column in given.items()}
         set_apart = {column for column in place.values() if column is not None}
         inputs = [column for column in range(values.shape[1]) if column not in set_apart]
         if not inputs:
@@ -272,19 +273,6 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
             records = [(str(labels[rows.start]), rows) for rows in runs(labels)]
         time = None if place["time"] is None else column(place["time"])
         return Columns([column(index) for index in inputs], time, None, None, records)
-
-    def _place(self, what: str, names: list[str]) -> int | None:
-        column: str | int | None = getattr(self, what)
-        if column is None:
-            return None
-        if isinstance(column, str):
-            if column not in names:
-                raise ValueError(f"{what}: X has no column {column!r}")
-            return names.index(column)
-        if not -self.n_features_in_ <= column < self.n_features_in_:
-            raise ValueError(f"{what}: X has no column {column}")
-        place: int = int(column) % self.n_features_in_
-        return place
 
     def _seed(self) -> int:
         if isinstance(self.random_state, (int, np.integer)):
