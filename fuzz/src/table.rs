@@ -8,7 +8,7 @@ pub const WORDS: [&str; 24] = [
 ];
 
 pub fn run(text: &[u8]) {
-    match hysid_cli::data_of_text(text) {
+    match hysid_records::data_of_text(text) {
         Ok(data) => {
             assert!(data.rows() > 0);
             for record in data.records() {

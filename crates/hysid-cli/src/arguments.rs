@@ -20,10 +20,11 @@ use hysid::data::initial_state::InitialState;
 use hysid::diagnosis::DiagnosisOptions;
 use hysid::model::{BAND_OF_TEN, BAND_PROBABILITIES, BandLevel};
 use hysid::options::ModelName;
-use hysid::options::chosen::RateChoice;
 use hysid::options::network::SEED;
 use hysid::specimens::Specimen;
 use hysid_export::Target;
+use hysid_records::ColumnChoice;
+pub use hysid_records::RateOption;
 
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
@@ -33,7 +34,7 @@ pub use model_options::{ModelOptions, flag};
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};
-pub use reading::{MOST_ROWS_OF_ZERO, ReadingOptions};
+pub use reading::ReadingOptions;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
@@ -186,6 +187,14 @@ pub struct ColumnOptions {
     pub reading: ReadingOptions,
 }
 
+impl ColumnOptions {
+    /// What is said of the columns.
+    pub fn choice(&self) -> ColumnChoice {
+        let Self { record, time, input, output, rate, .. } = self.clone();
+        ColumnChoice { record, time, input, output, rate }
+    }
+}
+
 /// In how many data sets a band is to contain its share of the rows.
 #[derive(Debug, Clone, Args)]
 pub struct DataSetsOptions {
@@ -254,15 +263,6 @@ pub struct UnitOptions {
     /// error.
     #[arg(long, help_heading = "Columns")]
     pub same_units: bool,
-}
-
-/// What `--rate` asks for.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum RateOption {
-    /// None, computed from the time stamps, or as suits the model.
-    Choice(RateChoice),
-    /// A column of this name.
-    Column(String),
 }
 
 fn rate(text: &str) -> Result<RateOption, String> {

@@ -16,6 +16,7 @@ use hysid::diagnosis::cycles::{CycleOptions, CycleTable, FIGURES, Figure};
 use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::count;
+use hysid_records::Data;
 use serde::Serialize;
 
 pub use curves::{BEGINNING as BEGINNING_OF_CURVES, csv as curves_csv};
@@ -23,9 +24,8 @@ pub use page::page;
 pub use table::{BEGINNING, csv};
 pub use text::text;
 
-use crate::data::Data;
-use crate::quantities::Quantities;
 use crate::terminal;
+use hysid_report::quantities::Quantities;
 
 /// Cycles, and what they are cycles of.
 pub struct Cycles<'a> {
@@ -101,7 +101,7 @@ impl<'a> Cycles<'a> {
             let named = self.quantities.as_figure(figure.name, figure.quantity);
             (figure.name, hysid::data::unit::of_column(&named))
         };
-        terminal::json(&Printed {
+        Ok(terminal::json(&Printed {
             input: &self.quantities.input,
             output: &self.quantities.output,
             of_model: self.of_model,
@@ -111,7 +111,7 @@ impl<'a> Cycles<'a> {
             units: self.figures().map(named).collect(),
             cycles: &self.table,
             reversal_curves: self.curves.as_ref(),
-        })
+        })?)
     }
 
     /// What the cycles are, in a sentence without full stop.

@@ -1,17 +1,18 @@
 //! Files in the program's words: reading, and writing to a [`Destination`].
 
-use std::borrow::Cow;
 use std::fs;
 use std::io::Read;
 use std::path::{self, Path, PathBuf};
 
 use anyhow::{Error, Result, anyhow};
-use hysid_document::{Page, html};
+use hysid_document::Page;
+pub use hysid_document::shell::shown;
 pub use hysid_files::reason;
-use hysid_files::{Destination, Failure, PAGE_MARK, unreadable};
+use hysid_files::{Destination, Failure, unreadable};
+
+use hysid_report::{origin, page_text};
 
 use crate::messages::{Usage, note};
-use crate::terminal;
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
@@ -42,9 +43,17 @@ pub fn write(destination: &Destination, content: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// A page with the mark by which Hysid knows its own.
-pub fn page_text(page: &Page) -> String {
-    html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION")))
+/// Writes a page, as [`write`] does. Its last section says how it was made, from these files.
+pub fn write_page(destination: &Destination, mut page: Page, inputs: &[&Path]) -> Result<()> {
+    page.parts.push(origin::section(&command(), inputs));
+    write(destination, page_text(&page).as_bytes())
+}
+
+/// The command line as a shell takes it.
+fn command() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let shown = arguments.map(|argument| shown(Path::new(&argument)));
+    std::iter::once("hysid".to_string()).chain(shown).collect::<Vec<_>>().join(" ")
 }
 
 /// Writes a file that took long to compute. If that fails, it is put elsewhere, and the error says where.
@@ -121,20 +130,6 @@ pub fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The path as an argument of a shell command.
-pub fn shown(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/._-+:@%".contains(c);
-    if !text.is_empty() && text.chars().all(plain) {
-        text
-    } else if let Cow::Owned(visible) = terminal::visible(&text.replace('\\', r"\\")) {
-        // What is visible of control characters, shells read as these characters.
-        format!("$'{}'", visible.replace('\'', r"\'"))
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,12 +144,5 @@ mod tests {
         assert!(same(&path, &detour));
         assert!(!same(&path, &folder.path().join("b.csv")));
         assert!(same(Path::new("./new.csv"), Path::new("new.csv")));
-    }
-
-    #[test]
-    fn shell_arguments_are_quoted_where_needed() {
-        assert_eq!(shown(Path::new("a/b-1.csv")), "a/b-1.csv");
-        assert_eq!(shown(Path::new("my data.csv")), "'my data.csv'");
-        assert_eq!(shown(Path::new("a\n\x1b'b\\.csv")), r"$'a\n\x1b\'b\\.csv'");
     }
 }

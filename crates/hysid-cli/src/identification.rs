@@ -4,42 +4,24 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use hysid::data::metrics::{ErrorSums, Errors};
-use hysid::data::record::{Dataset, Record};
-use hysid::data::summary::Summary;
-use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
-use hysid::diagnosis::{DataIssueKind, before_a_fit};
-use hysid::fit::HeldOutRows;
-use hysid::fit::intervals::ParameterIntervals;
+use hysid::data::metrics::Errors;
+use hysid::data::record::Dataset;
 use hysid::fit::memory_need;
 use hysid::fit::network::{Checkpoint, Progress, resume};
-use hysid::model::{Model, Prediction, Provenance};
+use hysid::model::Provenance;
 use hysid::options::FitSpec;
-use hysid_document::Page;
 use hysid_document::plain::{WIDTH, wrapped};
-use hysid_files::{Destination, GENERATOR};
+use hysid_files::Destination;
+use hysid_records::Data;
+use hysid_report::{Beforehand, Identified};
 use rayon::ThreadPool;
 
 use crate::checkpoint::Keeper;
-use crate::data::Data;
+use crate::files::write_page;
 use crate::inspection::stored_errors;
-use crate::messages::{insist, summarised, warning};
+use crate::messages::{insist, note_labelled, warning};
 use crate::progress::Follower;
-use crate::report::{self, Report, ReportSet, Tracks};
-use crate::{errors_table, files, interrupt, origin, understanding};
-
-/// A model and what was said and spent on the way to it.
-pub struct Identified {
-    /// The model.
-    pub model: Model,
-    /// Evaluations of the objective.
-    pub evaluations: usize,
-    /// Rows that were held out in turn, and what was predicted for them.
-    held_out: Option<HeldOutRows>,
-    /// Seconds of training.
-    pub seconds: f64,
-    said: Said,
-}
+use crate::{errors_table, files, interrupt};
 
 /// What is to be done with the data, and how.
 pub struct Work<'a> {
@@ -62,47 +44,15 @@ impl<'a> Work<'a> {
     }
 }
 
-/// What was said before the work began.
-pub struct Said {
-    understood: Vec<(String, String)>,
-    warnings: Vec<String>,
-}
-
 /// Says what was understood of data and request, and what to be aware of. From now on Ctrl-C asks to stop, and gets
 /// this answer.
-pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Said> {
-    let model = match request {
-        FitSpec::Network(options) => {
-            let architecture = options.architecture(&data.set).map_err(|error| data.explain(error))?;
-            format!(": {} parameters; {}", architecture.parameters(), understanding::parts(&architecture))
-        }
-        FitSpec::Auto(options) => understanding::choice(options),
-        FitSpec::Classical(_) => String::new(),
-    };
-    request.model().check_data(&data.set, request.rate()).map_err(|error| data.explain(error))?;
-    let summary = Summary::of(&data.set);
-    let understood = understanding::understanding(data, &summary, request, &model);
-    let mut warnings = data_warnings(data, &summary);
-    warnings.extend(request.cautions(&data.set));
+pub fn say_beforehand(data: &Data, request: &FitSpec, to_ctrl_c: &'static str) -> Result<Beforehand> {
+    let beforehand = Beforehand::of(data, request)?;
     // Looking at long data takes its time, and Ctrl-C ends it at once: there is nothing to lose yet.
     interrupt::listen(to_ctrl_c)?;
-    understanding::print(&understood);
-    warnings.iter().for_each(warning);
-    Ok(Said { understood, warnings })
-}
-
-/// What to be aware of in data that a model is to be fitted to.
-pub fn data_warnings(data: &Data, summary: &Summary) -> Vec<String> {
-    // Data that cannot be looked at cannot be fitted to either: the fit says why.
-    let doubtful = before_a_fit(&data.set).unwrap_or_default();
-    let output = format!("\"{}\" ", data.roles.output);
-    let statements = doubtful.into_iter().map(|issue| match (issue.kind, issue.value) {
-        (DataIssueKind::MissingValueMark, Some(value)) if issue.statement.starts_with(&output) => {
-            format!("{} (--missing {value})", issue.statement)
-        }
-        _ => issue.statement,
-    });
-    summarised(&summary.warnings(&data.set)).into_iter().chain(statements).collect()
+    note_labelled(&beforehand.understood);
+    beforehand.warnings.iter().for_each(warning);
+    Ok(beforehand)
 }
 
 /// Refuses work that needs more memory than there is.
@@ -119,7 +69,7 @@ pub fn thread_pool(threads: Option<u16>) -> Result<ThreadPool> {
 /// Identifies a model, following the training on stderr.
 pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let request = work.request;
-    let said = say_beforehand(data, request, "stopping to save the best model so far")?;
+    let beforehand = say_beforehand(data, request, "stopping to save the best model so far")?;
     let pool = thread_pool(work.threads)?;
     check_memory(&data.set, request, pool.current_num_threads()).map_err(|error| data.explain(error))?;
     let mut follower = Follower::new(request.starts(), work.time_limit, work.checkpoint);
@@ -131,140 +81,56 @@ pub fn identify(data: &Data, work: Work) -> Result<Identified> {
     let seconds = follower.finish();
     let fitted = fitted.map_err(|error| data.explain(error))?;
     let (model, evaluations, held_out) = (fitted.model, fitted.evaluations, fitted.held_out);
-    Ok(Identified { model, evaluations, held_out, seconds, said })
+    Ok(Identified { model, evaluations, held_out, seconds, beforehand })
 }
 
-impl Identified {
-    /// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error says
-    /// where.
-    pub fn save(&self, model: &Destination) -> Result<()> {
-        files::write_or_rescue(model, "model", self.model.to_json().as_bytes())
-    }
+/// Writes the model. It took long to find: if it cannot be written there, it is put elsewhere, and the error says
+/// where.
+pub fn save(identified: &Identified, model: &Destination) -> Result<()> {
+    files::write_or_rescue(model, "model", identified.model.to_json().as_bytes())
+}
 
-    /// Writes the report on the model, which is written already.
-    pub fn write_report(
-        &self,
-        page: &Destination,
-        model: &Path,
-        sets: &[(&str, &Dataset)],
-        inputs: &[&Path],
-    ) -> Result<()> {
-        origin::write_page(page, self.report(model, sets)?, inputs)
-            .context("the model was written, but not its report")
-    }
+/// Writes the report on the model, which is written already.
+pub fn write_report(
+    identified: &Identified,
+    page: &Destination,
+    model: &Path,
+    sets: &[(&str, &Dataset)],
+    inputs: &[&Path],
+) -> Result<()> {
+    write_page(page, identified.page(model, sets)?, inputs)
+        .context("the model was written, but not its report")
+}
 
-    /// Tests of the residual on the data that the model was fitted to (as it was trained on them), and on rows that were
-    /// held out from other models made in the same way.
-    pub fn residuals(&self, trained: &Dataset) -> Result<Vec<(String, Residuals)>> {
-        let mut all = Vec::new();
-        all.extend(self.residuals_of("training", trained)?);
-        let options =
-            ResidualOptions { uses_rate: self.model.rate().is_some(), ..ResidualOptions::default() };
-        if let Some(HeldOutRows { data, simulated }) = &self.held_out
-            && data.scored() >= FEWEST_ROWS
-        {
-            all.push(("held-out".into(), Residuals::of(data, simulated, &options)?));
+/// Errors, size, time and files, for stdout.
+pub fn printed(identified: &Identified, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
+    let Identified { model, seconds, .. } = identified;
+    let provenance = model.provenance();
+    let mut sets = stored_errors(provenance);
+    sets.extend(unseen.map(|errors| ("unseen test", errors)));
+    let mut text = errors_table::errors_table(&sets);
+    if let Some(selection) = &provenance.selection {
+        text += &format!("(validation: errors on the rows held out in {} folds)\n", selection.folds.len());
+        text.push('\n');
+        for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
+            text += &labelled(label, &line);
         }
-        Ok(all)
+    } else if provenance.validation.is_some() {
+        text += "(validation: errors on held-out rows)\n";
     }
-
-    /// Tests of the residual on some data; `None` for too few rows.
-    fn residuals_of(&self, name: &str, data: &Dataset) -> Result<Option<(String, Residuals)>> {
-        let is_training = name == "training";
-        // The rows of a warm-up were not trained on.
-        let data = data.clone().warmed_up(if is_training { self.model.warm_up() } else { 0 });
-        if data.scored() < FEWEST_ROWS {
-            return Ok(None);
-        }
-        let options = ResidualOptions { is_training, ..ResidualOptions::default() };
-        Ok(Some((name.into(), Residuals::of_model(&self.model, &data, &options)?)))
+    text += &format!(
+        "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
+        model.notes().iter().map(|note| labelled("note", note)).collect::<String>(),
+        model.name().name(),
+        model.parameters(),
+        chosen(provenance),
+        provenance.termination,
+        seconds
+    );
+    for (what, path) in written {
+        text += &format!("{what:<7} {}\n", files::shown(path));
     }
-
-    /// Confidence intervals of the parameters, for a law that has them.
-    pub fn intervals(&self, trained: &Dataset) -> Result<Option<ParameterIntervals>> {
-        Ok(ParameterIntervals::of(&self.model, trained)?)
-    }
-
-    fn report(&self, path: &Path, sets: &[(&str, &Dataset)]) -> Result<Page> {
-        let mut residuals = Vec::new();
-        let mut intervals = None;
-        for &(name, data) in sets {
-            match name {
-                "training" => {
-                    residuals.extend(self.residuals(data)?);
-                    intervals = self.intervals(data)?;
-                }
-                _ => residuals.extend(self.residuals_of(name, data)?),
-            }
-        }
-        let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(report::page(&Report {
-            title,
-            model: &self.model,
-            sets: sets.iter().map(|(name, data)| self.set(name, data)).collect::<Result<_>>()?,
-            residuals: &residuals,
-            intervals: intervals.as_ref(),
-            warnings: &self.said.warnings,
-            understood: &self.said.understood,
-            model_file: path.display().to_string(),
-            seconds: self.seconds,
-        }))
-    }
-
-    /// Measured and simulated loops on a set of data, as an SVG file.
-    pub fn loops(&self, name: &str, data: &Dataset) -> Result<String> {
-        Ok(report::loops(&self.set(name, data)?).file(GENERATOR))
-    }
-
-    fn set<'a>(&self, name: &str, data: &'a Dataset) -> Result<ReportSet<'a>> {
-        let mut sums = ErrorSums::default();
-        let predict = |record: &Record| self.model.predict(&record.excitation(), report::BAND);
-        let predicted = self.model.band().map(|_| data.records().iter().map(predict).collect());
-        let predicted: Option<Vec<Prediction>> = predicted.transpose()?;
-        let simulated: Vec<Vec<f64>> = match &predicted {
-            Some(predicted) => predicted.iter().map(|predicted| predicted.output.clone()).collect(),
-            None => data
-                .records()
-                .iter()
-                .map(|record| self.model.simulate(record))
-                .collect::<hysid::Result<_>>()?,
-        };
-        data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
-        let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
-        let tracks = Tracks::of(name, data);
-        Ok(ReportSet { name: name.into(), data, simulated, predicted, errors, tracks })
-    }
-
-    /// Errors, size, time and files, for stdout.
-    pub fn results(&self, unseen: Option<&Errors>, written: &[(&str, &Path)]) -> String {
-        let provenance = self.model.provenance();
-        let mut sets = stored_errors(provenance);
-        sets.extend(unseen.map(|errors| ("unseen test", errors)));
-        let mut text = errors_table::errors_table(&sets);
-        if let Some(selection) = &provenance.selection {
-            text +=
-                &format!("(validation: errors on the rows held out in {} folds)\n", selection.folds.len());
-            text.push('\n');
-            for (label, line) in ["chosen", "why"].into_iter().zip(selection.summary()) {
-                text += &labelled(label, &line);
-            }
-        } else if provenance.validation.is_some() {
-            text += "(validation: errors on held-out rows)\n";
-        }
-        text += &format!(
-            "{}\n{} with {} parameters; {}, {}; {:.1} s\n",
-            self.model.notes().iter().map(|note| labelled("note", note)).collect::<String>(),
-            self.model.name().name(),
-            self.model.parameters(),
-            chosen(provenance),
-            provenance.termination,
-            self.seconds
-        );
-        for (what, path) in written {
-            text += &format!("{what:<7} {}\n", files::shown(path));
-        }
-        text
-    }
+    text
 }
 
 /// A label and a text, within 80 columns where words allow.

@@ -16,7 +16,7 @@ use hysid_document::{Cell, Part, Table, count};
 use serde::{Deserialize, Serialize};
 
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
-use crate::report::{initial_state, parameters, provenance};
+use hysid_report::{initial_state, parameters, provenance};
 
 /// A model and its file.
 pub struct Inspected<'m> {

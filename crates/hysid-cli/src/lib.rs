@@ -4,16 +4,11 @@
 //! 2 (usage), and after the best model so far is saved 130 (Ctrl-C), 143 (SIGTERM) or 129 (SIGHUP).
 
 mod arguments;
-mod band_coverage;
 mod checkpoint;
-mod columns;
 mod commands;
 mod comparison;
-mod csv_text;
 mod cycles;
 mod data;
-mod date;
-mod diagnosis;
 mod errors_table;
 mod files;
 mod gathered;
@@ -22,35 +17,21 @@ mod identification;
 mod inspection;
 mod interrupt;
 mod inversion;
-mod looked;
 mod messages;
 mod model_list;
-mod origin;
 mod planning;
 mod plotting;
 mod progress;
-mod quantities;
-mod record_names;
-mod report;
 mod reproduction;
 mod residual_tests;
 mod table_run;
 mod terminal;
-mod timing;
-mod understanding;
-mod units;
 
 use std::process::ExitCode;
 
 use clap::error::{ContextValue, ErrorKind};
 
-use std::path::Path;
-
-use arguments::{Arguments, ColumnOptions, Command, RateOption, ReadingOptions};
-use data::Data;
-use hysid::data::record::Dataset;
-use hysid::options::chosen::RateChoice;
-use hysid_tables::{Reading, Table};
+use arguments::{Arguments, Command};
 use messages::{StdoutClosed, Usage, insist};
 
 /// How a command ended when nothing went wrong.
@@ -104,23 +85,6 @@ pub fn run() -> ExitCode {
             ExitCode::from(if error.is::<Usage>() { 2 } else { 1 })
         }
     }
-}
-
-/// The data in a table of this text, its columns told by their names: the way of every file that is read.
-///
-/// # Errors
-/// As for a file: one line that says what is wrong and where.
-pub fn data_of_text(text: &[u8]) -> anyhow::Result<Dataset> {
-    let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
-    let by_names = ColumnOptions {
-        record: None,
-        time: None,
-        input: Vec::new(),
-        output: None,
-        rate: RateOption::Choice(RateChoice::Auto),
-        reading: ReadingOptions::default(),
-    };
-    Ok(Data::of_tables(vec![table], &by_names)?.set)
 }
 
 /// Shows help or version where these were asked for, otherwise what is wrong with the command line,

@@ -4,11 +4,11 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, Write};
-use std::mem::{self, Discriminant};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
-use hysid::data::warning::Warning;
+use hysid_records::understanding::labelled;
+pub use hysid_records::{Usage, summarised};
 use serde::Serialize;
 
 use crate::terminal;
@@ -24,18 +24,6 @@ impl fmt::Display for StdoutClosed {
 }
 
 impl std::error::Error for StdoutClosed {}
-
-/// A command line that cannot be obeyed; the exit status is 2.
-#[derive(Debug)]
-pub struct Usage(pub String);
-
-impl fmt::Display for Usage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Usage {}
 
 /// Writes lines of text to stdout, for a reader.
 pub fn results(text: &str) -> Result<()> {
@@ -82,31 +70,20 @@ pub fn note(text: fmt::Arguments) {
     }
 }
 
+/// Says labels and their texts, within 80 columns where words allow.
+pub fn note_labelled(lines: &[(String, String)]) {
+    for (label, text) in lines {
+        for line in labelled(label, text).lines() {
+            note(format_args!("{line}"));
+        }
+    }
+    note(format_args!(""));
+}
+
 /// Says one line on stderr, whether or not the program is to be quiet: an error, or what a signal caused.
 pub fn insist(text: fmt::Arguments) {
     // Nobody is left to be told if this fails.
     let _ = writeln!(io::stderr().lock(), "{}", terminal::line(&text.to_string()));
-}
-
-/// Warnings of a kind that are said one by one: a file may have a hundred thousand records.
-const MOST_OF_A_KIND: usize = 5;
-
-/// Warnings in words, kind by kind: the first few, and how many more there are.
-pub fn summarised(warnings: &[Warning]) -> Vec<String> {
-    let mut kinds: Vec<(Discriminant<Warning>, Vec<&Warning>)> = Vec::new();
-    for warning in warnings {
-        let kind = mem::discriminant(warning);
-        match kinds.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, warnings)) => warnings.push(warning),
-            None => kinds.push((kind, vec![warning])),
-        }
-    }
-    let words = kinds.iter().flat_map(|(_, warnings)| {
-        let more = warnings.len().saturating_sub(MOST_OF_A_KIND);
-        let more = (more > 0).then(|| format!("and {more} more of this kind"));
-        warnings.iter().take(MOST_OF_A_KIND).map(ToString::to_string).chain(more)
-    });
-    words.collect()
 }
 
 /// Warns on stderr.

@@ -2,9 +2,10 @@
 
 use hysid::data::record::ColumnNames;
 use hysid::data::warning::Warning;
-use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, ResidualVerdict, Residuals};
+use hysid::diagnosis::residuals::{ResidualFinding, ResidualOptions, Residuals};
 use hysid::model::Model;
 use hysid_document::plain::{aligned, indented};
+use hysid_report::residual_words::{name, p_value, verdict};
 
 use crate::gathered::{Gathered, Gatherer};
 
@@ -67,30 +68,4 @@ fn left(rows: &[Vec<String>]) -> Vec<String> {
 
 fn cells(finding: &ResidualFinding) -> Vec<String> {
     vec![name(finding), verdict(finding.verdict).into(), p_value(finding)]
-}
-
-/// The test, with the input that it is about.
-pub fn name(finding: &ResidualFinding) -> String {
-    match &finding.input {
-        None => finding.test.name().into(),
-        Some(input) => format!("correlation with {}", crate::terminal::clipped(input)),
-    }
-}
-
-/// A verdict in words.
-pub fn verdict(verdict: ResidualVerdict) -> &'static str {
-    match verdict {
-        ResidualVerdict::Found => "found",
-        ResidualVerdict::NotFound => "not found",
-        ResidualVerdict::NotTestable => "not testable",
-    }
-}
-
-/// The corrected p-value.
-pub fn p_value(finding: &ResidualFinding) -> String {
-    match finding.adjusted_p_value {
-        None => "-".into(),
-        Some(p) if p < 0.001 => "<0.001".into(),
-        Some(p) => format!("{p:.3}"),
-    }
 }

@@ -7,13 +7,13 @@ use anyhow::{Result, anyhow, bail};
 use hysid::data::record::{Fingerprint, Likeness, Record};
 use hysid::data::warning::Warning;
 use hysid::model::{BandLevel, Model, Prediction, Simulation};
+use hysid_records::{
+    Factors, Kind, MOST_ROWS_OF_ZERO, RecordNames, Roles, checked, equal_stamps, explained, offset_of,
+    place_of,
+};
 
-use crate::arguments::MOST_ROWS_OF_ZERO;
-use crate::columns::Roles;
-use crate::data::{Kind, checked, explained, offset_of, place_of, warn_of_equal_stamps};
-use crate::record_names::RecordNames;
+use crate::messages::warning;
 use crate::terminal::clipped;
-use crate::units::Factors;
 use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 /// Rows that are simulated together.
@@ -127,7 +127,7 @@ pub fn run(
     run.check_thousands(&rows.head)?;
     let end = run.simulate(true, take)?;
     if run.spread > 0 {
-        warn_of_equal_stamps(&run.file, run.spread);
+        warning(equal_stamps(&run.file, run.spread));
     }
     Ok(end.is_continue().then(|| run.simulation.range_warnings().into_iter().chain(run.known).collect()))
 }

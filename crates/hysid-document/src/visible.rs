@@ -7,6 +7,9 @@ use hysid_core::error::escaped;
 /// Largest number of characters of a name or a cell.
 const MOST_LETTERS: usize = 60;
 
+/// Names that are shown of many.
+const MOST_NAMES: usize = 6;
+
 /// True for characters that a terminal does not display as such: control characters, and those that change
 /// the direction of text or have no width.
 pub fn is_hidden(letter: char) -> bool {
@@ -27,6 +30,24 @@ pub fn clipped(text: &str) -> Cow<'_, str> {
     format!("{}… ({letters} characters)", visible(&text[..end])).into()
 }
 
+/// Some names, and how many more there are.
+pub fn listed<N: AsRef<str>>(names: &[N]) -> String {
+    listed_as(names, clipped)
+}
+
+/// As [`listed`], with paths, which are of use only as a whole.
+pub fn listed_paths<N: AsRef<str>>(paths: &[N]) -> String {
+    listed_as(paths, visible)
+}
+
+fn listed_as<N: AsRef<str>>(names: &[N], as_shown: impl Fn(&str) -> Cow<'_, str>) -> String {
+    let some: Vec<Cow<str>> = names.iter().take(MOST_NAMES).map(|name| as_shown(name.as_ref())).collect();
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => some.join(", "),
+        more => format!("{} and {more} more", some.join(", ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,5 +64,12 @@ mod tests {
         let text = "µ".repeat(61);
         assert_eq!(clipped(&text[..120]), text[..120]);
         assert_eq!(clipped(&text), format!("{}… (61 characters)", "µ".repeat(60)));
+    }
+
+    #[test]
+    fn many_names_are_counted() {
+        assert_eq!(listed(&["a", "b\n"]), r"a, b\n");
+        let many: Vec<String> = (0..100).map(|k| k.to_string()).collect();
+        assert_eq!(listed(&many), "0, 1, 2, 3, 4, 5 and 94 more");
     }
 }

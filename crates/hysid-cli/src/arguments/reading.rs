@@ -1,6 +1,7 @@
 //! How tables are read, where a file does not tell.
 
 use clap::Args;
+use hysid_records::MOST_ROWS_OF_ZERO;
 use hysid_tables::{DecimalSign, Delimiter, Encoding, Reading, RowSelection};
 
 /// How tables are read.
@@ -48,9 +49,6 @@ pub struct ReadingOptions {
     pub zero: Option<usize>,
 }
 
-/// Most rows over which an offset is averaged: so many are held in memory.
-pub const MOST_ROWS_OF_ZERO: usize = 4096;
-
 impl ReadingOptions {
     /// As the reader of tables takes them.
     pub fn reading(&self) -> Reading {
@@ -75,4 +73,24 @@ fn at_least_one(text: &str) -> Result<u64, String> {
 fn rows_of_zero(text: &str) -> Result<usize, String> {
     let advice = || format!("a whole number from 1 to {MOST_ROWS_OF_ZERO} is needed");
     text.parse().ok().filter(|count| (1..=MOST_ROWS_OF_ZERO).contains(count)).ok_or_else(advice)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Args, Command};
+    use hysid_records::READING_OPTIONS;
+
+    use super::*;
+
+    #[test]
+    fn the_help_is_that_of_the_table_of_options() {
+        let command = ReadingOptions::augment_args(Command::new("test"));
+        for option in READING_OPTIONS {
+            let flag = option.name.replace('_', "-");
+            let argument = command.get_arguments().find(|argument| argument.get_long() == Some(&flag));
+            let help = argument.and_then(|argument| argument.get_help()).unwrap().to_string();
+            assert!(help.starts_with(option.meaning), "--{flag}: {help}");
+        }
+        assert_eq!(command.get_arguments().count(), READING_OPTIONS.len());
+    }
 }

@@ -7,30 +7,28 @@ use hysid::data::summary::Summary;
 use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
 use hysid_files::{Destination, Kind};
+use hysid_records::Roles;
 
 use crate::Outcome;
 use crate::arguments::Compare;
-use crate::columns::Roles;
-use crate::commands::fit::request;
 use crate::comparison::{self, Data as Compared};
-use crate::data::{Data, read_tables};
+use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::data_warnings;
 use crate::interrupt;
 use crate::messages::{json_results, note, results, summarised, warning};
-use crate::origin;
+use hysid_report::data_warnings;
 
 /// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {
     let page = (!arguments.no_report)
         .then(|| Destination::new(page_path(arguments), Kind::Page, arguments.overwriting.force));
     let tables = read_tables(&arguments.train, &arguments.columns.reading)?;
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let test = match &arguments.test {
         Some(test) => {
             let unseen = read_tables(std::slice::from_ref(test), &arguments.columns.reading)?;
             roles.check_against(&unseen[0], &tables[0])?;
-            Some(Data::new(unseen, roles.clone(), arguments.columns.reading.zero)?)
+            Some(data_with(unseen, roles.clone(), arguments.columns.reading.zero)?)
         }
         None => None,
     };
@@ -43,10 +41,10 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         let chosen =
             NamedOptions { model: Some(model), seed: Some(arguments.seed), ..NamedOptions::default() };
         let request =
-            request(&chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?;
+            arguments.columns.rate.request(&chosen, &roles).with_context(|| tables[0].file.clone())?;
         requests.extend(request.variants());
     }
-    let train = Data::new(tables, roles, arguments.columns.reading.zero)?;
+    let train = data_with(tables, roles, arguments.columns.reading.zero)?;
 
     data_warnings(&train, &Summary::of(&train.set)).iter().for_each(warning);
     if let Some(test) = &test {
@@ -61,7 +59,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     if let Some(page) = &page {
         let title = format!("Models compared: {}", train.source.tables[0].file);
         let content = comparison::page(&title, &train.set, test.as_ref().map(|test| &test.set), &rows)?;
-        origin::write_page(page, content, &inputs)?;
+        files::write_page(page, content, &inputs)?;
         note(format_args!("page    {}", files::shown(page.path())));
     }
     Ok(if interrupt::requested() { Outcome::Interrupted } else { Outcome::Done })

@@ -7,14 +7,15 @@ use hysid::data::summary::Summary;
 use hysid::diagnosis::cycles::CycleOptions;
 use hysid::options::chosen::RateChoice;
 use hysid_files::{Destination, Kind};
+use hysid_records::understanding;
 
+use crate::Outcome;
 use crate::arguments::{self, RateOption};
 use crate::commands::{Given, model_from_bytes};
 use crate::cycles::{self, BEGINNING, BEGINNING_OF_CURVES, Cycles, Files};
-use crate::data::Data;
+use crate::data::data_of;
 use crate::files::{self, check_outputs};
-use crate::messages::{raw_results, results, warning};
-use crate::{Outcome, origin, understanding};
+use crate::messages::{note_labelled, raw_results, results, warning};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
@@ -31,14 +32,14 @@ pub fn run(arguments: &arguments::Cycles) -> Result<Outcome> {
                 warning(format_args!("the cycles of a model ignore {option}"));
             }
             let cycles = Cycles::of_model(path, &model, &options, factor)?;
-            understanding::print(&cycles.understood);
+            note_labelled(&cycles.understood);
             tell(arguments, &outputs, &inputs, &cycles)
         }
         Given::Tables(tables) => {
-            let data = Data::of_tables(tables, &arguments.columns)?;
+            let data = data_of(tables, &arguments.columns)?;
             let understood = understanding::of_data(&data, &Summary::of(&data.set));
-            understanding::print(&understood);
-            data.warn_of_further_inputs("cycles of", "used");
+            note_labelled(&understood);
+            data.unused_inputs("cycles of", "used").iter().for_each(warning);
             if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
                 warning("cycles ignores --rate: it needs no rate");
             }
@@ -99,7 +100,7 @@ fn tell(
         files::write(destination, &cycles::curves_csv(cycles, curves)?)?;
     }
     if let Some(page) = &outputs.page {
-        origin::write_page(page, cycles::page(cycles), inputs)?;
+        files::write_page(page, cycles::page(cycles), inputs)?;
     }
     let path = |destination: &Destination| destination.path().to_path_buf();
     let written = Files {

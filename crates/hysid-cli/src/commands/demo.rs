@@ -8,15 +8,16 @@ use clap::Parser;
 use hysid::data::record::Dataset;
 use hysid::specimens::Specimen;
 use hysid_files::{Destination, Kind};
+use hysid_records::Data;
 
 use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
-use crate::csv_text::csv_text;
-use crate::data::Data;
+use crate::data::data_of;
 use crate::files::{self, check_outputs};
-use crate::identification::{Work, identify, note_interrupted};
+use crate::identification::{self, Work, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
+use hysid_records::csv_text;
 use hysid_tables::{Reading, Table};
 
 /// Runs the command.
@@ -47,9 +48,10 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     let request = typed.model.0.request(None, false);
     let identified = identify(&data, Work::new(&request))?;
     let errors = identified.model.evaluate(&unseen.set).map_err(|error| unseen.explain(error))?;
-    identified.save(&model)?;
+    identification::save(&identified, &model)?;
     let trained = identified.model.as_trained(&data.set)?;
-    identified.write_report(
+    identification::write_report(
+        &identified,
         &report,
         out,
         &[("training", &trained), ("unseen", &unseen.set)],
@@ -58,7 +60,7 @@ pub fn run(arguments: &Demo) -> Result<Outcome> {
     files::write(&loops, identified.loops("unseen", &unseen.set)?.as_bytes())?;
     let written =
         [("data", train), ("data", test), ("model", out), ("report", report.path()), ("loops", loops.path())];
-    results(&(identified.results(Some(&errors), &written) + &next(train, test, out)))?;
+    results(&(identification::printed(&identified, Some(&errors), &written) + &next(train, test, out)))?;
     if interrupt::requested() {
         note_interrupted(out);
         return Ok(Outcome::Interrupted);
@@ -77,7 +79,7 @@ fn fit_as_typed(train: &Path) -> Box<crate::arguments::Fit> {
 
 fn read(path: &Path) -> Result<Data> {
     let table = Table::read(path, &Reading::default())?;
-    Data::of_tables(vec![table], &fit_as_typed(path).columns)
+    data_of(vec![table], &fit_as_typed(path).columns)
 }
 
 fn next(train: &Path, test: &Path, out: &Path) -> String {

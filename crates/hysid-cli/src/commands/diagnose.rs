@@ -8,16 +8,15 @@ use hysid::diagnosis::DiagnosisOptions;
 use hysid::options::chosen::RateChoice;
 use hysid_document::Page;
 use hysid_files::{Destination, Kind};
+use hysid_records::understanding;
 
 use crate::Outcome;
 use crate::arguments::{ColumnOptions, Diagnose, RateOption};
 use crate::commands::{Given, model_from_bytes};
-use crate::data::Data;
-use crate::diagnosis::{DataDiagnosis, DiagnosedModel};
+use crate::data::data_of;
 use crate::files::{self, check_outputs};
-use crate::messages::{note, results, warning};
-use crate::origin;
-use crate::understanding;
+use crate::messages::{note, note_labelled, results, warning};
+use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
 use hysid_tables::Table;
 
 /// What is told of a diagnosis, and the page if there is to be one.
@@ -39,17 +38,17 @@ pub fn run(arguments: &Diagnose) -> Result<Outcome> {
     };
     results(&told.text)?;
     if let (Some(destination), Some(page)) = (&page, told.page) {
-        origin::write_page(destination, page, &inputs)?;
+        files::write_page(destination, page, &inputs)?;
         note(format_args!("page    {}", files::shown(destination.path())));
     }
     Ok(Outcome::Done)
 }
 
 fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
-    let data = Data::of_tables(tables, &arguments.columns)?;
+    let data = data_of(tables, &arguments.columns)?;
     let understood = understanding::of_data(&data, &Summary::of(&data.set));
-    understanding::print(&understood);
-    data.warn_of_further_inputs("diagnosed:", "diagnosed");
+    note_labelled(&understood);
+    data.unused_inputs("diagnosed:", "diagnosed").iter().for_each(warning);
     if matches!(arguments.columns.rate, RateOption::Choice(RateChoice::Method(_))) {
         warning("diagnose ignores --rate: it uses the speeds between turning points");
     }
@@ -82,7 +81,7 @@ fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {
     let path = &arguments.files[0];
     let model = model_from_bytes(path, content)?;
     let diagnosed = DiagnosedModel::of(path, &model)?;
-    understanding::print(&diagnosed.understood());
+    note_labelled(&diagnosed.understood());
     for option in useless_for_models(&arguments.columns, &arguments.options()) {
         warning(format_args!("the diagnosis of a model ignores {option}"));
     }

@@ -6,27 +6,26 @@ use anyhow::{Context, Result};
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
+use hysid_records::{Roles, explained};
 
 use crate::Outcome;
 use crate::arguments::Evaluate;
-use crate::band_coverage::BandCoverage;
-use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
-use crate::data::explained;
+use crate::data::factors;
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
 use crate::gathered::Gatherer;
 use crate::messages::{json_results, results, summarised, warning};
 use crate::residual_tests;
 use crate::table_run::{self, Simulated, Wanted};
-use crate::units::Factors;
+use hysid_report::BandCoverage;
 use hysid_tables::Rows;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {
     let model = arguments.beginning.of(read_model(&arguments.model)?)?;
     let mut rows = Rows::open(&arguments.data, &arguments.columns.reading.reading())?;
-    let roles = Roles::of_model(&model, &rows.head, &arguments.columns, true)?;
-    let factors = Factors::of(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
+    let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), true)?;
+    let factors = factors(&model, &roles, &rows.head.file, true, arguments.units.same_units)?;
     arguments.band.map_or(Ok(()), |_| check_band(&model, &arguments.model))?;
 
     let warm_up = model.warm_up();

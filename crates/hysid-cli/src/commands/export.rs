@@ -15,8 +15,9 @@ use serde::Serialize;
 use crate::Outcome;
 use crate::arguments::Export;
 use crate::commands::read_model;
+use crate::files;
 use crate::messages::{Usage, json_results, note};
-use crate::{date, files};
+use hysid_report::date;
 
 /// Runs the command.
 pub fn run(arguments: &Export) -> Result<Outcome> {

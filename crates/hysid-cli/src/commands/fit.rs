@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use hysid::data::metrics::Errors;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Dataset;
@@ -17,17 +17,17 @@ use hysid::options::network::FitOptions;
 use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 use hysid_files::{Destination, Kind};
+use hysid_records::Roles;
 
 use crate::Outcome;
 use crate::arguments::{Fit, RateOption, flag};
 use crate::checkpoint::{self, Keeper};
-use crate::columns::Roles;
-use crate::data::{Data, read_tables};
+use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::{self, Identified, Work, identify, report_path};
+use crate::identification::{self, Work, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, json_results, note, results, warning};
-use crate::report;
+use hysid_report::{Identified, initial_state};
 
 /// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {
@@ -41,18 +41,18 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let outputs: Vec<&Destination> = std::iter::once(&model).chain(&report).chain(&checkpoint).collect();
     let inputs: Vec<&Path> = arguments.train.iter().map(PathBuf::as_path).collect();
     check_outputs(&outputs, &inputs)?;
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
     let request = match &begun {
         Some(begun) => FitSpec::Network(options_of(begun, &arguments.columns.rate)?),
-        None => request(chosen, &arguments.columns.rate, &roles).with_context(|| tables[0].file.clone())?,
+        None => arguments.columns.rate.request(chosen, &roles).with_context(|| tables[0].file.clone())?,
     };
     if arguments.checkpoint.is_some() {
         check_checkpoints(&request)?;
     }
     let keeper = checkpoint.map(Keeper::new).transpose()?;
     let resumable = keeper.as_ref().map(|keeper| keeper.path().to_path_buf());
-    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
+    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     let data = if arguments.inverse { data.exchanged()? } else { data };
     warn_of_ignored(chosen);
     let work = Work {
@@ -65,15 +65,17 @@ pub fn run(arguments: &Fit) -> Result<Outcome> {
     let identified = identify(&data, work)?;
 
     let out = model.path();
-    identified.save(&model)?;
+    identification::save(&identified, &model)?;
     let trained = identified.model.as_trained(&data.set)?;
     let sets = [("training", trained.as_ref())];
-    let reported = report.as_ref().map_or(Ok(()), |page| identified.write_report(page, out, &sets, &inputs));
+    let reported = report
+        .as_ref()
+        .map_or(Ok(()), |page| identification::write_report(&identified, page, out, &sets, &inputs));
     let mut written = vec![("model", out)];
     written.extend(report.iter().filter(|_| reported.is_ok()).map(|page| ("report", page.path())));
     match arguments.json {
         true => json_results(&Printed::of(&identified, out, &trained)?)?,
-        false => results(&(identified.results(None, &written) + &next(out)))?,
+        false => results(&(identification::printed(&identified, None, &written) + &next(out)))?,
     }
     reported?;
     if interrupt::requested() {
@@ -142,31 +144,11 @@ fn check_checkpoints(request: &FitSpec) -> Result<()> {
     Err(Usage(format!("{what} has no checkpoints: {advice}")).into())
 }
 
-/// What the options ask for, with these columns.
-pub fn request(chosen: &NamedOptions, rate: &RateOption, roles: &Roles) -> Result<FitSpec> {
-    let is_decided = !matches!(rate, RateOption::Choice(RateChoice::Auto | RateChoice::None));
-    Ok(chosen.request(rate_method(rate, roles, chosen.model())?, is_decided))
-}
-
 /// Warns of options that the model ignores.
 pub fn warn_of_ignored(chosen: &NamedOptions) {
     for Ignored { option, by } in chosen.ignored() {
         warning(format_args!("{by} ignores --{}", flag(option)));
     }
-}
-
-/// The rate that `--rate` means for these columns and this model.
-pub fn rate_method(option: &RateOption, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
-    Ok(match option {
-        RateOption::Column(_) => Some(RateMethod::Given),
-        RateOption::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
-            bail!(
-                "there is no time column to compute the rate from (name it with --time, or use --rate \
-                   none)"
-            )
-        }
-        RateOption::Choice(choice) => choice.method(model, roles.time.is_some()),
-    })
 }
 
 fn next(model: &Path) -> String {
@@ -256,7 +238,7 @@ impl<'a> Printed<'a> {
             selection: provenance.selection.as_ref(),
             train: &provenance.train,
             train_after_warm_up: provenance.train_after_warm_up.as_ref(),
-            initial_state: report::initial_state(model),
+            initial_state: initial_state(model),
             lead_ins: &provenance.lead_ins,
             intervals: identified.intervals(trained)?,
             residuals: residuals.map(|(data, tests)| PrintedResiduals { data, tests }).collect(),

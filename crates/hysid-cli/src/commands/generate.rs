@@ -11,9 +11,9 @@ use hysid_files::{Destination, Kind};
 
 use crate::Outcome;
 use crate::arguments::Generate;
-use crate::csv_text::csv_text;
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note, raw_results, results};
+use hysid_records::csv_text;
 
 /// Runs the command.
 pub fn run(arguments: &Generate) -> Result<Outcome> {

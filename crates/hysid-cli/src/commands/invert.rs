@@ -10,19 +10,19 @@ use hysid::data::unit;
 use hysid::significant::Significant;
 use hysid_document::count;
 use hysid_files::{Destination, Kind};
+use hysid_records::Roles;
 use serde::Serialize;
 
+use crate::Outcome;
 use crate::arguments::{Invert, Preview};
-use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
-use crate::csv_text::header_line;
+use crate::data::factors;
 use crate::errors_table::errors_table;
 use crate::files::{self, check_outputs};
 use crate::inversion::{self, Bounds, Inverted, Wanted};
-use crate::messages::{json_results, raw_results, results, warning};
+use crate::messages::{json_results, note_labelled, raw_results, results, warning};
 use crate::terminal::clipped;
-use crate::units::Factors;
-use crate::{Outcome, origin, understanding};
+use hysid_records::header_line;
 use hysid_tables::{Table, push_shortest};
 
 /// Runs the command.
@@ -48,13 +48,13 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
         preview: arguments.preview,
         band: arguments.data_sets.level(arguments.band),
     };
-    let roles = Roles::of_inverse(&model, bounds.need_time(&model)?, &table, &arguments.columns)?;
-    let factors = Factors::of(&model, &roles, &table.file, true, arguments.units.same_units)?;
+    let roles = Roles::of_inverse(&model, bounds.need_time(&model)?, &table, &arguments.columns.choice())?;
+    let factors = factors(&model, &roles, &table.file, true, arguments.units.same_units)?;
     let wanted = Wanted::of(&table, &roles, &factors)?;
     let inverted = Inverted::of(&model, &wanted, &bounds)?;
 
     let understood = understood(arguments, &model, &roles, &inverted);
-    understanding::print(&understood);
+    note_labelled(&understood);
     let warnings = warnings(&inverted);
     warnings.iter().for_each(warning);
     let text = header.into_iter().chain(rows(&table, &wanted, &inverted)?).collect::<Vec<u8>>();
@@ -70,7 +70,7 @@ pub fn run(arguments: &Invert) -> Result<Outcome> {
     }
     if let Some(page) = &page {
         let report = inversion::page(&model, &wanted, &inverted, &bounds, &understood, &warnings);
-        origin::write_page(page, report, &[&arguments.model, &arguments.reference])?;
+        files::write_page(page, report, &[&arguments.model, &arguments.reference])?;
     }
     let written = [("drive", &drive), ("report", &page)];
     files::say_written(written.map(|(what, file)| (what, file.as_ref().map(Destination::path))));

@@ -5,18 +5,16 @@ use std::path::Path;
 use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid_files::{Destination, Kind};
+use hysid_records::{Data, Looked, Roles, understanding};
 use serde::Serialize;
 
 use crate::Outcome;
 use crate::arguments::Look;
-use crate::columns::Roles;
-use crate::csv_text::csv_text;
-use crate::data::{Data, read_tables};
+use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
-use crate::identification::data_warnings;
-use crate::looked::Looked;
 use crate::messages::{Usage, json_results, note, raw_results, results, warning};
-use crate::understanding;
+use hysid_records::csv_text;
+use hysid_report::data_warnings;
 
 /// Lines about the data as a whole that are shown below the tables.
 const OF_THE_DATA: [&str; 3] = ["samples", "guessed", "turning"];
@@ -28,9 +26,9 @@ pub fn run(arguments: &Look) -> Result<Outcome> {
         return Err(Usage("--json prints to stdout: name a file for the table with -o".into()).into());
     }
     let tables = read_tables(&arguments.files, &arguments.columns.reading)?;
-    let roles = Roles::detect(&tables[0], &arguments.columns);
+    let roles = Roles::detect(&tables[0], &arguments.columns.choice());
     let looked: Vec<Looked> = tables.iter().map(|table| Looked::of(table, roles.as_ref().ok())).collect();
-    let data = roles.and_then(|roles| Data::new(tables, roles, arguments.columns.reading.zero));
+    let data = roles.and_then(|roles| data_with(tables, roles, arguments.columns.reading.zero));
     let (warnings, understood) = match &data {
         Ok(data) => {
             let summary = Summary::of(&data.set);

@@ -9,19 +9,17 @@ use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::plan::{MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions, Wanted};
 use hysid_files::{Destination, Kind};
+use hysid_records::{Data, Roles, understanding};
 
 use crate::arguments;
-use crate::columns::Roles;
-use crate::commands::fit::rate_method;
 use crate::commands::read_model;
-use crate::csv_text::header_line;
-use crate::data::{Data, read_tables};
+use crate::data::{data_with, factors, read_tables};
 use crate::files::{self, check_outputs};
 use crate::identification::{Work, identify, thread_pool};
-use crate::messages::{Usage, json_results, raw_results, results, warning};
+use crate::messages::{Usage, json_results, note_labelled, raw_results, results, warning};
 use crate::planning::{self, Planned};
-use crate::units::Factors;
-use crate::{Outcome, interrupt, origin, understanding};
+use crate::{Outcome, interrupt};
+use hysid_records::header_line;
 
 /// Starts of each candidate of the ensemble: it only has to show where models disagree.
 const STARTS: usize = 1;
@@ -67,12 +65,12 @@ fn of_kind(arguments: &arguments::Plan, kind: &str) -> Result<Outcome> {
 /// What to measure next.
 fn of_data(arguments: &arguments::Plan) -> Result<Outcome> {
     let tables = read_tables(&arguments.like, &arguments.columns.reading)?;
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let out = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.like[0], ".drive.csv"));
     let outputs = Outputs::of(arguments, out, &roles.names())?;
     let inputs: Vec<&Path> = arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
     outputs.check(&inputs)?;
-    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
+    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     let count = data.roles.inputs.len();
     if count > 1 {
         return Err(
@@ -125,8 +123,8 @@ fn wanted(arguments: &arguments::Plan, step: Option<f64>) -> Result<Wanted> {
 fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Result<Option<Model>> {
     if let Some(path) = &arguments.model {
         let model = read_model(path)?;
-        understanding::print(&understanding::of_data(data, summary));
-        let factors = Factors::of(&model, &data.roles, &data.source.tables[0].file, true, false)?;
+        note_labelled(&understanding::of_data(data, summary));
+        let factors = factors(&model, &data.roles, &data.source.tables[0].file, true, false)?;
         let converted = factors.inputs.iter().chain([&factors.time, &factors.output]).any(Option::is_some);
         if converted || model.names().inputs.len() != 1 {
             let problem = "its columns must be those of the data, in the same units";
@@ -135,11 +133,14 @@ fn ensemble(arguments: &arguments::Plan, data: &Data, summary: &Summary) -> Resu
         return Ok(Some(model));
     }
     if arguments.coverage_only {
-        understanding::print(&understanding::of_data(data, summary));
+        note_labelled(&understanding::of_data(data, summary));
         return Ok(None);
     }
     let auto = AutoOptions::default();
-    let rate = rate_method(&arguments.columns.rate, &data.roles, FitSpec::Auto(auto.clone()).model())
+    let rate = arguments
+        .columns
+        .rate
+        .method(&data.roles, FitSpec::Auto(auto.clone()).model())
         .with_context(|| data.source.tables[0].file.clone())?;
     let request = FitSpec::Auto(AutoOptions { starts: STARTS, seed: arguments.seed, rate, ..auto });
     let work = Work { threads: arguments.threads, time_limit: arguments.time_limit, ..Work::new(&request) };
@@ -200,7 +201,7 @@ fn tell(arguments: &arguments::Plan, outputs: &Outputs, planned: &Planned<'_>) -
     if let Some(page) = &outputs.page {
         let inputs: Vec<&Path> =
             arguments.like.iter().chain(&arguments.model).map(PathBuf::as_path).collect();
-        origin::write_page(page, planning::page(planned), &inputs)?;
+        files::write_page(page, planning::page(planned), &inputs)?;
     }
     let page = outputs.page.as_ref().map(Destination::path);
     match arguments.json {

@@ -6,19 +6,18 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use hysid::model::Model;
 use hysid_files::{Destination, Kind};
+use hysid_records::{Roles, explained};
 use hysid_tables::{Rows, is_json};
 
 use crate::Outcome;
 use crate::arguments::Plot;
-use crate::columns::Roles;
 use crate::commands::{check_band, model_from_bytes};
-use crate::data::{Data, explained, read_tables};
+use crate::data::{data_of, factors, read_tables};
 use crate::files::{self, check_outputs};
 use crate::gathered::{Gathered, Gatherer};
 use crate::messages::{Usage, summarised, warning};
 use crate::plotting::{self, Format, Style, Subject};
 use crate::table_run::{self, Wanted};
-use crate::units::Factors;
 
 /// Runs the command.
 pub fn run(arguments: &Plot) -> Result<Outcome> {
@@ -75,7 +74,7 @@ fn measured(arguments: &Plot, tables: &[PathBuf]) -> Result<Subject> {
     if arguments.band.is_some() {
         return Err(Usage("--band needs a model: hysid plot MODEL.json DATA.csv".into()).into());
     }
-    let data = Data::of_tables(read_tables(tables, &arguments.columns.reading)?, &arguments.columns)?;
+    let data = data_of(read_tables(tables, &arguments.columns.reading)?, &arguments.columns)?;
     Ok(Subject { data: data.set, predicted: None, band: None })
 }
 
@@ -87,15 +86,15 @@ fn simulated(arguments: &Plot, model: &Model, tables: &[PathBuf]) -> Result<Subj
     for table in tables {
         let mut rows = Rows::open(table, &arguments.columns.reading.reading())?;
         let columns = &arguments.columns;
-        let (roles, has_output) = match Roles::of_model(model, &rows.head, columns, true) {
+        let (roles, has_output) = match Roles::of_model(model, &rows.head, &columns.choice(), true) {
             // Without a measured output, the model is drawn alone.
             Err(_) if columns.output.is_none() => {
-                (Roles::of_model(model, &rows.head, columns, false)?, false)
+                (Roles::of_model(model, &rows.head, &columns.choice(), false)?, false)
             }
             roles => (roles?, true),
         };
-        let roles = roles.with_time(&rows.head, &arguments.columns)?;
-        let factors = Factors::of(model, &roles, &rows.head.file, has_output, arguments.units.same_units)?;
+        let roles = roles.with_time(&rows.head, &arguments.columns.choice())?;
+        let factors = factors(model, &roles, &rows.head.file, has_output, arguments.units.same_units)?;
         let wanted = Wanted {
             measured: has_output,
             drive: true,

@@ -6,17 +6,17 @@ use std::path::Path;
 
 use anyhow::{Result, ensure};
 use hysid_files::{Destination, Kind, NewFile};
+use hysid_records::Roles;
 
 use crate::arguments::Simulate;
-use crate::columns::Roles;
 use crate::commands::{check_band, read_model};
-use crate::csv_text::header_line;
+use crate::data::factors;
 use crate::files::{self, check_outputs};
 use crate::messages::{stdout_failed, warning};
 use crate::table_run::{self, Simulated, Wanted};
 use crate::terminal::clipped;
-use crate::units::Factors;
 use crate::{Outcome, interrupt};
+use hysid_records::header_line;
 use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
@@ -50,9 +50,9 @@ pub fn run(arguments: &Simulate) -> Result<Outcome> {
         check_outputs(&[out], &[&arguments.data, &arguments.model])?;
         interrupt::listen("stopping before the end of the table")?;
     }
-    let roles = Roles::of_model(&model, &rows.head, &arguments.columns, false)?;
+    let roles = Roles::of_model(&model, &rows.head, &arguments.columns.choice(), false)?;
 
-    let factors = Factors::of(&model, &roles, &rows.head.file, false, arguments.units.same_units)?;
+    let factors = factors(&model, &roles, &rows.head.file, false, arguments.units.same_units)?;
     let sink = out.as_ref().map(Destination::create).transpose().map_err(files::explained)?;
     let numbers = Numbers { data: &arguments.data, reading: &reading, roles: &roles, delimiter };
     let mut output = Output { sink, numbers, sign: None, delimiter, text: header };

@@ -9,12 +9,12 @@ use hysid::significant::Significant;
 use hysid::termination::Termination;
 use hysid::validation::{CrossValidation, CrossValidator, FoldErrors};
 use hysid_document::plain::{WIDTH, aligned, wrapped};
+use hysid_records::Roles;
 
 use crate::Outcome;
 use crate::arguments::Validate;
-use crate::columns::Roles;
-use crate::commands::fit::{request, warn_of_ignored};
-use crate::data::{Data, read_tables};
+use crate::commands::fit::warn_of_ignored;
+use crate::data::{data_with, read_tables};
 use crate::identification::{check_memory, say_beforehand, thread_pool};
 use crate::interrupt;
 use crate::messages::{insist, json_results, results};
@@ -37,10 +37,10 @@ struct Validated {
 pub fn run(arguments: &Validate) -> Result<Outcome> {
     let tables = read_tables(&arguments.data, &arguments.columns.reading)?;
     let file = tables[0].file.clone();
-    let roles = Roles::detect(&tables[0], &arguments.columns)?;
+    let roles = Roles::detect(&tables[0], &arguments.columns.choice())?;
     let chosen = &arguments.model.0;
-    let request = request(chosen, &arguments.columns.rate, &roles).with_context(|| file.clone())?;
-    let data = Data::new(tables, roles, arguments.columns.reading.zero)?;
+    let request = arguments.columns.rate.request(chosen, &roles).with_context(|| file.clone())?;
+    let data = data_with(tables, roles, arguments.columns.reading.zero)?;
     warn_of_ignored(chosen);
     let mut validator =
         CrossValidator::new(&data.set, arguments.folds).map_err(|error| anyhow!("{file}: {error}"))?;

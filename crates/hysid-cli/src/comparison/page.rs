@@ -6,7 +6,7 @@ use hysid_document::chart::thin::thin;
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Label, Page, Part, Table, unit};
 
 use super::{Fitted, HEADINGS, Row, cells, stopped_note};
-use crate::report::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
+use hysid_report::{MEASURED_WIDTH, MODEL_WIDTH, ReportSet, Tracks, small_loops};
 
 /// Most records drawn into one chart.
 const MOST_RECORDS: usize = 200;

@@ -4,7 +4,7 @@ use anyhow::Result;
 use hysid::diagnosis::reversal_curves::{ReversalCurves, ReversalNode};
 
 use super::Cycles;
-use crate::csv_text::header_line;
+use hysid_records::header_line;
 use hysid_tables::shortest;
 
 /// How every table of reversal curves begins, by which it is known again.

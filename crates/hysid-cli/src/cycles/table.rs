@@ -5,7 +5,7 @@ use hysid::diagnosis::cycles::{CycleRow, Field, Figure, Quantity};
 use hysid_document::{Cell, Table};
 
 use super::Cycles;
-use crate::csv_text::header_line;
+use hysid_records::header_line;
 use hysid_tables::shortest;
 
 /// How every table of cycles begins, by which it is known again.

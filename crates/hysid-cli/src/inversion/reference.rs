@@ -4,10 +4,8 @@ use std::ops::Range;
 
 use anyhow::Result;
 use hysid::Reference;
+use hysid_records::{Factors, Kind, Roles, column_of, places_of};
 
-use crate::columns::Roles;
-use crate::data::{Kind, column_of, places_of};
-use crate::units::Factors;
 use hysid_tables::{CellReader, DecimalSign, Table};
 
 /// The wanted outputs of a table, in the units of the model.
@@ -66,7 +64,7 @@ impl Wanted {
         let others: Vec<Vec<f64>> =
             inputs.map(|(name, &factor)| read(name, factor, Kind::Given)).collect::<Result<_>>()?;
         let wanted = read(&roles.output, factors.output, Kind::Wanted)?;
-        let record = |place: crate::data::Place| {
+        let record = |place: hysid_records::Place| {
             let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
             WantedRecord {
                 wanted: cut(&wanted),

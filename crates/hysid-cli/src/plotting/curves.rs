@@ -4,7 +4,7 @@ use hysid_document::{Chart, Colour, Curve, unit};
 
 use super::Subject;
 use crate::cycles::pictures::path;
-use crate::report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
+use hysid_report::{MEASURED_WIDTH, MODEL_WIDTH, path_curves, scored_rows};
 
 /// Points of all curves of a colour together.
 const POINTS: usize = 12_000;

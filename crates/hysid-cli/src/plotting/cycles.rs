@@ -13,9 +13,9 @@ use super::curves::{BOTH, alone, legend};
 use crate::cycles::Cycles;
 use crate::cycles::over_amplitude::{self, Shown};
 use crate::cycles::pictures::path;
-use crate::quantities::Quantities;
-use crate::report::tracks::times;
-use crate::report::{MODEL_WIDTH, time_label};
+use hysid_report::quantities::Quantities;
+use hysid_report::tracks::times;
+use hysid_report::{MODEL_WIDTH, time_label};
 
 /// Height of a chart over its width.
 const SHAPE: f64 = 0.7;

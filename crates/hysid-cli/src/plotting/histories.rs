@@ -10,9 +10,9 @@ use hysid_document::{Chart, Colour, Curve, unit};
 use super::Subject;
 use super::curves::{BOTH, alone};
 use crate::messages::{Usage, note};
-use crate::report::histories::{Panel, difference, error_label};
-use crate::report::tracks::times;
-use crate::report::{MODEL_WIDTH, scored_rows, time_label};
+use hysid_report::histories::{Panel, difference, error_label};
+use hysid_report::tracks::times;
+use hysid_report::{MODEL_WIDTH, scored_rows, time_label};
 
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;

@@ -11,9 +11,9 @@ use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
 
 use super::storage::{self, Finished};
 use super::{Outputs, rendering};
-use crate::date;
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
+use hysid_report::{date, page_text};
 
 /// Name of the files of all experiments together.
 const TOGETHER: &str = "reproduction";
@@ -169,7 +169,7 @@ fn write_together(finished: &[Finished], settings: Settings, outputs: Outputs) -
 }
 
 fn write_all([html, text, tables]: [Destination; 3], page: &Page, chapters: &[Chapter]) -> Result<()> {
-    files::write(&html, files::page_text(page).as_bytes())?;
+    files::write(&html, page_text(page).as_bytes())?;
     files::write(&text, markdown::page(page).as_bytes())?;
     files::write(&tables, rendering::csv(chapters)?.as_bytes())
 }

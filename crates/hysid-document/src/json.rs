@@ -1,0 +1,38 @@
+//! JSON for readers.
+
+use serde::Serialize;
+
+use crate::visible::is_hidden;
+
+/// JSON that a terminal can show: characters that serde leaves as they are, such as those that turn the direction of
+/// the text, are escaped too.
+///
+/// # Errors
+/// A value that is none of JSON.
+pub fn json(value: &impl Serialize) -> serde_json::Result<String> {
+    let text = serde_json::to_string_pretty(value)?;
+    let mut shown = String::with_capacity(text.len() + 1);
+    for letter in text.chars() {
+        match letter {
+            // Outside of strings JSON has no other white space, and inside it is escaped already.
+            '\n' => shown.push('\n'),
+            // All of them are in the plane where four digits are enough.
+            hidden if is_hidden(hidden) => shown.push_str(&format!("\\u{:04x}", hidden as u32)),
+            plain => shown.push(plain),
+        }
+    }
+    Ok(shown + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_reads_back_as_the_same_and_hides_nothing() {
+        let value = vec!["a\n\u{9b}2J\u{7f}\u{202e}\"é".to_string()];
+        let text = json(&value).unwrap();
+        assert!(!text.chars().any(|letter| letter != '\n' && is_hidden(letter)), "{text:?}");
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), value);
+    }
+}

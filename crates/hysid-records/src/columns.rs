@@ -1,0 +1,365 @@
+//! Which column is what: found from the names, from options, or from a model.
+
+mod guess;
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use anyhow::{Result, bail, ensure};
+use hysid_core::data::rate::RateMethod;
+use hysid_core::data::record::ColumnNames;
+use hysid_core::model::Model;
+use hysid_core::options::chosen::{NamedOptions, RateChoice};
+use hysid_core::options::{FitSpec, ModelName};
+
+use self::guess::Guess;
+use crate::usage::Usage;
+use hysid_core::data::unit::{self, Conversion};
+use hysid_document::visible::{clipped, listed};
+use hysid_tables::{Head, Table, is_record};
+
+/// What is said of the columns; what is not said is guessed.
+#[derive(Debug, Clone, Default)]
+pub struct ColumnChoice {
+    /// Tells the records apart.
+    pub record: Option<String>,
+    /// Time stamps.
+    pub time: Option<String>,
+    /// Inputs.
+    pub input: Vec<String>,
+    /// The output.
+    pub output: Option<String>,
+    /// Rate of the first input.
+    pub rate: RateOption,
+}
+
+/// Where the rate of the first input comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RateOption {
+    /// None, computed from the time stamps, or as suits the model.
+    Choice(RateChoice),
+    /// A column of this name.
+    Column(String),
+}
+
+impl Default for RateOption {
+    fn default() -> Self {
+        Self::Choice(RateChoice::default())
+    }
+}
+
+impl RateOption {
+    /// The method that it means for a model and data with these columns; `None` for no rate.
+    ///
+    /// # Errors
+    /// A method that needs a time column, without one.
+    pub fn method(&self, roles: &Roles, model: ModelName) -> Result<Option<RateMethod>> {
+        Ok(match self {
+            Self::Column(_) => Some(RateMethod::Given),
+            Self::Choice(RateChoice::Method(_)) if roles.time.is_none() => {
+                bail!(
+                    "there is no time column to compute the rate from (name it with --time, or use --rate \
+                     none)"
+                )
+            }
+            Self::Choice(choice) => choice.method(model, roles.time.is_some()),
+        })
+    }
+
+    /// What options of a fit ask for, with these columns.
+    ///
+    /// # Errors
+    /// As [`RateOption::method`].
+    pub fn request(&self, chosen: &NamedOptions, roles: &Roles) -> Result<FitSpec> {
+        let is_decided = !matches!(self, Self::Choice(RateChoice::Auto | RateChoice::None));
+        Ok(chosen.request(self.method(roles, chosen.model())?, is_decided))
+    }
+}
+
+/// The columns of each role, by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Roles {
+    /// Tells the records apart.
+    pub record: Option<String>,
+    /// Time stamps.
+    pub time: Option<String>,
+    /// Inputs.
+    pub inputs: Vec<String>,
+    /// Given rate of the first input.
+    pub rate: Option<String>,
+    /// The output.
+    pub output: String,
+    /// What no option decided, in words; `None` if nothing.
+    pub guessed: Option<&'static str>,
+    /// Columns that have no role although no option says so, each with the reason.
+    pub set_aside: Vec<(String, &'static str)>,
+}
+
+impl Roles {
+    /// Finds the roles in a table from options and names.
+    pub fn detect(table: &Table, options: &ColumnChoice) -> Result<Self> {
+        table.require_columns()?;
+        let options = &with_full_names(options, table);
+        let rate = match &options.rate {
+            RateOption::Column(name) => Some(name.clone()),
+            _ => None,
+        };
+        let mut taken: HashMap<&str, &str> = HashMap::new();
+        let named = [
+            ("--record", &options.record),
+            ("--time", &options.time),
+            ("--rate", &rate),
+            ("--output", &options.output),
+        ];
+        let named = named.into_iter().filter_map(|(option, name)| name.as_ref().map(|name| (option, name)));
+        for (option, name) in named.chain(options.input.iter().map(|name| ("--input", name))) {
+            require(table, name, option)?;
+            if let Some(other) = taken.insert(name, option) {
+                return Err(Usage(format!(
+                    "column \"{}\" is named twice, by {other} and {option}",
+                    clipped(name)
+                ))
+                .into());
+            }
+        }
+        let mut free: Vec<&String> =
+            table.header.iter().filter(|name| !taken.contains_key(name.as_str())).collect();
+        let mut claim = |given: &Option<String>, suits: &dyn Fn(&str) -> bool| {
+            given.clone().or_else(|| {
+                let place = free.iter().position(|name| suits(name))?;
+                Some(free.remove(place).clone())
+            })
+        };
+        let record = claim(&options.record, &is_record);
+        let time = claim(&options.time, &unit::is_time);
+        let mut guess = Guess {
+            table,
+            records: rows_of_records(table, record.as_deref()),
+            free,
+            time,
+            output: options.output.clone(),
+            has_inputs: !options.input.is_empty(),
+            set_aside: Vec::new(),
+        };
+        guess.complete()?;
+        let Guess { free, time, output, set_aside, .. } = guess;
+        let inputs: Vec<String> = if options.input.is_empty() {
+            free.into_iter().cloned().collect()
+        } else {
+            options.input.clone()
+        };
+        let guessed = match (options.input.is_empty(), options.output.is_none()) {
+            (true, true) => Some("input and output, from names and values (change: --input, --output)"),
+            (true, false) => Some("input, from names and values (change: --input)"),
+            (false, true) => Some("output, the last column (change: --output)"),
+            (false, false) => None,
+        };
+        match output {
+            Some(output) if !inputs.is_empty() => {
+                Ok(Self { record, time, inputs, rate, output, guessed, set_aside })
+            }
+            output => bail!(
+                "{}: no column is left for the input besides output \"{}\" (columns: {})",
+                table.file,
+                clipped(&output.unwrap_or_default()),
+                listed(&table.header)
+            ),
+        }
+    }
+
+    /// Finds the columns that a model needs, by the names it was trained on or those of options.
+    /// `scored` tells if the output is needed too.
+    pub fn of_model(model: &Model, table: &Head, options: &ColumnChoice, scored: bool) -> Result<Self> {
+        Self::of_inputs(model, &model.names().inputs, model.needs_time(), table, options, scored)
+    }
+
+    /// The same with a column of time if the table has one, for a model that needs none.
+    pub fn with_time(self, table: &Head, options: &ColumnChoice) -> Result<Self> {
+        let time = match (&self.time, &options.time) {
+            (Some(_), _) => return Ok(self),
+            (None, Some(name)) => require(table, name, "--time").map(|()| Some(full_name(table, name)))?,
+            (None, None) => table.header.iter().find(|name| unit::is_time(name)).cloned(),
+        };
+        let is_used = |name: &String| self.inputs.contains(name) || *name == self.output;
+        Ok(Self { time: time.filter(|name| !is_used(name)), ..self })
+    }
+
+    /// Finds the columns that the inverse of a model needs: the wanted output, and all inputs but the first.
+    pub fn of_inverse(model: &Model, needs_time: bool, table: &Head, options: &ColumnChoice) -> Result<Self> {
+        Self::of_inputs(model, &model.names().inputs[1..], needs_time, table, options, true)
+    }
+
+    fn of_inputs(
+        model: &Model,
+        needed: &[String],
+        needs_time: bool,
+        table: &Head,
+        options: &ColumnChoice,
+        scored: bool,
+    ) -> Result<Self> {
+        let names = model.names();
+        let find = |given: &Option<String>, trained: &str, what: &str, option: &str| match given {
+            Some(name) => require(table, name, option).map(|()| full_name(table, name)),
+            None if table.column(trained).is_some() => Ok(full_name(table, trained)),
+            None if let Some(name) = in_another_unit(table, trained) => Ok(name.clone()),
+            None => {
+                table.require_columns()?;
+                bail!(
+                    "{}: there is no column \"{}\", the model's {what} (columns: {}; name another with {option})",
+                    table.file,
+                    clipped(trained),
+                    listed(&table.header)
+                )
+            }
+        };
+        let given_rate = rate_of_model(model, options)?;
+        let inputs: Vec<String> = if options.input.is_empty() {
+            let find = |name: &String| find(&None, name, "input", "--input");
+            needed.iter().map(find).collect::<Result<_>>()?
+        } else {
+            let (expected, found) = (needed.len(), options.input.len());
+            if expected != found {
+                if expected == 0 {
+                    let advice = "leave --input away: the drive is named after the model's input";
+                    return Err(Usage(format!("the model has no further inputs; {advice}")).into());
+                }
+                let what = if expected < names.inputs.len() { "further inputs" } else { "inputs" };
+                let inputs = listed(needed);
+                return Err(Usage(format!(
+                    "--input names {found} columns, but the model's {what} are {expected}: {inputs}"
+                ))
+                .into());
+            }
+            options
+                .input
+                .iter()
+                .map(|name| require(table, name, "--input").map(|()| full_name(table, name)))
+                .collect::<Result<_>>()?
+        };
+        let time = match (needs_time, &names.time) {
+            (false, _) => None,
+            (true, Some(trained)) => Some(find(&options.time, trained, "time", "--time")?),
+            (true, None) if options.time.is_some() => Some(find(&options.time, "t", "time", "--time")?),
+            // Trained without time: a slew limit or a preview needs it.
+            (true, None) => match table.header.iter().find(|name| unit::is_time(name)) {
+                Some(name) => Some(name.clone()),
+                None => bail!(
+                    "{}: there is no column of time, which the rate, a slew limit or a preview needs (columns: {}; name one with \
+                     --time)",
+                    table.file,
+                    listed(&table.header)
+                ),
+            },
+        };
+        // The inverse forms the rate from the inputs that it finds.
+        let is_inverse = needed.len() < names.inputs.len();
+        let rate = match &names.rate {
+            Some(trained) if model.rate() == Some(RateMethod::Given) && !is_inverse => {
+                Some(find(&given_rate, trained, "rate", "--rate")?)
+            }
+            _ => None,
+        };
+        let output = match scored {
+            true => find(&options.output, &names.output, "output", "--output")?,
+            false => options.output.clone().unwrap_or_else(|| names.output.clone()),
+        };
+        let used =
+            |name: &str| inputs.iter().chain(&time).chain(&rate).any(|used| used == name) || output == name;
+        let record = match &options.record {
+            Some(name) => require(table, name, "--record").map(|()| Some(full_name(table, name)))?,
+            None => table.header.iter().find(|name| is_record(name) && !used(name)).cloned(),
+        };
+        Ok(Self { record, time, inputs, rate, output, guessed: None, set_aside: Vec::new() })
+    }
+
+    /// The names as the library keeps them.
+    pub fn names(&self) -> ColumnNames {
+        ColumnNames {
+            time: self.time.clone(),
+            inputs: self.inputs.clone(),
+            rate: self.rate.clone(),
+            output: self.output.clone(),
+        }
+    }
+
+    /// Refuses a further table that lacks a column of the first.
+    pub fn check_against(&self, table: &Head, first: &Head) -> Result<()> {
+        let all = self.record.iter().chain(&self.time).chain(&self.inputs).chain(&self.rate);
+        for name in all.chain([&self.output]) {
+            ensure!(
+                table.column(name).is_some(),
+                "{}: there is no column \"{}\", as in {} (columns: {})",
+                table.file,
+                clipped(name),
+                first.file,
+                listed(&table.header)
+            );
+        }
+        Ok(())
+    }
+}
+
+/// Rows of each record of a table, where its name changes.
+fn rows_of_records(table: &Table, record: Option<&str>) -> Vec<Range<usize>> {
+    let Some(place) = record.and_then(|name| table.column(name)) else {
+        return std::iter::once(0..table.rows()).collect();
+    };
+    let name = |row: usize| table.cell(row, place).trim();
+    let begins = (1..table.rows()).filter(|&row| name(row) != name(row - 1));
+    let begins: Vec<usize> = std::iter::once(0).chain(begins).chain([table.rows()]).collect();
+    begins.windows(2).map(|pair| pair[0]..pair[1]).collect()
+}
+
+/// The name of a column with the unit that the file gives elsewhere.
+fn full_name(table: &Head, name: &str) -> String {
+    table.full_name(name).unwrap_or(name).to_string()
+}
+
+fn with_full_names(options: &ColumnChoice, table: &Head) -> ColumnChoice {
+    let full = |name: &Option<String>| name.as_ref().map(|name| full_name(table, name));
+    ColumnChoice {
+        record: full(&options.record),
+        time: full(&options.time),
+        input: options.input.iter().map(|name| full_name(table, name)).collect(),
+        output: full(&options.output),
+        rate: match &options.rate {
+            RateOption::Column(name) => RateOption::Column(full_name(table, name)),
+            other => other.clone(),
+        },
+    }
+}
+
+fn require(table: &Head, name: &str, option: &str) -> Result<()> {
+    ensure!(
+        table.column(name).is_some(),
+        "{}: there is no column \"{}\" for {option} (columns: {})",
+        table.file,
+        clipped(name),
+        listed(&table.header)
+    );
+    Ok(())
+}
+
+/// The one column of the same quantity in another unit that can be converted, such as `x_m` for `x_mm`.
+fn in_another_unit<'t>(table: &'t Head, trained: &str) -> Option<&'t String> {
+    let suits = |name: &&String| {
+        unit::split(name).0 == unit::split(trained).0
+            && unit::of_column(name).is_some()
+            && matches!(Conversion::between(name, trained), Conversion::Factor(_) | Conversion::Same)
+    };
+    let mut suitable = table.header.iter().filter(suits);
+    suitable.next().filter(|_| suitable.next().is_none())
+}
+
+/// The column that `--rate` names for a model with a given rate; a model's method cannot be changed.
+fn rate_of_model(model: &Model, options: &ColumnChoice) -> Result<Option<String>> {
+    match (&options.rate, model.rate()) {
+        (RateOption::Choice(RateChoice::Auto), _) | (RateOption::Choice(RateChoice::None), None) => Ok(None),
+        (RateOption::Column(name), Some(RateMethod::Given)) => Ok(Some(name.clone())),
+        (RateOption::Choice(RateChoice::Method(asked)), Some(trained)) if *asked == trained => Ok(None),
+        _ => {
+            Err(Usage("the rate is part of the model and cannot be changed here: leave out --rate".into())
+                .into())
+        }
+    }
+}

@@ -1,0 +1,497 @@
+//! From tables to the library's data set, and from the library's errors back to file, line and
+//! column.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
+use hysid_core::data::record::{ColumnNames, Dataset, Record};
+use hysid_core::error::{Channel, DataError, DataProblem};
+use hysid_core::model::Model;
+
+use hysid_tables::{CellReader, ColumnReader, Head, Origin, Reading, Table, spread_equal, starts_again};
+
+use crate::columns::{ColumnChoice, Roles};
+use crate::record_names::RecordNames;
+use crate::units::Factors;
+use crate::usage::Usage;
+use hysid_document::shell::shown;
+use hysid_document::visible::{clipped, listed};
+
+/// Measured data and the tables they come from.
+pub struct Data {
+    /// The data as the library takes them.
+    pub set: Dataset,
+    /// What the columns are.
+    pub roles: Roles,
+    /// Where each record stands.
+    pub source: Source,
+    /// What was changed on the way, in words.
+    pub warnings: Vec<String>,
+}
+
+/// The tables, and which record is where.
+pub struct Source {
+    /// The tables, in the order of the command line.
+    pub tables: Vec<Origin>,
+    places: Vec<Place>,
+}
+
+/// Where a record stands.
+pub struct Place {
+    /// Name of the record.
+    pub record: String,
+    table: usize,
+    /// Its rows in the table.
+    pub rows: Range<usize>,
+}
+
+impl Data {
+    /// The data in tables whose roles a choice and the names tell. `zero` is as in [`Data::new`].
+    ///
+    /// # Errors
+    /// Tables whose columns or numbers cannot be used.
+    pub fn of_tables(tables: Vec<Table>, columns: &ColumnChoice, zero: Option<usize>) -> Result<Self> {
+        let roles = Roles::detect(&tables[0], columns)?;
+        Self::new(tables, roles, zero)
+    }
+
+    /// Takes records from tables. `zero` is over how many rows at the beginning of each record the first input and the
+    /// output are to be zero in the mean.
+    ///
+    /// # Errors
+    /// Tables whose columns or numbers cannot be used.
+    pub fn new(tables: Vec<Table>, roles: Roles, zero: Option<usize>) -> Result<Self> {
+        let names = roles.names();
+        Self::converted(tables, roles, names, None, zero)
+    }
+
+    fn converted(
+        tables: Vec<Table>,
+        roles: Roles,
+        names: ColumnNames,
+        factors: Option<&Factors>,
+        zero: Option<usize>,
+    ) -> Result<Self> {
+        for table in &tables[1..] {
+            roles.check_against(table, &tables[0])?;
+        }
+        let stems = stems(&tables);
+        let mut source = Source { places: Vec::new(), tables: Vec::new() };
+        let mut of_tables = Vec::new();
+        for (index, (table, stem)) in tables.into_iter().zip(&stems).enumerate() {
+            let first = source.places.len();
+            let mut columns = Columns::read(&table, &roles)?;
+            factors.iter().for_each(|factors| columns.convert(factors));
+            let naming = Naming { table: index, stem, has_others: stems.len() > 1 };
+            source.places.extend(places(&table, &roles, &naming, columns.time.as_deref())?);
+            of_tables.push((columns, first..source.places.len()));
+            source.tables.push(table.into_origin());
+        }
+        let (mut records, mut warnings) = (Vec::new(), Vec::new());
+        for (mut columns, places) in of_tables {
+            let places = &source.places[places];
+            warnings.extend(columns.spread_equal_stamps(places, &source));
+            zero.iter().for_each(|&rows| columns.remove_offsets(places, rows));
+            for place in places {
+                records.push(columns.record(place).map_err(|error| source.explain(error, &roles))?);
+            }
+        }
+        let set = Dataset::new(names, records).map_err(|error| source.explain(error, &roles))?;
+        Ok(Self { set, roles, source, warnings })
+    }
+
+    /// Takes records from tables for a model: its columns, in its units. `zero` is as in [`Data::new`].
+    ///
+    /// # Errors
+    /// As [`Roles::of_model`], [`Factors::of`] and [`Data::new`].
+    pub fn of_model(
+        tables: Vec<Table>,
+        model: &Model,
+        columns: &ColumnChoice,
+        zero: Option<usize>,
+    ) -> Result<Self> {
+        let roles = Roles::of_model(model, &tables[0], columns, true)?;
+        let factors = Factors::of(model, &roles, &tables[0].file, true, false)?;
+        let names = factors.names(model, &roles);
+        let data = Self::converted(tables, roles, names, Some(&factors), zero)?;
+        let warnings = data.warnings.into_iter().chain(factors.conversions).collect();
+        Ok(Self { warnings, ..data })
+    }
+
+    /// A warning of inputs after the first, which something does not use; `None` if there are none. `what` is what it does
+    /// with the output, `used` what it does with inputs.
+    pub fn unused_inputs(&self, what: &str, used: &str) -> Option<String> {
+        let [first, further @ ..] = self.roles.inputs.as_slice() else { return None };
+        (!further.is_empty()).then(|| {
+            format!(
+                "{what} {} over {}; {} {} not {used} (choose with --input)",
+                clipped(&self.roles.output),
+                clipped(first),
+                listed(further),
+                if further.len() == 1 { "is" } else { "are" },
+            )
+        })
+    }
+
+    /// The data with the first input and the output exchanged. A rate that a column gives is that of the input.
+    pub fn exchanged(mut self) -> Result<Self> {
+        if self.roles.rate.is_some() {
+            return Err(Usage(
+                "--inverse: the rate would be that of the output: use a method, not a column".into(),
+            )
+            .into());
+        }
+        let exchanged = self.set.exchanged().map_err(|error| self.explain(error))?;
+        for (place, record) in self.source.places.iter_mut().zip(self.set.records()) {
+            // Rows without output at the ends are gone.
+            let rows = record.measured_rows().unwrap_or_default();
+            place.rows = place.rows.start + rows.start..place.rows.start + rows.end;
+        }
+        self.set = exchanged;
+        std::mem::swap(&mut self.roles.inputs[0], &mut self.roles.output);
+        Ok(self)
+    }
+
+    /// Puts an error of the library in the user's words: file, line, column.
+    pub fn explain(&self, error: hysid_core::Error) -> anyhow::Error {
+        self.source.explain(error, &self.roles)
+    }
+}
+
+impl Source {
+    fn explain(&self, error: hysid_core::Error, roles: &Roles) -> anyhow::Error {
+        let error = match error {
+            hysid_core::Error::Data(error) => error,
+            other => return of_options(other),
+        };
+        let Some(place) = self.places.iter().find(|place| place.record == error.record) else {
+            return error.into();
+        };
+        let table = &self.tables[place.table];
+        let line = error.row.map(|row| table.lines[place.rows.start + row]);
+        match self.tables.len() {
+            n if n > 1 && line.is_none() && concerns_all(&error) => {
+                let files = format!("{} and {} more", self.tables[0].file, n - 1);
+                explained(&files, None, error.into(), roles)
+            }
+            _ => explained(&table.file, line, error.into(), roles),
+        }
+    }
+}
+
+/// An error of the library in the user's words: file, line, column.
+pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles: &Roles) -> anyhow::Error {
+    let error = match error {
+        hysid_core::Error::Data(error) => error,
+        other => return of_options(other),
+    };
+    let column = error.channel.and_then(|channel| column(channel, roles));
+    match (&error.problem, line, column) {
+        (problem, Some(line), Some(column)) => {
+            anyhow!("{file}, line {line}, column \"{}\": {problem}", clipped(column))
+        }
+        (DataProblem::TooFewRows { found: 1, needed }, ..) => {
+            anyhow!("{file}: only 1 row has an output: at least {needed} are needed")
+        }
+        (DataProblem::TooFewRows { found, needed }, ..) => {
+            anyhow!("{file}: only {found} rows have an output: at least {needed} are needed")
+        }
+        (problem @ DataProblem::TooFewForTests { .. }, ..) => anyhow!("{file}: {problem}"),
+        (
+            DataProblem::ConstantInput(_) | DataProblem::ConstantOutput(_) | DataProblem::NothingToScore,
+            _,
+            Some(column),
+        ) => {
+            anyhow!("{file}: column \"{}\" {}", clipped(column), error.problem)
+        }
+        (problem, ..) => anyhow!("{file}: {problem}{}", advice(problem)),
+    }
+}
+
+/// An error that is about no row: a wrong use of the command line, or another.
+fn of_options(error: hysid_core::Error) -> anyhow::Error {
+    match error {
+        hysid_core::Error::SeveralInputs { .. } => Usage(format!("{error} with --input")).into(),
+        hysid_core::Error::RateNeeded(_) => Usage(format!("{error} (name a time column with --time)")).into(),
+        hysid_core::Error::Option(_)
+        | hysid_core::Error::Parts(_)
+        | hysid_core::Error::UnknownName { .. }
+        | hysid_core::Error::Probability { .. } => Usage(error.to_string()).into(),
+        other => other.into(),
+    }
+}
+
+/// What helps on the command line.
+fn advice(problem: &DataProblem) -> &'static str {
+    match problem {
+        DataProblem::NoTime => " (name one with --time, or use --rate none)",
+        DataProblem::NoTimeForModel => " (name it with --time)",
+        _ => "",
+    }
+}
+
+/// True for problems of the data set as a whole, which the library reports with its first record.
+fn concerns_all(error: &DataError) -> bool {
+    matches!(
+        error.problem,
+        DataProblem::ConstantInput(_)
+            | DataProblem::ConstantOutput(_)
+            | DataProblem::NothingToScore
+            | DataProblem::TooFewRows { .. }
+    )
+}
+
+fn column(channel: Channel, roles: &Roles) -> Option<&str> {
+    match channel {
+        Channel::Time => roles.time.as_deref(),
+        Channel::Input(index) => roles.inputs.get(index).map(String::as_str),
+        Channel::Rate => roles.rate.as_deref(),
+        Channel::Output => Some(&roles.output),
+    }
+}
+
+/// The data in a table of this text, its columns told by their names: the way of every file that is read.
+///
+/// # Errors
+/// As for a file: one line that says what is wrong and where.
+pub fn data_of_text(text: &[u8]) -> Result<Dataset> {
+    let table = Table::from_bytes(Path::new("text"), text.to_vec(), &Reading::default())?;
+    Ok(Data::of_tables(vec![table], &ColumnChoice::default(), None)?.set)
+}
+
+/// A name for each table: its file's stem, the whole path where two stems are the same, and a number behind it where a
+/// file is given twice.
+fn stems(tables: &[Table]) -> Vec<String> {
+    let stem = |table: &Table| {
+        let path = Path::new(&table.file);
+        path.file_stem().map_or_else(|| table.file.clone(), |stem| stem.to_string_lossy().into_owned())
+    };
+    let all: Vec<String> = tables.iter().map(stem).collect();
+    let mut count: HashMap<&str, usize> = HashMap::new();
+    all.iter().for_each(|stem| *count.entry(stem).or_default() += 1);
+    let name = |(stem, table): (&String, &Table)| {
+        if count[stem.as_str()] == 1 { stem.clone() } else { table.file.clone() }
+    };
+    let mut given: HashMap<String, usize> = HashMap::new();
+    let numbered = |name: String| {
+        let count = given.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 { name } else { format!("{name} ({count})") }
+    };
+    all.iter().zip(tables).map(name).map(numbered).collect()
+}
+
+/// The records of one table, by its time stamps if it has any.
+pub fn places_of(table: &Table, roles: &Roles, time: Option<&[f64]>) -> Result<Vec<Place>> {
+    let stems = stems(std::slice::from_ref(table));
+    places(table, roles, &Naming { table: 0, stem: &stems[0], has_others: false }, time)
+}
+
+/// What the records of a table are named after.
+struct Naming<'n> {
+    /// Place of the table among all.
+    table: usize,
+    stem: &'n str,
+    /// There are other tables.
+    has_others: bool,
+}
+
+/// The records of a table: runs of rows with the same name in the record column; without such a column, a record begins
+/// where time starts again.
+fn places(table: &Table, roles: &Roles, naming: &Naming<'_>, time: Option<&[f64]>) -> Result<Vec<Place>> {
+    let Some(column) = &roles.record else {
+        let ends = ends_by_time(time.unwrap_or_default(), table.rows());
+        let name = |number: usize| match ends.len() {
+            1 => naming.stem.to_string(),
+            _ => format!("{} ({})", naming.stem, number + 1),
+        };
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let rows = starts.zip(&ends).map(|(start, &end)| start..end);
+        let place = |(number, rows)| Place { record: name(number), table: naming.table, rows };
+        return Ok(rows.enumerate().map(place).collect());
+    };
+    let cell = place_of(table, column)?;
+    let mut places: Vec<Place> = Vec::new();
+    let mut names = RecordNames::default();
+    for row in 0..table.rows() {
+        let at = || format!("{}, line {}, column \"{}\"", table.file, table.lines[row], clipped(column));
+        let name = table.cell(row, cell);
+        if !names.begins(name, at)? {
+            places.last_mut().expect("a record has begun").rows.end = row + 1;
+            continue;
+        }
+        let name = name.trim();
+        let record = if naming.has_others { format!("{}/{name}", naming.stem) } else { name.to_string() };
+        places.push(Place { record, table: naming.table, rows: row..row + 1 });
+    }
+    Ok(places)
+}
+
+/// Where records end that time tells apart.
+fn ends_by_time(time: &[f64], rows: usize) -> Vec<usize> {
+    let mut first = 0;
+    let mut ends = Vec::new();
+    for row in 1..time.len() {
+        if starts_again(time[first], time[row - 1], time[row]) {
+            ends.push(row);
+            first = row;
+        }
+    }
+    ends.push(rows);
+    ends
+}
+
+/// Place of a column.
+pub fn place_of(table: &Head, name: &str) -> Result<usize> {
+    table.column(name).ok_or_else(|| anyhow!("{}: there is no column \"{}\"", table.file, clipped(name)))
+}
+
+/// The numbers of a table, column by column.
+struct Columns {
+    time: Option<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+    rate: Option<Vec<f64>>,
+    output: Vec<f64>,
+}
+
+impl Columns {
+    fn read(table: &Table, roles: &Roles) -> Result<Self> {
+        let mut cells = CellReader::new(table.numbers());
+        let mut read = |name: &String, kind: Kind| column_of(table, name, kind, &mut cells);
+        let time = roles.time.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
+        let inputs = roles.inputs.iter().map(|name| read(name, Kind::Given)).collect::<Result<_>>()?;
+        let rate = roles.rate.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
+        let output = read(&roles.output, Kind::Output)?;
+        Ok(Self { time, inputs, rate, output })
+    }
+
+    /// Multiplies each column by its factor.
+    fn convert(&mut self, factors: &Factors) {
+        let convert = |column: &mut Vec<f64>, factor: Option<f64>| {
+            let Some(factor) = factor else { return };
+            column.iter_mut().for_each(|value| *value *= factor);
+        };
+        self.time.iter_mut().for_each(|time| convert(time, factors.time));
+        self.inputs.iter_mut().zip(&factors.inputs).for_each(|(input, factor)| convert(input, *factor));
+        self.rate.iter_mut().for_each(|rate| convert(rate, factors.rate));
+        convert(&mut self.output, factors.output);
+    }
+
+    /// Spreads equal time stamps; tells if there were any.
+    fn spread_equal_stamps(&mut self, places: &[Place], source: &Source) -> Option<String> {
+        let time = self.time.as_mut()?;
+        let spread: usize =
+            places.iter().map(|place| spread_equal(&mut time[place.rows.clone()], None, &mut None)).sum();
+        (spread > 0).then(|| equal_stamps(&source.tables[places[0].table].file, spread))
+    }
+
+    /// Subtracts from the first input and from the output their means over the first rows of each record.
+    fn remove_offsets(&mut self, places: &[Place], rows: usize) {
+        for place in places {
+            for column in [&mut self.inputs[0], &mut self.output] {
+                remove_offset(&mut column[place.rows.clone()], rows);
+            }
+        }
+    }
+
+    fn record(&self, place: &Place) -> hysid_core::Result<Record> {
+        let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
+        let inputs = self.inputs.iter().map(cut).collect();
+        let mut record = Record::new(place.record.clone(), inputs, cut(&self.output))?;
+        if let Some(time) = &self.time {
+            record = record.with_time(cut(time))?;
+        }
+        if let Some(rate) = &self.rate {
+            record = record.with_given_rate(cut(rate))?;
+        }
+        Ok(record)
+    }
+}
+
+/// What the numbers of a column are, which decides about blank cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Time, an input or its rate.
+    Given,
+    /// A measured output, which may be blank.
+    Output,
+    /// A wanted output.
+    Wanted,
+}
+
+/// The numbers of a column; a blank output is NaN.
+pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) -> Result<Vec<f64>> {
+    let place = place_of(table, name)?;
+    let at = |line: u64, problem: &str| {
+        anyhow!("{}, line {line}, column \"{}\": {problem}", table.file, clipped(name))
+    };
+    let mut column = ColumnReader::new(table, place);
+    let mut numbers = Vec::with_capacity(table.rows());
+    for (row, &line) in table.lines.iter().enumerate() {
+        let number = column.number(table, cells, table.cell(row, place), line);
+        numbers.push(
+            checked(number, table.cell(row, place), kind, row == 0).map_err(|problem| at(line, &problem))?,
+        );
+    }
+    column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
+}
+
+/// The number of a cell, NaN for a missing output; or what is wrong with it and what helps.
+pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bool) -> Result<f64, String> {
+    match number {
+        Ok(number) if number.is_nan() => match kind {
+            Kind::Output => Ok(f64::NAN),
+            Kind::Given => {
+                Err(format!("{} (only the output may be blank; choose rows with --rows)", missing(cell)))
+            }
+            Kind::Wanted => Err(format!("{} (every row needs a wanted output)", missing(cell))),
+        },
+        Ok(number) => Ok(number),
+        Err(problem) => {
+            let hint = match (kind, problem.ends_with("number")) {
+                (Kind::Output, true) if cell.trim().len() <= LONGEST_WORD => {
+                    let cell = cell.trim();
+                    format!(" (if it stands for a missing value: --missing {})", shown(Path::new(cell)))
+                }
+                (Kind::Given, true) if is_first => " (not an input? name the inputs with --input)".into(),
+                _ => String::new(),
+            };
+            Err(problem + &hint)
+        }
+    }
+}
+
+/// Longest word that may stand for a missing value.
+const LONGEST_WORD: usize = 20;
+
+fn missing(cell: &str) -> String {
+    match cell.trim() {
+        "" => "the cell is empty".into(),
+        cell => format!("\"{}\" is a missing value", clipped(cell)),
+    }
+}
+
+/// Says that equal time stamps were spread.
+pub fn equal_stamps(file: &str, rows: usize) -> String {
+    let rows = if rows == 1 { "1 row has".to_string() } else { format!("{rows} rows have") };
+    format!(
+        "{file}: {rows} the time stamp of the row before: equal time stamps were spread evenly up to the next one"
+    )
+}
+
+/// Subtracts from a record's values their mean over the first rows; those that are missing do not count.
+fn remove_offset(values: &mut [f64], rows: usize) {
+    let offset = offset_of(values, rows);
+    values.iter_mut().for_each(|value| *value -= offset);
+}
+
+/// The mean over the first rows, 0 if all are missing.
+pub fn offset_of(values: &[f64], rows: usize) -> f64 {
+    let first = || values.iter().take(rows).filter(|value| value.is_finite());
+    match first().count() {
+        0 => 0.0,
+        count => first().sum::<f64>() / count as f64,
+    }
+}

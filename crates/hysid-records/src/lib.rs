@@ -1,0 +1,26 @@
+//! From tables to data: which column is what, where records begin, which units columns have, and what the tables
+//! were understood as. Errors name file, line and column, and the option that helps, by its name on the command line.
+
+mod columns;
+mod csv_text;
+mod data;
+mod looked;
+mod reading;
+mod record_names;
+pub mod understanding;
+mod units;
+mod usage;
+mod warnings;
+
+pub use columns::{ColumnChoice, RateOption, Roles};
+pub use csv_text::{csv_text, header_line};
+pub use data::{
+    Data, Kind, Place, Source, checked, column_of, data_of_text, equal_stamps, explained, offset_of,
+    place_of, places_of,
+};
+pub use looked::{Column, Looked};
+pub use reading::{MOST_ROWS_OF_ZERO, READING_OPTIONS, ReadingChoice, ReadingOption, ReadingValues};
+pub use record_names::RecordNames;
+pub use units::Factors;
+pub use usage::Usage;
+pub use warnings::summarised;

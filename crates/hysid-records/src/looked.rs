@@ -1,0 +1,170 @@
+//! A table as it is read: how its file is stored, and what each column is.
+
+use hysid_core::data::unit;
+use hysid_core::significant::Significant;
+use hysid_document::plain::aligned;
+use hysid_tables::{CellReader, ColumnReader, DecimalSign, Table};
+use serde::Serialize;
+
+use crate::columns::Roles;
+use crate::understanding::labelled;
+use hysid_document::visible::clipped;
+
+/// Columns that are shown of many.
+const MOST_COLUMNS: usize = 40;
+
+/// A table as it is read.
+#[derive(Debug, Serialize)]
+pub struct Looked {
+    file: String,
+    stored: String,
+    delimiter: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decimal: Option<&'static str>,
+    lines_before: usize,
+    header_lines: Vec<u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    units_line: Option<u64>,
+    rows: usize,
+    first_line: u64,
+    last_line: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    left_out: Option<String>,
+    #[serde(skip)]
+    read_as: String,
+    columns: Vec<Column>,
+}
+
+/// A column as it is read.
+#[derive(Debug, Serialize)]
+pub struct Column {
+    /// Its name, with its unit.
+    pub name: String,
+    /// `time`, `input`, `output`, `rate`, `record`, `unused`; none if the roles are unclear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    role: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    minimum: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    maximum: Option<f64>,
+    missing: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    note: Option<String>,
+}
+
+impl Looked {
+    /// Of a table whose columns have these roles, if they are known.
+    pub fn of(table: &Table, roles: Option<&Roles>) -> Self {
+        let layout = &table.layout;
+        Self {
+            file: table.file.clone(),
+            stored: table.stored.clone(),
+            delimiter: layout.delimiter.name(),
+            decimal: layout.numbers.decimal.map(|sign| match sign {
+                DecimalSign::Point => "point",
+                DecimalSign::Comma => "comma",
+            }),
+            lines_before: layout.preamble,
+            header_lines: layout.header_lines.clone(),
+            units_line: layout.units_line,
+            rows: table.rows(),
+            first_line: table.lines.first().copied().unwrap_or_default(),
+            last_line: table.lines.last().copied().unwrap_or_default(),
+            left_out: table.left_out.described(),
+            read_as: table.described(),
+            columns: (0..table.header.len()).map(|place| Column::of(table, place, roles)).collect(),
+        }
+    }
+
+    /// The table in words, within 80 columns where the names allow.
+    pub fn text(&self) -> String {
+        let mut text = labelled("file", &clipped(&self.file)) + &labelled("read as", &self.read_as);
+        text +=
+            &labelled("rows", &format!("{}, in lines {} to {}", self.rows, self.first_line, self.last_line));
+        text += &self.left_out.iter().map(|lines| labelled("left out", lines)).collect::<String>();
+        let mut rows =
+            vec![["column", "role", "unit", "smallest", "largest", "missing", ""].map(String::from).to_vec()];
+        rows.extend(self.columns.iter().take(MOST_COLUMNS).map(Column::cells));
+        text += "\n";
+        for line in aligned(&rows) {
+            text += line.trim_end();
+            text += "\n";
+        }
+        if let Some(more) = self.columns.len().checked_sub(MOST_COLUMNS).filter(|&more| more > 0) {
+            text += &format!("and {more} more columns\n");
+        }
+        text
+    }
+}
+
+impl Column {
+    fn of(table: &Table, place: usize, roles: Option<&Roles>) -> Self {
+        let name = table.header[place].clone();
+        let mut cells = CellReader::new(table.numbers());
+        let mut reader = ColumnReader::new(table, place);
+        let mut column = Self {
+            role: roles.map(|roles| role(roles, &name)),
+            unit: unit::of_column(&name),
+            minimum: None,
+            maximum: None,
+            missing: 0,
+            note: roles.and_then(|roles| reason(roles, &name)),
+            name,
+        };
+        let mut others = 0;
+        for (row, &line) in table.lines.iter().enumerate() {
+            match reader.number(table, &mut cells, table.cell(row, place), line) {
+                Ok(number) if number.is_nan() => column.missing += 1,
+                Ok(number) => {
+                    column.minimum = Some(column.minimum.map_or(number, |least| least.min(number)));
+                    column.maximum = Some(column.maximum.map_or(number, |most| most.max(number)));
+                }
+                Err(_) => others += 1,
+            }
+        }
+        if others > 0 && column.note.is_none() {
+            column.note = Some(match others == table.rows() - column.missing {
+                true => "text".into(),
+                false if others == 1 => "1 cell is not a number".into(),
+                false => format!("{others} cells are not numbers"),
+            });
+        }
+        if reader.has_stamps() {
+            column.note.get_or_insert_with(|| "from its first stamp".into());
+        }
+        column
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let number =
+            |value: Option<f64>| value.map_or(String::new(), |value| format!("{:.4}", Significant(value)));
+        vec![
+            clipped(&self.name).into_owned(),
+            self.role.unwrap_or("?").into(),
+            self.unit.as_deref().map(clipped).unwrap_or_default().into_owned(),
+            number(self.minimum),
+            number(self.maximum),
+            self.missing.to_string(),
+            self.note.clone().unwrap_or_default(),
+        ]
+    }
+}
+
+fn role(roles: &Roles, name: &String) -> &'static str {
+    match name {
+        _ if roles.record.as_ref() == Some(name) => "record",
+        _ if roles.time.as_ref() == Some(name) => "time",
+        _ if roles.rate.as_ref() == Some(name) => "rate",
+        _ if roles.inputs.contains(name) => "input",
+        _ if roles.output == *name => "output",
+        _ => "unused",
+    }
+}
+
+/// Why a column has no role.
+fn reason(roles: &Roles, name: &String) -> Option<String> {
+    let (_, reason) = roles.set_aside.iter().find(|(other, _)| other == name)?;
+    Some((*reason).to_string())
+}

@@ -1,0 +1,186 @@
+//! What the program understood of the data, said before the work begins.
+
+use hysid_core::data::rate::RateMethod;
+use hysid_core::data::summary::Summary;
+use hysid_core::network::Architecture;
+use hysid_core::options::FitSpec;
+use hysid_core::options::auto::AutoOptions;
+use hysid_core::significant::Significant;
+
+use crate::data::Data;
+use hysid_core::data::unit;
+use hysid_document::plain::{WIDTH, wrapped};
+use hysid_document::visible::{clipped, listed, listed_paths};
+use hysid_tables::Origin;
+
+/// Room for a label and the blank behind it.
+const LABEL: usize = 9;
+
+/// Inputs that are said one by one.
+const MOST_INPUTS: usize = 20;
+
+/// What was understood of data and request, label and text, line by line.
+pub fn understanding(
+    data: &Data,
+    summary: &Summary,
+    request: &FitSpec,
+    model: &str,
+) -> Vec<(String, String)> {
+    let used = request.rate().filter(|_| request.model().uses_rate());
+    let rate = rate(&data.roles.inputs[0], data.roles.rate.as_deref(), used);
+    let model = format!("{}{model}", request.model().name());
+    let mut lines = of_data(data, summary);
+    lines.extend([("rate".to_string(), rate), ("model".to_string(), model)]);
+    lines
+}
+
+/// What was understood of the data.
+pub fn of_data(data: &Data, summary: &Summary) -> Vec<(String, String)> {
+    let mut lines: Vec<(String, String)> = Vec::new();
+    let mut say = |label: &str, text: String| lines.push((label.to_string(), text));
+    let files: Vec<&str> = data.source.tables.iter().map(|table| table.file.as_str()).collect();
+    say(if files.len() == 1 { "file" } else { "files" }, listed_paths(&files));
+    for (text, count) in as_read(&data.source.tables) {
+        let others =
+            if count < files.len() { format!(" ({count} of {} files)", files.len()) } else { String::new() };
+        say("read as", text + &others);
+    }
+    for table in &data.source.tables {
+        if let Some(text) = table.left_out.described() {
+            let file = if files.len() == 1 { String::new() } else { format!("{}: ", clipped(&table.file)) };
+            say("left out", file + &text);
+        }
+    }
+    say("samples", samples(summary));
+    if let Some(time) = &data.roles.time {
+        say(
+            "time",
+            format!(
+                "{}: {}",
+                clipped(time),
+                time_steps(summary, &unit::suffix(unit::of_column(time).as_deref()))
+            ),
+        );
+    }
+    let inputs: Vec<(&String, &(f64, f64))> = data.roles.inputs.iter().zip(&summary.inputs).collect();
+    for (name, range) in inputs.iter().take(MOST_INPUTS) {
+        say("input", ranged(name, **range));
+    }
+    if let Some(more) = inputs.len().checked_sub(MOST_INPUTS).filter(|&more| more > 0) {
+        say("", format!("and {more} more"));
+    }
+    let missing = match summary.rows - summary.scored {
+        0 => String::new(),
+        missing => format!(", missing in {missing} rows"),
+    };
+    say("output", ranged(&data.roles.output, summary.output) + &missing);
+    for (name, reason) in data.roles.set_aside.iter().take(MOST_INPUTS) {
+        say("ignored", format!("{}: {reason}", clipped(name)));
+    }
+    if let Some(guessed) = data.roles.guessed {
+        say("guessed", guessed.into());
+    }
+    let first = &data.roles.inputs[0];
+    let turning = summary.turning_points();
+    say(
+        "turning",
+        format!("{turning} turning point{} of {}", if turning == 1 { "" } else { "s" }, clipped(first)),
+    );
+    lines
+}
+
+/// A label and its text, in lines within 80 columns where words allow.
+pub fn labelled(label: &str, text: &str) -> String {
+    let mut label = label;
+    let mut lines = String::new();
+    for line in wrapped(text, WIDTH - LABEL) {
+        lines += &format!("{label:<LABEL$}{line}\n");
+        label = "";
+    }
+    lines
+}
+
+/// What an automatic model chooses among, in words.
+pub fn choice(options: &AutoOptions) -> String {
+    match &options.only {
+        Some(request) => format!(": at most {} fits of {}", options.members, request.model().name()),
+        None if options.members == 1 => ": one model, chosen by cross-validation".into(),
+        None => {
+            format!(": at most {} models, chosen by cross-validation", options.members)
+        }
+    }
+}
+
+/// The parts of a network in words.
+pub fn parts(architecture: &Architecture) -> String {
+    let deteriorating = if architecture.deterioration { "deteriorating " } else { "" };
+    let mut parts = vec![format!("{} {deteriorating}stops", architecture.stops)];
+    if architecture.hidden > 0 {
+        parts.push(format!("{} hidden", architecture.hidden));
+    }
+    if architecture.relaxation > 0 {
+        parts.push(format!("{} relaxation", architecture.relaxation_neurons()));
+    }
+    parts.join(", ")
+}
+
+/// In which ways tables were read, and how many in each way.
+fn as_read(tables: &[Origin]) -> Vec<(String, usize)> {
+    let mut ways: Vec<(String, usize)> = Vec::new();
+    for table in tables {
+        let way = table.described();
+        match ways.iter_mut().find(|(known, _)| *known == way) {
+            Some((_, count)) => *count += 1,
+            None => ways.push((way, 1)),
+        }
+    }
+    ways
+}
+
+fn samples(summary: &Summary) -> String {
+    let scored = match summary.scored == summary.rows {
+        true => "all scored".to_string(),
+        false => format!("{} scored", summary.scored),
+    };
+    let records = match summary.records.as_slice() {
+        [_] => "1 record".to_string(),
+        records => {
+            let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
+            format!("{} records: {}", records.len(), listed(&names))
+        }
+    };
+    format!("{}, {scored}, in {records}", summary.rows)
+}
+
+fn time_steps(summary: &Summary, unit: &str) -> String {
+    let steps = || summary.records.iter().filter_map(|record| record.time_steps);
+    let shortest = steps().map(|step| step.0).fold(f64::INFINITY, f64::min);
+    let longest = steps().map(|step| step.2).fold(0.0, f64::max);
+    if longest == 0.0 {
+        "one sample per record".into()
+    } else if longest - shortest <= 1e-3 * longest {
+        format!("steps of {:.4}{unit}", Significant(longest))
+    } else {
+        format!("steps of {:.4} to {:.4}{unit}", Significant(shortest), Significant(longest))
+    }
+}
+
+fn ranged(name: &str, (low, high): (f64, f64)) -> String {
+    let unit = unit::suffix(unit::of_column(name).as_deref());
+    let (name, unit) = (clipped(name), clipped(&unit));
+    if low > high {
+        return format!("{name}: blank");
+    }
+    format!("{name}: {:.4} to {:.4}{unit}", Significant(low), Significant(high))
+}
+
+fn rate(input: &str, column: Option<&str>, method: Option<RateMethod>) -> String {
+    let (input, column) = (clipped(input), clipped(column.unwrap_or_default()));
+    match method {
+        None => "none".into(),
+        Some(RateMethod::Given) => format!("of {input} from column {column}"),
+        Some(RateMethod::Central) => format!("of {input} by central differences"),
+        Some(RateMethod::Backward) => format!("of {input} by backward differences"),
+        Some(RateMethod::SavitzkyGolay) => format!("of {input} by the Savitzky-Golay method"),
+    }
+}

@@ -1,0 +1,114 @@
+//! The columns of a table for a model that was trained on other units: factors, or why there are none.
+
+use anyhow::{Result, bail};
+use hysid_core::data::record::ColumnNames;
+use hysid_core::data::unit::{self, Conversion};
+use hysid_core::model::Model;
+use hysid_core::significant::Significant;
+
+use crate::columns::Roles;
+use hysid_document::visible::clipped;
+
+/// What the numbers of each column are multiplied by to be in the model's units; `None` for as they are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factors {
+    /// Of time stamps.
+    pub time: Option<f64>,
+    /// Of each input.
+    pub inputs: Vec<Option<f64>>,
+    /// Of the given rate.
+    pub rate: Option<f64>,
+    /// Of the output.
+    pub output: Option<f64>,
+    /// What is converted, in words, column by column.
+    pub conversions: Vec<String>,
+}
+
+impl Factors {
+    /// From the units that the names of the table's columns tell to those of the columns that the model was trained
+    /// on. `is_scored` if the output is read.
+    ///
+    /// # Errors
+    /// Units that differ without a factor between them, unless the user says that they are the same.
+    pub fn of(model: &Model, roles: &Roles, file: &str, is_scored: bool, are_the_same: bool) -> Result<Self> {
+        let trained = model.names();
+        if are_the_same {
+            let inputs = vec![None; roles.inputs.len()];
+            return Ok(Self { time: None, inputs, rate: None, output: None, conversions: Vec::new() });
+        }
+        let mut conversions = Vec::new();
+        let mut column = |found: &str, trained: &str| -> Result<Option<f64>> {
+            let Some(factor) = factor(file, found, trained)? else { return Ok(None) };
+            conversions.push(conversion(found, trained, factor));
+            Ok(Some(factor))
+        };
+        let mut both = |found: &Option<String>, trained: &Option<String>| match (found, trained) {
+            (Some(found), Some(trained)) => column(found, trained),
+            _ => Ok(None),
+        };
+        // The inverse has all inputs but the first.
+        let inputs = {
+            let missing = trained.inputs.len() - roles.inputs.len();
+            roles.inputs.iter().zip(&trained.inputs[missing..])
+        };
+        let time = both(&roles.time, &trained.time)?;
+        let rate = both(&roles.rate, &trained.rate)?;
+        let inputs = inputs.map(|(found, trained)| column(found, trained)).collect::<Result<_>>()?;
+        let output = if is_scored { column(&roles.output, &trained.output)? } else { None };
+        Ok(Self { time, inputs, rate, output, conversions })
+    }
+
+    /// The names of the columns after the conversion: those of the model where a column is converted.
+    pub fn names(&self, model: &Model, roles: &Roles) -> ColumnNames {
+        let trained = model.names();
+        let name = |factor: Option<f64>, trained: &String, found: &String| {
+            if factor.is_some() { trained.clone() } else { found.clone() }
+        };
+        let either = |factor: Option<f64>, trained: &Option<String>, found: &Option<String>| {
+            found.as_ref().map(|found| name(factor, trained.as_ref().unwrap_or(found), found))
+        };
+        let inputs = self.inputs.iter().zip(&trained.inputs).zip(&roles.inputs);
+        ColumnNames {
+            time: either(self.time, &trained.time, &roles.time),
+            inputs: inputs.map(|((factor, trained), found)| name(*factor, trained, found)).collect(),
+            rate: either(self.rate, &trained.rate, &roles.rate),
+            output: name(self.output, &trained.output, &roles.output),
+        }
+    }
+}
+
+/// What to multiply by; `None` for units that are the same.
+fn factor(file: &str, found: &str, trained: &str) -> Result<Option<f64>> {
+    match Conversion::between(found, trained) {
+        Conversion::Same => Ok(None),
+        Conversion::Factor(factor) => Ok(Some(factor)),
+        Conversion::Impossible => {
+            let (here, there) = (unit_of(found), unit_of(trained));
+            let (found, trained) = (clipped(found), clipped(trained));
+            bail!(
+                "{file}: column \"{found}\" is in {}, the model's \"{trained}\" in {}: no conversion between \
+                 them is known (name another column, convert the numbers, or use them unchanged with \
+                 --same-units)",
+                clipped(&here),
+                clipped(&there),
+            )
+        }
+    }
+}
+
+/// A conversion in words.
+fn conversion(found: &str, trained: &str, factor: f64) -> String {
+    let (here, there) = (unit_of(found), unit_of(trained));
+    format!(
+        "converted: {} from {} to {}, the unit of the model's {} (factor {:.6})",
+        clipped(found),
+        clipped(&here),
+        clipped(&there),
+        clipped(trained),
+        Significant(factor),
+    )
+}
+
+fn unit_of(name: &str) -> String {
+    unit::of_column(name).unwrap_or_default()
+}

@@ -1,0 +1,15 @@
+//! What cannot be done as it was asked.
+
+use std::fmt;
+
+/// Something that cannot be done as it was asked, whatever the data; the program then exits with status 2.
+#[derive(Debug)]
+pub struct Usage(pub String);
+
+impl fmt::Display for Usage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}

@@ -1,0 +1,157 @@
+//! What Hysid tells of data and models: the report of a fit ([`page`], [`Identified`]), the [`diagnosis`] of data and of
+//! models, and how a page was made ([`origin`]).
+
+mod band;
+mod band_coverage;
+pub mod date;
+pub mod diagnosis;
+mod ensemble;
+mod errors;
+mod figures;
+pub mod histories;
+mod identified;
+mod neurons;
+pub mod origin;
+pub mod parameters;
+pub mod provenance;
+pub mod quantities;
+pub mod residual_words;
+mod residuals;
+mod timing;
+pub mod tracks;
+mod usage;
+
+use anyhow::{Context, Result};
+use hysid::data::initial_state::in_words;
+use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::data::record::{Dataset, Record};
+use hysid::diagnosis::residuals::Residuals;
+use hysid::fit::intervals::ParameterIntervals;
+use hysid::model::{Model, Prediction};
+use hysid_document::{Page, html, number, unit};
+use hysid_files::PAGE_MARK;
+
+pub use band_coverage::BandCoverage;
+pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
+pub use identified::{Beforehand, Identified, data_warnings};
+pub use timing::ns_per_sample;
+pub use tracks::Tracks;
+
+/// Probability of the band that is drawn and judged.
+pub const BAND: f64 = 0.9;
+
+/// What is reported.
+pub struct Report<'a> {
+    /// Headline.
+    pub title: String,
+    /// The fitted model.
+    pub model: &'a Model,
+    /// Data that it was run on, the training data first.
+    pub sets: Vec<ReportSet<'a>>,
+    /// Tests of the residual, with the name of the data.
+    pub residuals: &'a [(String, Residuals)],
+    /// Confidence intervals of the parameters, for a law that has them.
+    pub intervals: Option<&'a ParameterIntervals>,
+    /// What to be aware of.
+    pub warnings: &'a [String],
+    /// What was understood of the data: a question and its answer.
+    pub understood: &'a [(String, String)],
+    /// Name of the model file.
+    pub model_file: String,
+    /// How long the fit took.
+    pub seconds: f64,
+}
+
+/// Data, and what the model makes of them.
+pub struct ReportSet<'a> {
+    /// What the data are: "training", "unseen".
+    pub name: String,
+    /// The data.
+    pub data: &'a Dataset,
+    /// Free run over each record.
+    pub simulated: Vec<Vec<f64>>,
+    /// The same with the band of probability [`BAND`], if the model has one.
+    pub predicted: Option<Vec<Prediction>>,
+    /// Errors of these.
+    pub errors: Errors,
+    /// What ties the curves of its records together.
+    pub tracks: Tracks,
+}
+
+impl<'a> ReportSet<'a> {
+    /// What a model makes of some data, in a free run.
+    ///
+    /// # Errors
+    /// Data that the model cannot run on, and no measured output.
+    pub fn of(model: &Model, name: &str, data: &'a Dataset) -> Result<Self> {
+        let predict = |record: &Record| model.predict(&record.excitation(), BAND);
+        let predicted = model.band().map(|_| data.records().iter().map(predict).collect());
+        let predicted: Option<Vec<Prediction>> = predicted.transpose()?;
+        let simulated: Vec<Vec<f64>> = match &predicted {
+            Some(predicted) => predicted.iter().map(|predicted| predicted.output.clone()).collect(),
+            None => {
+                data.records().iter().map(|record| model.simulate(record)).collect::<hysid::Result<_>>()?
+            }
+        };
+        let mut sums = ErrorSums::default();
+        data.records().iter().zip(&simulated).for_each(|(record, output)| sums.add(record.output(), output));
+        let errors = sums.errors(&data.names().output).context("there is nothing to score")?;
+        let tracks = Tracks::of(name, data);
+        Ok(Self { name: name.into(), data, simulated, predicted, errors, tracks })
+    }
+}
+
+/// The text of a page, with the mark by which Hysid knows its own.
+pub fn page_text(page: &Page) -> String {
+    html::page(page, &format!("{PAGE_MARK}{}\">", env!("CARGO_PKG_VERSION")))
+}
+
+/// The whole page.
+pub fn page(report: &Report) -> Page {
+    let mut parts = vec![errors::verdict(report)];
+    parts.extend(report.sets.iter().map(figures::loops_section));
+    parts.push(errors::section(report));
+    parts.extend(provenance::notes(report));
+    parts.push(provenance::warnings(report));
+    parts.extend(report.sets.iter().map(histories::section));
+    parts.extend(usage::sections(report));
+    parts.extend(residuals::section(report));
+    parts.extend(band::section(report));
+    parts.extend(ensemble::section(report));
+    parts.extend(parameters::section(report));
+    parts.extend(neurons::section(report));
+    parts.extend(figures::convergence_section(report.model));
+    parts.extend(provenance::understood(report));
+    parts.push(provenance::section(report));
+    Page { title: report.title.clone(), parts }
+}
+
+/// The state in which records begin, in a few words; `None` if it is the virgin one, in training too.
+pub fn initial_state(model: &Model) -> Option<String> {
+    let has_past = !model.lead_in().is_empty() || !model.provenance().lead_ins.is_empty();
+    has_past.then(|| in_words(model.lead_in(), model.trained_ranges().inputs[0]))
+}
+
+/// The label of the axis of time: rows where there is no time.
+pub fn time_label(data: &Dataset) -> String {
+    match (&data.names().time, data.has_time()) {
+        (Some(name), true) => unit::label(name),
+        (None, true) => "time".into(),
+        (_, false) => "row".into(),
+    }
+}
+
+/// The first input as the model sees it, with its unit: spread about zero, maybe.
+fn seen_label(model: &Model) -> String {
+    let input = &model.names().inputs[0];
+    match model.input_transform().companding {
+        None => unit::label(input),
+        Some(scale) => {
+            let scale = unit::with(&number(scale, 3), input);
+            format!("asinh({} / {scale})", unit::split(input).0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,132 @@
+use std::ops::ControlFlow;
+
+use hysid::data::rate::RateMethod;
+use hysid::data::record::{ColumnNames, Record};
+use hysid::fit::network::fit;
+use hysid::network::Sizes;
+use hysid::options::network::FitOptions;
+
+use super::*;
+
+#[path = "../../hysid-document/src/balance.rs"]
+mod balance;
+
+/// Measured loops of two records with odd names, with blanks.
+fn data(time: bool) -> Dataset {
+    let record = |name: &str, size: f64| {
+        let x: Vec<f64> = (0..300).map(|k| size * (0.1 * k as f64).sin()).collect();
+        let mut play = 0.0f64;
+        let mut y: Vec<f64> = Vec::new();
+        for x in &x {
+            play = play.clamp(x - 0.4, x + 0.4);
+            y.push(0.3 * x + play);
+        }
+        y[..20].fill(f64::NAN);
+        let record = Record::new(name, vec![x], y).unwrap();
+        let seconds: Vec<f64> = (0..300).map(f64::from).collect();
+        if time { record.with_time(seconds).unwrap() } else { record }
+    };
+    let names = ColumnNames {
+        time: time.then(|| "t_s".into()),
+        inputs: vec!["<script>x</script>_mm".into()],
+        rate: None,
+        output: "force_kN".into(),
+    };
+    Dataset::new(names, vec![record("a <b> & \"c\"", 1.0), record("second", 2.0)]).unwrap()
+}
+
+fn model(data: &Dataset) -> Model {
+    let options = FitOptions {
+        sizes: Sizes { stops: 3, hidden: 2, relaxation: 1 },
+        rate: data.has_time().then_some(RateMethod::Central),
+        starts: 2,
+        epochs: 4,
+        ..FitOptions::default()
+    };
+    fit(data, &options, &mut |_| ControlFlow::Continue(())).unwrap().model
+}
+
+fn set<'a>(name: &str, model: &Model, data: &'a Dataset) -> ReportSet<'a> {
+    let simulated = data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
+    let (errors, tracks) = (model.evaluate(data).unwrap(), Tracks::of(name, data));
+    ReportSet { name: name.into(), data, simulated, predicted: None, errors, tracks }
+}
+
+fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Report<'a> {
+    Report {
+        title: "Fit of <x>".into(),
+        model,
+        sets: vec![set("training", model, data), set("unseen", model, data)],
+        residuals: &[],
+        intervals: None,
+        warnings,
+        understood: &[],
+        model_file: "my model.json".into(),
+        seconds: 1.25,
+    }
+}
+
+#[test]
+fn the_page_is_whole_and_needs_nothing_else() {
+    for time in [false, true] {
+        let data = data(time);
+        let model = model(&data);
+        let warnings = ["beware of <this>".to_string()];
+        let page = page_text(&page(&report(&model, &data, &warnings)));
+        let (page, script) = page.split_once("<script>").unwrap();
+        assert!(!page.contains("<script") && page.contains("&lt;script&gt;"));
+        assert!(script.ends_with("</script>\n</body>\n</html>\n") && !script.contains("import"));
+        assert!(
+            page.contains("beware of &lt;this&gt;")
+                && page.contains("hysid evaluate &quot;my model.json&quot;")
+        );
+        for reference in ["src=", "href=\"h", "url(", "@import", "<link"] {
+            assert!(!page.contains(reference), "{reference}");
+        }
+        let body = page.split("</style>").last().unwrap();
+        let body = body.strip_prefix("\n</head>\n<body>").unwrap();
+        balance::assert_balanced(body);
+        assert!(page.len() < 1_000_000);
+    }
+}
+
+#[test]
+fn the_figures_of_the_errors_are_there() {
+    let data = data(true);
+    let model = model(&data);
+    let page = page_text(&page(&report(&model, &data, &[])));
+    for errors in [&model.provenance().train, model.provenance().validation.as_ref().unwrap()] {
+        let figures = [errors.rmse, errors.nrmse_std_percent.unwrap(), errors.max_abs_error];
+        for figure in figures {
+            assert!(page.contains(&format!(">{}</td>", hysid_document::number(figure, 4))), "{figure}");
+        }
+    }
+    assert!(
+        page.contains("RMSE (kN)") && page.contains("Validation") && page.contains("Error of a free run")
+    );
+}
+
+#[test]
+fn a_picture_stands_alone() {
+    let data = data(false);
+    let model = model(&data);
+    let svg = loops(&set("training", &model, &data)).file("Hysid");
+    assert!(svg.starts_with("<svg") && svg.contains("force (kN)"));
+    balance::assert_balanced(&svg);
+}
+
+/// A long record, a single row, a constant output: nothing panics, nothing grows without bound.
+#[test]
+fn odd_data_can_be_shown() {
+    let model = model(&data(false));
+    let odd = |rows: usize| {
+        let x: Vec<f64> = (0..rows).map(|k| (0.01 * k as f64).sin()).collect();
+        Record::new(format!("{rows} rows"), vec![x], vec![1.0; rows]).unwrap()
+    };
+    let names = ColumnNames { time: None, ..ColumnNames::plain(1) };
+    let data = Dataset::new(names, vec![odd(1), odd(200_000)]).unwrap();
+    let page = page_text(&page(&report(&model, &data, &[])));
+    assert!(page.len() < 2_000_000, "{}", page.len());
+    let many = Dataset::new(data.names().clone(), (0..900).map(|_| odd(40)).collect()).unwrap();
+    assert!(page_text(&super::page(&report(&model, &many, &[]))).len() < 2_000_000);
+}

@@ -1,0 +1,88 @@
+//! How to go on with the model, and what it cannot do.
+
+use hysid::model::Model;
+use hysid_document::{Cell, Item, Part, Table, span, unit};
+
+use crate::Report;
+
+/// Commands and limits.
+pub fn sections(report: &Report) -> [Part; 2] {
+    [commands(report), limits(report)]
+}
+
+fn commands(report: &Report) -> Part {
+    let file = quoted(&report.model_file);
+    let band = if report.model.band().is_some() { " --band 0.9" } else { "" };
+    let parts = [
+        Part::paragraph("Evaluate it on new measured data:"),
+        Part::Command(format!("hysid evaluate {file} NEW.csv")),
+        Part::paragraph(match band {
+            "" => "Simulate an input; the output is added as a column:",
+            _ => "Simulate an input; the output and its band are added as columns:",
+        }),
+        Part::Command(format!("hysid simulate {file} NEW.csv -o OUT.csv{band}")),
+        Part::note(
+            "NEW.csv needs the columns of the training data under the same names; evaluate needs the output too.",
+        ),
+    ];
+    Part::section("How to use the model", parts)
+}
+
+fn limits(report: &Report) -> Part {
+    let (names, trained) = (report.model.names(), report.model.trained_ranges());
+    let mut rows: Vec<Vec<Cell>> = names
+        .inputs
+        .iter()
+        .zip(&trained.inputs)
+        .map(|(name, &range)| vec![unit::label(name).into(), span(range).into()])
+        .collect();
+    if let Some(range) = trained.rate {
+        let per = names.time.as_deref().map_or("unit of time".into(), unit::of);
+        let (name, _) = unit::split(&names.inputs[0]);
+        let label = format!("rate of {name} ({}/{per})", unit::of(&names.inputs[0]));
+        rows.push(vec![label.into(), span(range).into()]);
+    }
+    rows.push(vec![unit::label(&names.output).into(), span(trained.output).into()]);
+    let table = Table::new(["quantity", "range in training"]).with_rows(rows);
+    let mut limits = vec!["Outside these ranges the model extrapolates, and its error is unknown."];
+    limits.push(match crate::initial_state(report.model) {
+        None => {
+            "It starts every record in the virgin state. If the specimen has a history that the record does not \
+             contain, give its initial state (--initial-state)."
+        }
+        Some(_) => {
+            "It starts every record in the state in which most training records begin. If the specimen is in \
+             another state, give it (--initial-state)."
+        }
+    });
+    if !report.model.needs_time() && report.model.rate().is_none() {
+        limits.push("It is rate-independent: the same input path gives the same output at any speed.");
+    }
+    if wears_out(report.model) {
+        limits.push(
+            "Its stops deteriorate as they slide. A history longer or more severe than the training records \
+             leads to deterioration that was not measured.",
+        );
+    }
+    if report.model.needs_time() {
+        limits.push("It needs time stamps, in the unit of the training data.");
+    }
+    let items = limits.into_iter().map(|limit| Item { text: limit.into(), is_warning: false });
+    Part::section("Limits of the model", [Part::Table(table), Part::List(items.collect())])
+}
+
+/// True if a network in it deteriorates.
+fn wears_out(model: &Model) -> bool {
+    let network = model.network().is_some_and(|network| network.architecture().deterioration);
+    network || model.ensemble().is_some_and(|ensemble| ensemble.members().iter().any(wears_out))
+}
+
+/// A file name as a shell takes it.
+fn quoted(file: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "._-/+:\\".contains(letter);
+    if !file.is_empty() && file.chars().all(plain) {
+        file.into()
+    } else {
+        format!("\"{}\"", file.replace('"', "\\\""))
+    }
+}
