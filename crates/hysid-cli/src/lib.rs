@@ -18,7 +18,6 @@ mod inspection;
 mod interrupt;
 mod inversion;
 mod messages;
-mod model_list;
 mod planning;
 mod plotting;
 mod progress;

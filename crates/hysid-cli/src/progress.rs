@@ -5,11 +5,10 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use hysid::fit::network::Progress;
-use hysid::model::history::Phase;
-use hysid::options::network::Method;
 use hysid::significant::Significant;
 use hysid_document::plain::WIDTH;
 use hysid_document::progress::{Line, Remaining, in_words};
+use hysid_report::Course;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::checkpoint::Keeper;
@@ -24,6 +23,7 @@ pub struct Follower {
     started: Instant,
     /// Time for each fold.
     limit: Option<Duration>,
+    course: Course,
     starts: usize,
     /// The fold that is fitted to, counted from 0, and how many there are; a fit to everything is the only one.
     fold: (usize, usize),
@@ -31,8 +31,6 @@ pub struct Follower {
     keeper: Option<Keeper>,
     /// A checkpoint could not be written, and that was said.
     failed: bool,
-    /// Smallest training error so far.
-    best: f64,
     bar: Option<ProgressBar>,
     remaining: Remaining,
     last_line: Instant,
@@ -53,12 +51,12 @@ impl Follower {
         Self {
             started: now,
             limit,
+            course: Course::new(starts),
             starts,
             fold: (0, 1),
             fold_started: now,
             keeper,
             failed: false,
-            best: f64::INFINITY,
             bar,
             remaining: Remaining::default(),
             last_line: now,
@@ -69,17 +67,12 @@ impl Follower {
     pub fn begin_fold(&mut self, place: usize, of: usize) {
         self.fold = (place, of);
         self.fold_started = Instant::now();
-        self.best = f64::INFINITY;
+        self.course = Course::new(self.starts);
     }
 
     /// Hears of an iteration; breaks after Ctrl-C or at the time limit.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
-        self.best = match progress.method {
-            // The error of its best start, which need not be the lowest that was ever told.
-            Method::LeastSquares if progress.train_nrmse_percent.is_nan() => self.best,
-            Method::LeastSquares => progress.train_nrmse_percent,
-            _ => self.best.min(progress.train_nrmse_percent),
-        };
+        self.course.take(progress);
         let (place, of) = self.fold;
         let done = (place as f64 + progress.done) / of as f64;
         let line = self.line(progress, done);
@@ -134,8 +127,8 @@ impl Follower {
         Line {
             done,
             fold: (of > 1).then_some((place + 1, of)),
-            part: part(progress, self.starts, self.best),
-            error: error(progress, self.best),
+            part: self.course.part(progress),
+            error: self.course.error(progress).map(|error| format!("{:.3}", Significant(error))),
             left: left.map(in_words),
         }
     }
@@ -152,35 +145,4 @@ impl Follower {
 /// Columns of the terminal behind stderr.
 fn columns() -> usize {
     terminal_size::terminal_size_of(std::io::stderr()).map_or(WIDTH, |(width, _)| usize::from(width.0))
-}
-
-/// The training error so far, if the work has one.
-fn error(progress: &Progress, best: f64) -> Option<String> {
-    let has_none = progress.is_part || progress.phase == Phase::Starts || best == f64::INFINITY;
-    (!has_none).then(|| format!("{:.3}", Significant(best)))
-}
-
-/// What is being done, in words.
-fn part(progress: &Progress, starts: usize, best: f64) -> String {
-    // One fit of many: its starts, epochs and errors say nothing of the whole.
-    if progress.is_part {
-        return format!("fitting {}", progress.model.name());
-    }
-    if progress.phase == Phase::Starts {
-        return "cross-validation".into();
-    }
-    let is_first = best == f64::INFINITY;
-    let epoch = progress.epoch;
-    match progress.method {
-        // Several starts at a time have no epoch in common.
-        Method::LevenbergMarquardt | Method::Subgradient if starts > 1 => format!("{starts} starts"),
-        Method::LevenbergMarquardt | Method::Subgradient | Method::Genetic if is_first => {
-            "first evaluations".into()
-        }
-        Method::LevenbergMarquardt => format!("iteration {epoch}"),
-        Method::Subgradient => format!("sub-gradient {epoch}"),
-        Method::Genetic => format!("generation {epoch}"),
-        Method::LeastSquares if is_first && epoch == 0 => "least squares".into(),
-        Method::LeastSquares => format!("round {epoch}"),
-    }
 }

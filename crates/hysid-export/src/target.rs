@@ -47,6 +47,19 @@ impl Target {
         self.back_end().name
     }
 
+    /// What it is, in a few words.
+    pub fn what(self) -> &'static str {
+        match self {
+            Self::C => "C99 source code with a test",
+            Self::Fmu => "Functional Mock-up Unit, for Simulink, Dymola and others",
+            Self::Matlab => "MATLAB without toolboxes, and GNU Octave",
+            Self::Onnx => "graphs of ONNX",
+            Self::OpenSees => "material of OpenSees",
+            Self::Python => "Python module that needs NumPy alone",
+            Self::Rust => "Rust without the standard library",
+        }
+    }
+
     pub(crate) fn back_end(self) -> &'static BackEnd {
         match self {
             Self::C => &c::BACK_END,

@@ -283,7 +283,7 @@ impl Roles {
     }
 
     /// Refuses a further table that lacks a column of the first.
-    pub fn check_against(&self, table: &Head, first: &Head) -> Result<()> {
+    pub fn check_against(&self, table: &Head, first: &str) -> Result<()> {
         let all = self.record.iter().chain(&self.time).chain(&self.inputs).chain(&self.rate);
         for name in all.chain([&self.output]) {
             ensure!(
@@ -291,7 +291,7 @@ impl Roles {
                 "{}: there is no column \"{}\", as in {} (columns: {})",
                 table.file,
                 clipped(name),
-                first.file,
+                first,
                 listed(&table.header)
             );
         }

@@ -75,7 +75,7 @@ impl Data {
         zero: Option<usize>,
     ) -> Result<Self> {
         for table in &tables[1..] {
-            roles.check_against(table, &tables[0])?;
+            roles.check_against(table, &tables[0].file)?;
         }
         let stems = stems(&tables);
         let mut source = Source { places: Vec::new(), tables: Vec::new() };

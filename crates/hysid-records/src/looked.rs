@@ -32,7 +32,8 @@ pub struct Looked {
     left_out: Option<String>,
     #[serde(skip)]
     read_as: String,
-    columns: Vec<Column>,
+    /// Its columns.
+    pub columns: Vec<Column>,
 }
 
 /// A column as it is read.

@@ -3,6 +3,7 @@
 
 mod band;
 mod band_coverage;
+mod course;
 pub mod date;
 pub mod diagnosis;
 mod ensemble;
@@ -10,6 +11,7 @@ mod errors;
 mod figures;
 pub mod histories;
 mod identified;
+pub mod models;
 mod neurons;
 pub mod origin;
 pub mod parameters;
@@ -32,6 +34,7 @@ use hysid_document::{Page, html, number, unit};
 use hysid_files::PAGE_MARK;
 
 pub use band_coverage::BandCoverage;
+pub use course::Course;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified, data_warnings};
 pub use timing::ns_per_sample;

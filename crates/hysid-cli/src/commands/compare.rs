@@ -27,7 +27,7 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
     let test = match &arguments.test {
         Some(test) => {
             let unseen = read_tables(std::slice::from_ref(test), &arguments.columns.reading)?;
-            roles.check_against(&unseen[0], &tables[0])?;
+            roles.check_against(&unseen[0], &tables[0].file)?;
             Some(data_with(unseen, roles.clone(), arguments.columns.reading.zero)?)
         }
         None => None,

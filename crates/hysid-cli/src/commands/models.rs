@@ -1,6 +1,7 @@
 //! `hysid models`: all models that a fit can use, or what a model file holds.
 
 use anyhow::Result;
+use hysid_report::models;
 
 use crate::Outcome;
 use crate::arguments::Models;
@@ -8,16 +9,15 @@ use crate::commands::model_from_bytes;
 use crate::files;
 use crate::inspection::Inspected;
 use crate::messages::{json_results, results};
-use crate::model_list;
 
 /// Runs the command.
 pub fn run(arguments: &Models) -> Result<Outcome> {
     match &arguments.model {
         None => {
-            let models = model_list::all();
+            let all = models::all();
             match arguments.json {
-                true => json_results(&models)?,
-                false => results(&model_list::text(&models))?,
+                true => json_results(&all)?,
+                false => results(&models::text(&all))?,
             }
         }
         Some(path) => {

@@ -49,7 +49,8 @@ pub fn text(models: &[Listed]) -> String {
 }
 
 impl Listed {
-    fn of(model: ModelName) -> Self {
+    /// Of a model.
+    pub fn of(model: ModelName) -> Self {
         let (kind, identified_by) = match model {
             ModelName::Auto(_) => ("ensemble", "cross-validation"),
             ModelName::Network(_) => ("network", "search"),

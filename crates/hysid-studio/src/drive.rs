@@ -1,0 +1,73 @@
+//! A model driven by hand: a path of inputs, from rest.
+
+use anyhow::{Result, bail};
+use hysid::data::record::{Excitation, Record};
+use hysid::data::rate::RateMethod;
+use hysid::model::{Model, Prediction};
+use hysid_report::BAND;
+
+/// Longest path.
+pub const MOST_ROWS: usize = 20_000;
+
+/// A path of inputs, with time if the model needs it.
+pub struct Path {
+    time: Option<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+}
+
+impl Path {
+    /// Takes columns one after the other: time, if the model needs it, and its inputs.
+    ///
+    /// # Errors
+    /// A number of values that is not that of the columns, or too many.
+    pub fn of(model: &Model, values: &[f64], rows: usize) -> Result<Self> {
+        let needs_time = needs_time(model);
+        let columns = model.names().inputs.len() + usize::from(needs_time);
+        if rows == 0 || rows > MOST_ROWS {
+            bail!("a path has 1 to {MOST_ROWS} rows, not {rows}");
+        }
+        if values.len() != columns * rows {
+            bail!("{columns} columns of {rows} rows are needed, not {} numbers", values.len());
+        }
+        let mut columns = values.chunks_exact(rows).map(<[f64]>::to_vec);
+        let time = if needs_time { columns.next() } else { None };
+        Ok(Self { time, inputs: columns.collect() })
+    }
+
+    /// What a model makes of it: outputs, and the edges of the band if there is one.
+    ///
+    /// # Errors
+    /// Values that are not finite, or time that does not grow.
+    pub fn run(&self, model: &Model) -> Result<Prediction> {
+        if model.rate() == Some(RateMethod::Given) {
+            bail!("the rate of this model is a column of its own, which no path by hand has");
+        }
+        let inputs = self.inputs.iter().map(Vec::as_slice).collect();
+        let mut excitation = Excitation::new("path", inputs)?;
+        if let Some(time) = &self.time {
+            excitation = excitation.with_time(time)?;
+        }
+        Ok(match model.band() {
+            Some(_) => model.predict(&excitation, BAND)?,
+            None => Prediction { output: model.response(&excitation)?, ..Prediction::default() },
+        })
+    }
+
+    /// The path as a record without outputs.
+    ///
+    /// # Errors
+    /// As [`Path::run`].
+    pub fn record(&self) -> Result<Record> {
+        let rows = self.inputs.first().map_or(0, Vec::len);
+        let record = Record::new("path", self.inputs.clone(), vec![f64::NAN; rows])?;
+        Ok(match &self.time {
+            Some(time) => record.with_time(time.clone())?,
+            None => record,
+        })
+    }
+}
+
+/// True if a model depends on time: it has a rate or relaxes.
+pub fn needs_time(model: &Model) -> bool {
+    model.needs_time() || model.rate().is_some()
+}

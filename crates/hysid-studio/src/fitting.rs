@@ -1,0 +1,182 @@
+//! Fits: one at a time, on a thread of its own, watched while it runs.
+
+mod preview;
+mod state;
+mod watch;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::thread::JoinHandle;
+
+use anyhow::{Context, Result, bail};
+use hysid::fit::{identify, memory_need};
+use hysid::options::FitSpec;
+use hysid_records::Data;
+use hysid_report::{Beforehand, Identified};
+use rayon::ThreadPoolBuilder;
+
+pub use preview::Preview;
+pub use state::{Candidate, FitState, Standing};
+use watch::Watch;
+
+/// The fits of a studio: the last one, running or ended.
+#[derive(Default)]
+pub struct Fits {
+    last: Mutex<Option<Running>>,
+}
+
+/// What a fit does when it has news.
+pub type Tell = Arc<dyn Fn() + Send + Sync>;
+
+/// A fit that was begun.
+struct Running {
+    course: Arc<Course>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What is known of a fit, and whether it is to stop.
+pub struct Course {
+    state: Mutex<FitState>,
+    preview: Mutex<Option<Preview>>,
+    is_to_stop: AtomicBool,
+    tell: Tell,
+}
+
+/// What is to be fitted.
+pub struct Work {
+    /// Number of the fit.
+    pub id: u64,
+    /// What is to be identified.
+    pub request: FitSpec,
+    /// The data.
+    pub data: Data,
+    /// Number of the file with the first records, over which the best model so far is drawn.
+    pub file: u64,
+    /// Seconds after which the fit ends.
+    pub time_limit: Option<f64>,
+    /// Where the best model so far is kept.
+    pub best: std::path::PathBuf,
+}
+
+/// Takes what a fit has found, and gives the number of its model.
+pub type Finish = Box<dyn FnOnce(Identified, &Data) -> Result<u64> + Send>;
+
+impl Fits {
+    /// Begins a fit.
+    ///
+    /// # Errors
+    /// Another one is running; data that the model cannot be fitted to; too little memory.
+    pub fn begin(&self, work: Work, finish: Finish, tell: Tell) -> Result<()> {
+        let mut last = self.last();
+        if last.as_ref().is_some_and(|last| last.course.state().is_running) {
+            bail!("a fit is running: stop it, or wait until it ends");
+        }
+        let beforehand = Beforehand::of(&work.data, &work.request)?;
+        let pool = ThreadPoolBuilder::new().build().context("cannot start the threads")?;
+        memory_need(&work.data.set, &work.request, pool.current_num_threads())
+            .and_then(|need| need.check(hysid_files::available_memory()))
+            .map_err(|error| work.data.explain(error))?;
+        let course = Arc::new(Course {
+            state: Mutex::new(FitState::begun(work.id, &work.request)),
+            preview: Mutex::new(None),
+            is_to_stop: AtomicBool::new(false),
+            tell,
+        });
+        let own = Arc::clone(&course);
+        let thread = std::thread::Builder::new().name("fit".into()).spawn(move || {
+            let ended = run(&own, work, beforehand, &pool, finish);
+            own.change(|state| state.end(ended));
+        });
+        let thread = Some(thread.context("cannot start the fit")?);
+        *last = Some(Running { course, thread });
+        Ok(())
+    }
+
+    /// The last fit; `None` before the first.
+    pub fn state(&self) -> Option<FitState> {
+        self.last().as_ref().map(|last| last.course.state().clone())
+    }
+
+    /// What the best model so far simulates; `None` before there is one.
+    pub fn preview(&self) -> Option<Preview> {
+        let last = self.last();
+        let preview = last.as_ref()?.course.preview.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        preview.clone()
+    }
+
+    /// Asks the fit to end with its best model so far.
+    pub fn stop(&self) {
+        if let Some(last) = &*self.last() {
+            last.course.is_to_stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Says that a fit of an earlier studio did not come to its end.
+    pub fn interrupted(&self, state: FitState) {
+        let course = Course {
+            state: Mutex::new(state),
+            preview: Mutex::new(None),
+            is_to_stop: AtomicBool::new(true),
+            tell: Arc::new(|| ()),
+        };
+        *self.last() = Some(Running { course: Arc::new(course), thread: None });
+    }
+
+    /// Ends the fit, if one is running, and waits until its model is saved.
+    pub fn end(&self) {
+        self.stop();
+        let thread = self.last().as_mut().and_then(|last| last.thread.take());
+        if let Some(thread) = thread {
+            // A fit that panicked has said so.
+            let _ = thread.join();
+        }
+    }
+
+    fn last(&self) -> MutexGuard<'_, Option<Running>> {
+        self.last.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+impl Course {
+    fn state(&self) -> MutexGuard<'_, FitState> {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Changes what is known, and tells that there are news.
+    fn change(&self, change: impl FnOnce(&mut FitState)) {
+        change(&mut self.state());
+        (self.tell)();
+    }
+
+    fn is_to_stop(&self) -> bool {
+        self.is_to_stop.load(Ordering::Relaxed)
+    }
+}
+
+/// The number of the model that was found.
+fn run(
+    course: &Arc<Course>,
+    work: Work,
+    beforehand: Beforehand,
+    pool: &rayon::ThreadPool,
+    finish: Finish,
+) -> Result<u64> {
+    let Work { request, data, file, time_limit, best, .. } = work;
+    std::thread::scope(|scope| {
+        let mut watch = Watch::new(course, request.starts(), time_limit);
+        let drawn = watch.models();
+        let of_data = &data;
+        scope.spawn(move || preview::draw(drawn, course, of_data, file, &best));
+        let fitted = pool.install(|| identify(&data.set, &request, &mut |progress| watch.observe(progress)));
+        let seconds = watch.finish();
+        let fitted = fitted.map_err(|error| data.explain(error))?;
+        let identified = Identified {
+            model: fitted.model,
+            evaluations: fitted.evaluations,
+            held_out: fitted.held_out,
+            seconds,
+            beforehand,
+        };
+        finish(identified, &data)
+    })
+}

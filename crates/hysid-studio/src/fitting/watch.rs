@@ -1,0 +1,147 @@
+//! The observer of a fit: keeps its state, passes on the best model so far, stops it when asked to.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::{Duration, Instant};
+
+use hysid::fit::auto::{Standing, Tried};
+use hysid::fit::network::Progress;
+use hysid::model::Model;
+use hysid_document::progress::{Remaining, in_words};
+
+use super::{Candidate, Course, state};
+
+/// Time between two changes that a page is told of.
+const BETWEEN: Duration = Duration::from_millis(250);
+
+/// Time between two models that are drawn.
+const BETWEEN_MODELS: Duration = Duration::from_secs(1);
+
+/// The largest share of the time that may go into making models to be drawn.
+const LARGEST_SHARE: f64 = 0.02;
+
+/// The best model so far, on its way to be drawn.
+pub struct SoFar {
+    pub name: String,
+    pub model: Model,
+}
+
+/// The observer of a fit.
+pub struct Watch<'c> {
+    course: &'c Arc<Course>,
+    words: hysid_report::Course,
+    began: Instant,
+    limit: Option<Duration>,
+    told: Instant,
+    remaining: Remaining,
+    models: Option<SyncSender<SoFar>>,
+    model_due: Instant,
+    /// Lowest cross-validation error of a candidate whose model was passed on.
+    lowest: f64,
+}
+
+impl<'c> Watch<'c> {
+    pub fn new(course: &'c Arc<Course>, starts: usize, time_limit: Option<f64>) -> Self {
+        let now = Instant::now();
+        Self {
+            course,
+            words: hysid_report::Course::new(starts),
+            began: now,
+            limit: time_limit.map(Duration::from_secs_f64),
+            told: now,
+            remaining: Remaining::default(),
+            models: None,
+            model_due: now,
+            lowest: f64::INFINITY,
+        }
+    }
+
+    /// The models that are passed on; they end with the fit.
+    pub fn models(&mut self) -> Receiver<SoFar> {
+        let (sender, receiver) = sync_channel(1);
+        self.models = Some(sender);
+        receiver
+    }
+
+    /// Takes what the fit tells; breaks if it is to end.
+    pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
+        self.words.take(progress);
+        if let Some(tried) = &progress.tried {
+            self.take_candidate(tried);
+        } else if Instant::now() >= self.model_due {
+            self.pass_on_model(progress);
+        }
+        let now = Instant::now();
+        if now.duration_since(self.told) >= BETWEEN || progress.tried.is_some() {
+            self.told = now;
+            self.tell(progress);
+        }
+        let is_late = self.limit.is_some_and(|limit| self.began.elapsed() >= limit);
+        if is_late || self.course.is_to_stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// Seconds of the fit.
+    pub fn finish(self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    fn tell(&mut self, progress: &Progress) {
+        let seconds = self.began.elapsed().as_secs_f64();
+        let most = self.limit.map(|limit| (limit.as_secs_f64() - seconds).max(0.0));
+        let remaining = self.remaining.after(seconds, progress.done, most);
+        let (part, error) = (self.words.part(progress), self.words.error(progress));
+        self.course.change(|state| {
+            state.seconds = seconds;
+            state.done = progress.done.max(state.done);
+            state.remaining_seconds = remaining;
+            state.remaining = remaining.map(in_words);
+            state.part = part;
+            error.iter().for_each(|error| state.add_error(*error));
+        });
+    }
+
+    fn take_candidate(&mut self, tried: &Tried<'_>) {
+        let error = tried.error_percent.map(|(inside, outside)| (inside * outside).sqrt());
+        let candidate = Candidate {
+            name: tried.name.clone(),
+            error_percent: error,
+            folds: tried.folds,
+            of: tried.of,
+            state: match tried.standing {
+                Standing::Trying => state::Standing::Trying,
+                Standing::Complete => state::Standing::Complete,
+                Standing::Dropped => state::Standing::Dropped,
+            },
+        };
+        let is_best = error.is_some_and(|error| error < self.lowest) && tried.standing != Standing::Dropped;
+        self.course.change(|state| {
+            state.seconds = self.began.elapsed().as_secs_f64();
+            // The first error is on few folds; what counts is that of a candidate which was tried on all.
+            if candidate.state == state::Standing::Complete {
+                error.iter().for_each(|error| state.add_error(*error));
+            }
+            state.add_candidate(candidate);
+        });
+        if is_best && let Some(model) = tried.model {
+            self.pass_on(SoFar { name: tried.name.clone(), model: model.clone() });
+            self.lowest = error.unwrap_or(self.lowest);
+        }
+    }
+
+    /// Passes on the model of a fit on its way, if it has one. Making it takes time of the fit.
+    fn pass_on_model(&mut self, progress: &Progress) {
+        let began = Instant::now();
+        let model = progress.model_so_far();
+        let spent = began.elapsed();
+        self.model_due = Instant::now() + BETWEEN_MODELS.max(spent.div_f64(LARGEST_SHARE));
+        if let Some(model) = model {
+            self.pass_on(SoFar { name: progress.model.name().into(), model });
+        }
+    }
+
+    /// While one is being drawn, the next waits for the one after it.
+    fn pass_on(&self, model: SoFar) {
+        let _ = self.models.as_ref().map(|models| models.try_send(model));
+    }
+}

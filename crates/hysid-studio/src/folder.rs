@@ -1,0 +1,225 @@
+//! The folder of a project: where its files are, and names that cannot leave it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow};
+use hysid_files::{Destination, Failure, Kind, Lock};
+use hysid_records::Usage;
+
+/// Name of a project's folder if none is given.
+const DEFAULT: &str = "hysid-project";
+
+/// Folders that are tried if others are in use.
+const MOST_FOLDERS: usize = 100;
+
+/// The file with what was chosen and made.
+const PROJECT: &str = "project.json";
+
+/// How that file begins.
+const BEGINNING: &[u8] = b"{\n  \"format\": \"hysid-project\"";
+
+/// Longest name of a file that is kept.
+const LONGEST_NAME: usize = 120;
+
+/// The folder of a project, locked for this process.
+#[derive(Debug)]
+pub struct Folder {
+    root: PathBuf,
+    _lock: Lock,
+}
+
+impl Folder {
+    /// Opens a project's folder, or makes it. Without a name it is `hysid-project` in the present folder, or
+    /// `hysid-project-2` and so on while another studio has that open.
+    ///
+    /// # Errors
+    /// A folder that is in use, that is none of a project, or that cannot be written to.
+    pub fn open(asked: Option<&Path>) -> Result<Self> {
+        if let Some(asked) = asked {
+            return Self::locked(asked)?.ok_or_else(|| {
+                let advice = "another studio has this project open: close it, or name another folder";
+                Usage(format!("{}: {advice} with --project", asked.display())).into()
+            });
+        }
+        for number in 1..=MOST_FOLDERS {
+            let name = if number == 1 { DEFAULT.into() } else { format!("{DEFAULT}-{number}") };
+            if let Some(folder) = Self::locked(Path::new(&name))? {
+                return Ok(folder);
+            }
+        }
+        Err(anyhow!("{MOST_FOLDERS} projects are open: close one, or name a folder with --project"))
+    }
+
+    /// `None` if another process has it.
+    fn locked(asked: &Path) -> Result<Option<Self>> {
+        let shown = asked.display();
+        check_ours(asked)?;
+        for inner in ["data", "models"] {
+            let inner = asked.join(inner);
+            fs::create_dir_all(&inner)
+                .map_err(|error| anyhow!("{}: cannot be made: {}", inner.display(), hysid_files::reason(&error)))?;
+        }
+        let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
+        match Lock::acquire(&root.join(PROJECT)) {
+            Ok(lock) => Ok(Some(Self { root, _lock: lock })),
+            Err(Failure::InUse(_)) => Ok(None),
+            Err(failure) => Err(anyhow!("{failure}")),
+        }
+    }
+
+    /// Its path.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Its name.
+    pub fn name(&self) -> String {
+        self.root.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// The path of a file of data.
+    pub fn data(&self, file: &str) -> PathBuf {
+        self.root.join("data").join(plain(file))
+    }
+
+    /// The path of a file of a model.
+    pub fn models(&self, file: &str) -> PathBuf {
+        self.root.join("models").join(plain(file))
+    }
+
+    /// The path of the best model so far of a fit that is under way.
+    pub fn best_so_far(&self) -> PathBuf {
+        self.root.join("models").join("best-so-far.json")
+    }
+
+    /// What was chosen and made, if anything.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read_project(&self) -> Result<Option<String>> {
+        let path = self.root.join(PROJECT);
+        match fs::read_to_string(&path) {
+            Ok(text) => Ok(Some(text)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))),
+        }
+    }
+
+    /// Writes what was chosen and made, as a whole or not at all.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn write_project(&self, text: &str) -> Result<()> {
+        write(&self.root.join(PROJECT), Kind::Beginning(BEGINNING.to_vec()), text.as_bytes())
+    }
+}
+
+/// Writes a file of the project. What the project wrote before is replaced.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn write(path: &Path, kind: Kind, content: &[u8]) -> Result<()> {
+    let destination = Destination::new(path, kind, true).keeping_the_old(false);
+    destination.write(content).map(|_| ()).map_err(|failure| anyhow!("{failure}"))
+}
+
+/// Refuses a folder with other things in it.
+fn check_ours(folder: &Path) -> Result<()> {
+    let is_ours = folder.join(PROJECT).exists();
+    match fs::read_dir(folder) {
+        Ok(mut entries) if !is_ours && entries.any(|entry| entry.is_ok_and(|entry| !is_of_lock(&entry))) => {
+            let advice = "is no project of Hysid and is not empty: name another folder with --project";
+            Err(Usage(format!("{} {advice}", folder.display())).into())
+        }
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(anyhow!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error))),
+    }
+}
+
+/// True for what a studio makes before the project has a file.
+fn is_of_lock(entry: &fs::DirEntry) -> bool {
+    let name = entry.file_name();
+    name == "data" || name == "models" || name.to_string_lossy().starts_with(".project.json")
+}
+
+/// The last part of a name: no path leaves the folder.
+fn plain(file: &str) -> &str {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or_default();
+    if name.is_empty() || name == "." || name == ".." { "_" } else { name }
+}
+
+/// A name for a file in the folder, made of the one that it is given: no folders, nothing that a file system treats in its
+/// own way, and none of those that are `taken`, in capital or small letters.
+pub fn safe_name(given: &str, taken: &[&str]) -> String {
+    let kept: String = plain(given)
+        .chars()
+        .map(|letter| if letter.is_control() || "<>:\"|?*".contains(letter) { '_' } else { letter })
+        .collect();
+    let kept = kept.trim().trim_start_matches('.').trim_end_matches(['.', ' ']);
+    let (stem, ending) = match kept.rsplit_once('.') {
+        Some((stem, ending)) if !stem.is_empty() && ending.len() <= 8 => (stem, format!(".{ending}")),
+        _ => (kept, String::new()),
+    };
+    let stem: String = stem.chars().take(LONGEST_NAME).collect();
+    let stem = if stem.is_empty() || is_reserved(&stem) { format!("data{stem}") } else { stem };
+    let is_free = |name: &String| !taken.iter().any(|other| other.to_lowercase() == name.to_lowercase());
+    let numbered = (2..).map(|number| format!("{stem} ({number}){ending}"));
+    let mut names = std::iter::once(format!("{stem}{ending}")).chain(numbered);
+    names.find(is_free).expect("there is always a further number")
+}
+
+/// Names of devices on Windows.
+fn is_reserved(stem: &str) -> bool {
+    let stem = stem.to_uppercase();
+    let is_port = |name: &str| stem.starts_with(name) && stem.len() == 4 && stem.ends_with(|c: char| c.is_ascii_digit());
+    ["CON", "PRN", "AUX", "NUL"].contains(&stem.as_str()) || is_port("COM") || is_port("LPT")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_leaves_the_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::open(Some(&place.path().join("p"))).unwrap();
+        let data = folder.root().join("data");
+        for name in ["../../etc/passwd", "..\\..\\x.csv", "/etc/passwd", "..", ".", "", "a/..", "C:\\x"] {
+            let safe = safe_name(name, &[]);
+            for path in [folder.data(&safe), folder.data(name)] {
+                assert_eq!(path.parent(), Some(data.as_path()), "{name}");
+                assert!(!path.ends_with(".."), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_stay_what_they_are_where_they_can() {
+        assert_eq!(safe_name("train.csv", &[]), "train.csv");
+        assert_eq!(safe_name("Versuch 3 (µm).csv", &[]), "Versuch 3 (µm).csv");
+        assert_eq!(safe_name("train.csv", &["Train.csv", "train (2).csv"]), "train (3).csv");
+        assert_eq!(safe_name(".hidden", &[]), "hidden");
+        assert_eq!(safe_name("<script>.csv", &[]), "_script_.csv");
+        assert_eq!(safe_name("con.csv", &[]), "datacon.csv");
+        assert_eq!(safe_name("../..", &[]), "data_");
+        assert!(safe_name(&"x".repeat(500), &[]).len() <= LONGEST_NAME);
+    }
+
+    #[test]
+    fn a_project_is_open_once_and_other_folders_are_left_alone() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("p");
+        let folder = Folder::open(Some(&path)).unwrap();
+        assert!(Folder::open(Some(&path)).unwrap_err().to_string().contains("--project"));
+        folder.write_project("{\n  \"format\": \"hysid-project\"\n}").unwrap();
+        drop(folder);
+        assert!(Folder::open(Some(&path)).unwrap().read_project().unwrap().is_some());
+        let other = place.path().join("mine");
+        fs::create_dir(&other).unwrap();
+        fs::write(other.join("thesis.doc"), "x").unwrap();
+        assert!(Folder::open(Some(&other)).unwrap_err().to_string().contains("is no project"));
+        assert_eq!(fs::read_dir(&other).unwrap().count(), 1);
+    }
+}

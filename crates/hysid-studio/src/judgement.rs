@@ -1,0 +1,187 @@
+//! What a model makes of a file: its free run, errors, tests of the residual.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+
+use anyhow::{Context, Result};
+use hysid::data::metrics::{ErrorSums, Errors};
+use hysid::data::record::{Dataset, Record};
+use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
+use hysid::model::{Model, Prediction};
+use hysid_records::summarised;
+use hysid_report::residual_words::{name, p_value, verdict};
+use hysid_report::{BAND, BandCoverage, ReportSet};
+use serde::Serialize;
+
+/// Runs that are kept.
+const MOST_KEPT: usize = 8;
+
+/// The free run of a model over a file.
+pub struct Run {
+    /// The data of the file, in the units of the model.
+    pub data: Dataset,
+    /// True if the model was fitted to the file.
+    pub is_training: bool,
+    /// Output, and the band if the model has one, of each record.
+    pub predicted: Vec<Prediction>,
+    errors: Errors,
+}
+
+/// What is told of a run.
+#[derive(Debug, Serialize)]
+pub struct Judgement {
+    errors: Errors,
+    inside_band_percent: Option<f64>,
+    is_training: bool,
+    warnings: Vec<String>,
+    records: Vec<RecordErrors>,
+    residuals: Vec<ResidualTest>,
+}
+
+#[derive(Debug, Serialize)]
+struct RecordErrors {
+    name: String,
+    errors: Option<Errors>,
+}
+
+#[derive(Debug, Serialize)]
+struct ResidualTest {
+    test: String,
+    verdict: &'static str,
+    p: String,
+    statement: String,
+    advice: Option<String>,
+}
+
+impl Run {
+    /// Runs a model. Data that it was fitted to begin as they did then.
+    ///
+    /// # Errors
+    /// Data that the model cannot run on, or without a measured output.
+    pub fn of(model: &Model, data: Dataset) -> Result<Self> {
+        let is_training = data.records().iter().any(|record| model.was_trained_on(&record.fingerprint()));
+        let data = if is_training { model.as_trained(&data)?.into_owned() } else { data };
+        let set = ReportSet::of(model, "", &data)?;
+        let without_band = |output: Vec<f64>| Prediction { output, ..Prediction::default() };
+        let predicted = match set.predicted {
+            Some(predicted) => predicted,
+            None => set.simulated.into_iter().map(without_band).collect(),
+        };
+        let errors = set.errors;
+        Ok(Self { data, is_training, predicted, errors })
+    }
+
+    /// Errors over all records.
+    pub fn errors(&self) -> &Errors {
+        &self.errors
+    }
+
+    /// Outputs, and the edges of the band if there is one, over all rows.
+    pub fn columns(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let all = |part: fn(&Prediction) -> &Vec<f64>| -> Vec<f64> {
+            self.predicted.iter().flat_map(part).copied().collect()
+        };
+        let mut columns = vec![("simulated", all(|run| &run.output))];
+        if self.predicted.iter().all(|run| !run.low.is_empty()) {
+            columns.extend([("low", all(|run| &run.low)), ("high", all(|run| &run.high))]);
+        }
+        columns
+    }
+
+    /// What is told of it.
+    ///
+    /// # Errors
+    /// Data that the model cannot run on.
+    pub fn judgement(&self, model: &Model) -> Result<Judgement> {
+        let pairs = || self.data.records().iter().zip(&self.predicted);
+        let has_band = self.predicted.iter().all(|run| !run.low.is_empty());
+        let coverage = has_band.then(|| BandCoverage::counted(&self.predicted, &self.data, BAND));
+        let of_record = |(record, run): (&Record, &Prediction)| {
+            let mut sums = ErrorSums::default();
+            sums.add(record.output(), &run.output);
+            RecordErrors { name: record.name().into(), errors: sums.errors(&self.data.names().output) }
+        };
+        let mut warnings = summarised(&model.range_warnings(&self.data)?);
+        if !self.is_training {
+            warnings.extend(summarised(&model.known_records(&self.data)));
+        }
+        Ok(Judgement {
+            errors: self.errors.clone(),
+            inside_band_percent: coverage.map(|coverage| coverage.coverage_percent),
+            is_training: self.is_training,
+            warnings,
+            records: pairs().map(of_record).collect(),
+            residuals: self.residuals(model)?,
+        })
+    }
+
+    /// Tests of the residual; none for too few rows.
+    fn residuals(&self, model: &Model) -> Result<Vec<ResidualTest>> {
+        if self.data.scored() < FEWEST_ROWS {
+            return Ok(Vec::new());
+        }
+        let simulated: Vec<Vec<f64>> = self.predicted.iter().map(|run| run.output.clone()).collect();
+        let options = ResidualOptions {
+            uses_rate: model.rate().is_some(),
+            is_training: self.is_training,
+            ..ResidualOptions::default()
+        };
+        let residuals = Residuals::of(&self.data, &simulated, &options)?;
+        let told = residuals.findings.iter().map(|finding| ResidualTest {
+            test: name(finding),
+            verdict: verdict(finding.verdict),
+            p: p_value(finding),
+            statement: finding.statement.clone(),
+            advice: finding.advice.clone(),
+        });
+        Ok(told.collect())
+    }
+}
+
+/// What each member of an ensemble makes of a run's data.
+///
+/// # Errors
+/// Data that the model cannot run on.
+pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>> {
+    let Some(ensemble) = model.ensemble() else { return Ok(Vec::new()) };
+    let run = |(number, member): (usize, &Model)| {
+        let of_record = |record: &Record| member.simulate(record);
+        let output: Vec<Vec<f64>> =
+            data.records().iter().map(of_record).collect::<hysid::Result<_>>().with_context(|| {
+                format!("member {} cannot run on these data", number + 1)
+            })?;
+        Ok((format!("{} {}", number + 1, member.name().name()), output.concat()))
+    };
+    ensemble.members().iter().enumerate().map(run).collect()
+}
+
+/// The last runs, by the numbers of model and file.
+#[derive(Default)]
+pub struct Runs {
+    kept: Mutex<VecDeque<((u64, u64), Arc<Run>)>>,
+}
+
+impl Runs {
+    /// The run of a model over a file; it is made if it is not kept.
+    ///
+    /// # Errors
+    /// As [`Run::of`], and as `make` has.
+    pub fn of(&self, model: u64, file: u64, make: impl FnOnce() -> Result<Run>) -> Result<Arc<Run>> {
+        let key = (model, file);
+        let kept = || self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let known = kept().iter().find(|(known, _)| *known == key).map(|(_, run)| Arc::clone(run));
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let run = Arc::new(make()?);
+        let mut kept = kept();
+        kept.truncate(MOST_KEPT - 1);
+        kept.push_front((key, Arc::clone(&run)));
+        Ok(run)
+    }
+
+    /// Forgets all of them, as files are read in another way.
+    pub fn clear(&self) {
+        self.kept.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
+    }
+}

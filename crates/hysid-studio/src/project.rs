@@ -1,0 +1,252 @@
+//! What a project consists of: files, how they are read, models. It is one JSON file in the project's folder.
+
+use anyhow::{Result, anyhow, bail};
+use hysid::options::chosen::RateChoice;
+use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Usage};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::folder::Folder;
+
+/// Version of the project's file.
+const VERSION: u32 = 1;
+
+/// What is stored of a project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Project {
+    format: String,
+    version: u32,
+    /// The next number of a file or a model.
+    next: u64,
+    /// Files with data, in the order in which they came.
+    pub files: Vec<ProjectFile>,
+    /// How the files are read and which columns are what.
+    pub understanding: Understanding,
+    /// Models, in the order in which they were made.
+    pub models: Vec<ProjectModel>,
+    /// A fit that was begun and has not ended.
+    pub unfinished: Option<Begun>,
+}
+
+/// How files are read and which columns are what.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Understanding {
+    /// How tables are read.
+    pub reading: ReadingChoice,
+    /// The columns, if they are not guessed.
+    pub columns: Option<ChosenColumns>,
+}
+
+/// Columns by their names.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "each field is the role of its name")]
+pub struct ChosenColumns {
+    pub record: Option<String>,
+    pub time: Option<String>,
+    pub inputs: Vec<String>,
+    pub rate: Option<String>,
+    pub output: String,
+}
+
+/// A file with data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProjectFile {
+    /// Its number.
+    pub id: u64,
+    /// Its name in the folder of data.
+    pub name: String,
+    /// Its length.
+    pub bytes: u64,
+    /// What it is for.
+    #[serde(rename = "use")]
+    pub usage: Use,
+}
+
+/// What a file is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Use {
+    /// Models are fitted to it.
+    Training,
+    /// Models are judged by it.
+    Unseen,
+    /// Nothing.
+    Unused,
+}
+
+/// What is to be fitted, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitRequest {
+    /// Options by name, as in the table of options.
+    #[serde(default)]
+    pub options: Map<String, Value>,
+    /// `auto`, `none` or a method; a column of the rate comes before it.
+    #[serde(default)]
+    pub rate: Option<String>,
+    /// Seconds after which the fit ends.
+    #[serde(default)]
+    pub time_limit: Option<f64>,
+}
+
+/// A fit that was begun: what it was asked for, and with which data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Begun {
+    /// Its number, which its model gets too.
+    pub id: u64,
+    /// What was asked for.
+    pub request: FitRequest,
+    /// Names of the files.
+    pub files: Vec<String>,
+    /// How they were read.
+    pub understanding: Understanding,
+}
+
+/// A model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProjectModel {
+    /// The fit that it came from.
+    pub begun: Begun,
+    /// Its file in the folder of models.
+    pub file: String,
+    /// Its report there, if it has one.
+    pub report: Option<String>,
+    /// Date and time of day in UTC.
+    pub made: String,
+    /// Seconds of the fit.
+    pub seconds: f64,
+    /// True if the fit did not come to its end, because the studio was ended.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub was_interrupted: bool,
+}
+
+impl Default for Project {
+    fn default() -> Self {
+        Self {
+            format: "hysid-project".into(),
+            version: VERSION,
+            next: 1,
+            files: Vec::new(),
+            understanding: Understanding::default(),
+            models: Vec::new(),
+            unfinished: None,
+        }
+    }
+}
+
+impl Project {
+    /// What is stored in a folder; a new project if nothing is.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is of a later version.
+    pub fn of(folder: &Folder) -> Result<Self> {
+        let Some(text) = folder.read_project()? else { return Ok(Self::default()) };
+        let file = folder.root().join("project.json");
+        let wrong = |what: String| anyhow!("{}: {what}", file.display());
+        let value: Value = serde_json::from_str(&text)
+            .map_err(|error| wrong(format!("is damaged: {error} (restore it, or open another folder)")))?;
+        match (value["format"].as_str(), value["version"].as_u64()) {
+            (Some("hysid-project"), Some(version)) if version <= u64::from(VERSION) => {}
+            (Some("hysid-project"), _) => bail!(wrong("was written by a later version of hysid".into())),
+            _ => bail!(wrong("is no project of Hysid".into())),
+        }
+        serde_json::from_value(value).map_err(|error| wrong(format!("is damaged: {error}")))
+    }
+
+    /// Its text.
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).expect("a project is plain data") + "\n"
+    }
+
+    /// A number that was not used before.
+    pub fn next_id(&mut self) -> u64 {
+        self.next += 1;
+        self.next - 1
+    }
+
+    /// The file of this number.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn file(&self, id: u64) -> Result<&ProjectFile> {
+        self.files.iter().find(|file| file.id == id).ok_or_else(|| anyhow!("there is no file {id}"))
+    }
+
+    /// The model of this number.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn model(&self, id: u64) -> Result<&ProjectModel> {
+        self.models.iter().find(|model| model.begun.id == id).ok_or_else(|| anyhow!("there is no model {id}"))
+    }
+
+    /// The files for one use.
+    pub fn files_for(&self, usage: Use) -> impl Iterator<Item = &ProjectFile> {
+        self.files.iter().filter(move |file| file.usage == usage)
+    }
+
+    /// True if a fit had other data than the present ones.
+    pub fn is_stale(&self, begun: &Begun) -> bool {
+        begun.understanding != self.understanding
+            || !begun.files.iter().eq(self.files_for(Use::Training).map(|file| &file.name))
+    }
+}
+
+impl Understanding {
+    /// What is said of the columns.
+    pub fn choice(&self) -> ColumnChoice {
+        let Some(columns) = self.columns.clone() else { return ColumnChoice::default() };
+        ColumnChoice {
+            record: columns.record,
+            time: columns.time,
+            input: columns.inputs,
+            output: Some(columns.output),
+            rate: columns.rate.map_or_else(RateOption::default, RateOption::Column),
+        }
+    }
+}
+
+impl FitRequest {
+    /// Where the rate comes from, in a project with this understanding of its files.
+    ///
+    /// # Errors
+    /// No method of this name.
+    pub fn rate(&self, understanding: &Understanding) -> Result<RateOption> {
+        if let Some(column) = understanding.columns.as_ref().and_then(|columns| columns.rate.clone()) {
+            return Ok(RateOption::Column(column));
+        }
+        let method = self.rate.as_deref().unwrap_or("auto");
+        let choice: RateChoice = method.parse().map_err(|error| Usage(format!("--rate: {error}")))?;
+        Ok(RateOption::Choice(choice))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_project_reads_back_as_it_was_written_and_a_damaged_one_says_so() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::open(Some(&place.path().join("p"))).unwrap();
+        let mut project = Project::of(&folder).unwrap();
+        assert_eq!(project, Project::default());
+        let id = project.next_id();
+        project.files.push(ProjectFile { id, name: "a.csv".into(), bytes: 7, usage: Use::Unseen });
+        folder.write_project(&project.text()).unwrap();
+        assert_eq!(Project::of(&folder).unwrap(), project);
+        let text = project.text();
+        folder.write_project(&text[..text.len() / 2]).unwrap();
+        let error = Project::of(&folder).unwrap_err().to_string();
+        assert!(error.contains("project.json: is damaged"), "{error}");
+        folder.write_project(&text.replace("\"version\": 1", "\"version\": 9")).unwrap();
+        let error = Project::of(&folder).unwrap_err().to_string();
+        assert!(error.contains("later version"), "{error}");
+    }
+}

@@ -1,0 +1,159 @@
+//! Answers: JSON, arrays of numbers, downloads, and problems in words.
+
+use axum::Json;
+use axum::body::Body;
+use axum::http::header::{self, HeaderName, HeaderValue};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde_json::json;
+
+use super::Shared;
+use crate::studio::Studio;
+
+/// Why something cannot be done, in words.
+#[derive(Debug)]
+pub struct Problem {
+    status: StatusCode,
+    words: String,
+}
+
+impl Problem {
+    /// Of this status.
+    pub fn new(status: StatusCode, words: impl Into<String>) -> Self {
+        Self { status, words: words.into() }
+    }
+
+    /// Somebody else asks.
+    pub fn refused(words: &str) -> Self {
+        Self::new(StatusCode::FORBIDDEN, words)
+    }
+}
+
+impl From<anyhow::Error> for Problem {
+    fn from(error: anyhow::Error) -> Self {
+        let words = format!("{error:#}");
+        let status = match words.starts_with("a fit is running") {
+            true => StatusCode::CONFLICT,
+            false => StatusCode::BAD_REQUEST,
+        };
+        Self::new(status, words)
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        (self.status, Json(json!({"error": self.words}))).into_response()
+    }
+}
+
+/// An answer, or why there is none.
+pub type Answer<T> = Result<T, Problem>;
+
+/// Computes an answer on a thread of its own, one of few at a time.
+pub async fn computed<T: Send + 'static>(
+    shared: Shared,
+    compute: impl FnOnce(&std::sync::Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
+) -> Answer<T> {
+    let Shared { studio, computing, .. } = shared;
+    let words = "the studio is ending";
+    let permit = computing.acquire_owned().await.map_err(|_| Problem::refused(words))?;
+    let result = tokio::task::spawn_blocking(move || {
+        let _permit = permit;
+        compute(&studio)
+    });
+    match result.await {
+        Ok(result) => Ok(result?),
+        Err(_) => Err(Problem::new(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the studio made an error in this computation; its project is safe",
+        )),
+    }
+}
+
+/// Arrays of numbers, one after the other, with the name of each.
+pub struct Arrays {
+    headers: Vec<(HeaderName, String)>,
+    content: Vec<u8>,
+}
+
+impl Arrays {
+    /// Of these columns.
+    pub fn of<V: AsRef<[f64]>>(columns: &[(&str, V)]) -> Self {
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        let rows = columns.first().map_or(0, |(_, values)| values.as_ref().len());
+        let mut content = Vec::with_capacity(8 * rows * columns.len());
+        for (_, values) in columns {
+            content.extend(values.as_ref().iter().flat_map(|value| value.to_le_bytes()));
+        }
+        let arrays = Self { headers: Vec::new(), content };
+        arrays.with("x-columns", names.join(",")).with("x-rows", rows.to_string())
+    }
+
+    /// With one more header.
+    pub fn with(mut self, name: &'static str, value: String) -> Self {
+        self.headers.push((HeaderName::from_static(name), value));
+        self
+    }
+}
+
+impl IntoResponse for Arrays {
+    fn into_response(self) -> Response {
+        let mut response = Response::new(Body::from(self.content));
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream"));
+        for (name, value) in self.headers {
+            if let Ok(value) = HeaderValue::from_str(&value) {
+                headers.insert(name, value);
+            }
+        }
+        response
+    }
+}
+
+/// Text for a header, as `encodeURIComponent` writes it.
+pub fn encoded(text: &str) -> String {
+    let letter = |byte: u8| match byte {
+        b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' => char::from(byte).to_string(),
+        other => format!("%{other:02X}"),
+    };
+    text.bytes().map(letter).collect()
+}
+
+/// A file to be saved.
+pub fn download(name: &str, kind: &'static str, content: Vec<u8>) -> Response {
+    let mut response = Response::new(Body::from(content));
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
+    let disposition = format!("attachment; filename*=UTF-8''{}", encoded(name));
+    if let Ok(disposition) = HeaderValue::from_str(&disposition) {
+        headers.insert(header::CONTENT_DISPOSITION, disposition);
+    }
+    response
+}
+
+/// That something was done.
+pub fn done() -> Response {
+    Json(json!({})).into_response()
+}
+
+/// A value as JSON.
+pub fn value(value: impl Serialize) -> Response {
+    Json(value).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_follow_each_other_in_little_endian() {
+        let arrays = Arrays::of(&[("a", vec![1.0, f64::NAN]), ("b", vec![-2.5, 0.0])]);
+        assert_eq!(arrays.content.len(), 32);
+        assert_eq!(arrays.content[..8], 1.0f64.to_le_bytes());
+        assert_eq!(arrays.content[16..24], (-2.5f64).to_le_bytes());
+        assert_eq!(arrays.headers[0].1, "a,b");
+        assert_eq!(arrays.headers[1].1, "2");
+        assert_eq!(encoded("a b/ü.json"), "a%20b%2F%C3%BC.json");
+    }
+}

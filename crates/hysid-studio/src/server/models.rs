@@ -1,0 +1,212 @@
+//! Fits and models.
+
+use std::fs;
+
+use axum::Json;
+use axum::body::Bytes;
+use axum::extract::{Path, Query, State};
+use axum::http::header::{self, HeaderValue};
+use axum::response::{Html, IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+
+use super::Shared;
+use super::answer::{Answer, Arrays, Problem, computed, done, download, encoded, value};
+use crate::drive;
+use crate::judgement;
+use crate::neurons::{self, Neurons};
+use crate::project::FitRequest;
+use crate::take_away;
+
+/// Begins a fit.
+pub async fn fit(State(shared): State<Shared>, Json(request): Json<FitRequest>) -> Answer<Response> {
+    let id = computed(shared, move |studio| studio.begin_fit(request)).await?;
+    Ok(value(json!({"id": id})))
+}
+
+/// Ends the fit with its best model so far.
+pub async fn stop(State(shared): State<Shared>) -> Response {
+    shared.studio.stop_fit();
+    done()
+}
+
+/// What the best model so far simulates.
+pub async fn preview(State(shared): State<Shared>) -> Answer<Arrays> {
+    let nothing = || Problem::new(axum::http::StatusCode::NOT_FOUND, "there is no model so far");
+    let preview = shared.studio.preview().ok_or_else(nothing)?;
+    let rows = preview.output.len();
+    Ok(Arrays::of(&[("simulated", preview.output.as_slice())])
+        .with("x-file", preview.file.to_string())
+        .with("x-from", "0".into())
+        .with("x-to", rows.to_string())
+        .with("x-name", encoded(&preview.name)))
+}
+
+/// The free run of a model over a file.
+pub async fn simulated(State(shared): State<Shared>, Path((model, file)): Path<(u64, u64)>) -> Answer<Arrays> {
+    computed(shared, move |studio| Ok(Arrays::of(&studio.run(model, file)?.columns()))).await
+}
+
+/// What each member of an ensemble makes of a file.
+pub async fn members(State(shared): State<Shared>, Path((model, file)): Path<(u64, u64)>) -> Answer<Arrays> {
+    computed(shared, move |studio| {
+        let (run, model) = (studio.run(model, file)?, studio.model(model)?);
+        let members = judgement::members(&model, &run.data)?;
+        let names: Vec<&str> = members.iter().map(|(name, _)| name.as_str()).collect();
+        let columns: Vec<(&str, &[f64])> =
+            members.iter().map(|(_, output)| ("member", output.as_slice())).collect();
+        Ok(Arrays::of(&columns).with("x-names", encoded(&json!(names).to_string())))
+    })
+    .await
+}
+
+/// Errors and tests of a model on a file.
+pub async fn judgement(
+    State(shared): State<Shared>,
+    Path((model, file)): Path<(u64, u64)>,
+) -> Answer<Response> {
+    let told = computed(shared, move |studio| studio.run(model, file)?.judgement(&*studio.model(model)?));
+    Ok(value(told.await?))
+}
+
+/// Rows of a path, and the network that is looked into.
+#[derive(Deserialize)]
+pub struct Driven {
+    rows: usize,
+    #[serde(default)]
+    network: usize,
+}
+
+/// Numbers of a body.
+fn numbers(body: &Bytes) -> Vec<f64> {
+    body.chunks_exact(8).filter_map(|bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?))).collect()
+}
+
+/// A model along a path from rest.
+pub async fn run(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Query(driven): Query<Driven>,
+    body: Bytes,
+) -> Answer<Arrays> {
+    computed(shared, move |studio| {
+        let model = studio.model(id)?;
+        let run = drive::Path::of(&model, &numbers(&body), driven.rows)?.run(&model)?;
+        let mut columns = vec![("simulated", &run.output)];
+        if !run.low.is_empty() {
+            columns.extend([("low", &run.low), ("high", &run.high)]);
+        }
+        Ok(Arrays::of(&columns))
+    })
+    .await
+}
+
+/// Each stop of a network along a path from rest.
+pub async fn run_neurons(
+    State(shared): State<Shared>,
+    Path(id): Path<u64>,
+    Query(driven): Query<Driven>,
+    body: Bytes,
+) -> Answer<Arrays> {
+    computed(shared, move |studio| {
+        let model = studio.model(id)?;
+        let path = drive::Path::of(&model, &numbers(&body), driven.rows)?;
+        let stops = neurons::along(&model, driven.network, path.record()?)?;
+        let names: Vec<&str> = stops.iter().map(|(name, _)| name.as_str()).collect();
+        let columns: Vec<(&str, &[f64])> =
+            stops.iter().map(|(_, output)| ("stop", output.as_slice())).collect();
+        Ok(Arrays::of(&columns).with("x-names", encoded(&json!(names).to_string())))
+    })
+    .await
+}
+
+/// The networks of a model.
+pub async fn networks(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    let told = computed(shared, move |studio| {
+        let model = studio.model(id)?;
+        let networks = neurons::networks(&model).into_iter();
+        Ok(networks.filter_map(|(name, network)| Neurons::of(name, network)).collect::<Vec<_>>())
+    });
+    Ok(value(json!({"networks": told.await?})))
+}
+
+/// What is known of a model.
+pub async fn facts(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    Ok(value(json!({"html": computed(shared, move |studio| studio.facts(id)).await?})))
+}
+
+/// Removes a model.
+pub async fn remove(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    computed(shared, move |studio| studio.remove_model(id)).await?;
+    Ok(done())
+}
+
+/// The file of a model.
+pub async fn file(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    computed(shared, move |studio| {
+        let content = fs::read(studio.model_file(id)?)?;
+        Ok(download(&studio.stored_model(id)?.file, "application/json", content))
+    })
+    .await
+}
+
+/// The report of a model. Its script is part of it, and runs because the policy names its checksum.
+pub async fn report(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    let text = computed(shared, move |studio| studio.report(id)).await?;
+    let script = text.split_once("<script>").and_then(|(_, rest)| rest.rsplit_once("</script>"));
+    let checksum = script.map(|(script, _)| format!("'sha256-{}'", base64(&Sha256::digest(script))));
+    let policy = format!(
+        "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; form-action 'none'; \
+         base-uri 'none'; frame-ancestors 'none'; sandbox allow-scripts allow-downloads",
+        checksum.as_deref().unwrap_or("'none'")
+    );
+    let mut response = Html(text).into_response();
+    if let Ok(policy) = HeaderValue::from_str(&policy) {
+        response.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    Ok(response)
+}
+
+/// Bytes as text of base 64.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let letters = |three: &[u8]| {
+        let bits = three.iter().fold(0u32, |bits, byte| bits << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
+        let letter = |place: usize| match place <= three.len() {
+            true => char::from(LETTERS[(bits >> (18 - 6 * place)) as usize & 63]),
+            false => '=',
+        };
+        [letter(0), letter(1), letter(2), letter(3)]
+    };
+    bytes.chunks(3).flat_map(letters).collect()
+}
+
+/// A model for a target, as an archive.
+pub async fn export(
+    State(shared): State<Shared>,
+    Path((id, target)): Path<(u64, String)>,
+) -> Answer<Response> {
+    computed(shared, move |studio| {
+        let (name, content) = take_away::archive(&*studio.model(id)?, &studio.stored_model(id)?, &target)?;
+        Ok(download(&name, "application/zip", content))
+    })
+    .await
+}
+
+/// The lines that make a model without the studio.
+pub async fn lines(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer<Response> {
+    Ok(value(computed(shared, move |studio| studio.lines(id)).await?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base_64_is_that_of_rfc_4648() {
+        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The addresses of a studio.
+
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, State};
+use axum::http::StatusCode;
+use axum::middleware::{from_fn_with_state, map_response};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{delete, get, post};
+
+use super::answer::{Answer, Problem, computed, value};
+use super::guard::{self, Guard};
+use super::{Shared, assets, events, files, models};
+use crate::choices::Choices;
+
+/// Largest body of a request that is no file: a path of some inputs.
+const MOST_BODY_BYTES: usize = 8 << 20;
+
+/// All addresses, for the page that the guard knows.
+pub fn router(shared: Shared, guard: Guard) -> Router {
+    let of_files = Router::new()
+        .route("/files", post(files::upload).layer(DefaultBodyLimit::disable()))
+        .route("/files/{id}", delete(files::remove))
+        .route("/files/{id}/use", post(files::use_as))
+        .route("/files/{id}/columns", get(files::numbers))
+        .route("/specimens", post(files::specimen))
+        .route("/reading", post(files::reading))
+        .route("/columns", post(files::columns))
+        .route("/findings", get(files::findings))
+        .route("/warnings", get(files::warnings))
+        .route("/diagnosis", get(files::diagnosis));
+    let of_models = Router::new()
+        .route("/fit", post(models::fit))
+        .route("/fit/stop", post(models::stop))
+        .route("/fit/preview", get(models::preview))
+        .route("/models/{id}", delete(models::remove))
+        .route("/models/{id}/simulated/{file}", get(models::simulated))
+        .route("/models/{id}/members/{file}", get(models::members))
+        .route("/models/{id}/judgement/{file}", get(models::judgement))
+        .route("/models/{id}/run", post(models::run))
+        .route("/models/{id}/neurons", get(models::networks))
+        .route("/models/{id}/neurons/run", post(models::run_neurons))
+        .route("/models/{id}/facts", get(models::facts))
+        .route("/models/{id}/file", get(models::file))
+        .route("/models/{id}/report", get(models::report))
+        .route("/models/{id}/export/{target}", get(models::export))
+        .route("/models/{id}/commands", get(models::lines));
+    let api = Router::new()
+        .route("/choices", get(async || value(Choices::all())))
+        .route("/project", get(project))
+        .route("/events", get(events::events))
+        .merge(of_files)
+        .merge(of_models);
+    Router::new()
+        .route("/", get(assets::page))
+        .route("/assets/{*path}", get(assets::asset))
+        .nest("/api", api)
+        .fallback(async || Problem::new(StatusCode::NOT_FOUND, "there is no such address"))
+        .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))
+        .layer(map_response(in_words))
+        .layer(from_fn_with_state(guard, guard::check))
+        .with_state(shared)
+}
+
+async fn project(State(shared): State<Shared>) -> Answer<Response> {
+    Ok(value(computed(shared, |studio| Ok(studio.shown())).await?))
+}
+
+/// What the server itself refuses, in words of the same form.
+async fn in_words(response: Response) -> Response {
+    let is_text = response
+        .headers()
+        .get("content-type")
+        .is_some_and(|kind| kind.to_str().is_ok_and(|kind| kind.starts_with("text/plain")));
+    let status = response.status();
+    if !status.is_client_error() || !is_text {
+        return response;
+    }
+    let bytes = axum::body::to_bytes(response.into_body(), 4096).await.unwrap_or_default();
+    Problem::new(status, String::from_utf8_lossy(&bytes).into_owned()).into_response()
+}

@@ -1,0 +1,170 @@
+//! What is taken away of a model: exports, and the lines that make the very same model without the studio.
+
+use std::io::{Cursor, Write};
+
+use anyhow::{Context, Result, anyhow};
+use hysid::data::record::ColumnNames;
+use hysid::model::Model;
+use hysid::options::table::{OPTIONS, Values};
+use hysid_document::shell::shown;
+use hysid_export::{Options, Target};
+use hysid_records::ReadingChoice;
+use serde::Serialize;
+use serde_json::Value;
+use zip::write::{SimpleFileOptions, ZipWriter};
+
+use crate::choices::flag;
+use crate::project::{Begun, ChosenColumns, ProjectModel};
+
+/// A model for a target, as one archive; and its name.
+///
+/// # Errors
+/// No target of this name; a model that cannot be exported there.
+pub fn archive(model: &Model, stored: &ProjectModel, target: &str) -> Result<(String, Vec<u8>)> {
+    let to = Target::named(target).ok_or_else(|| anyhow!("there is no target \"{target}\""))?;
+    let name = identifier(&stored.file);
+    let mut options = Options::named(name.clone());
+    options.source = vec![("model file".into(), stored.file.clone())];
+    let export = hysid_export::export(model, to, &options)?;
+    let folder = format!("{name}_{target}");
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    for file in &export.files {
+        archive.start_file(format!("{folder}/{}", file.path), stored).context("cannot make the archive")?;
+        archive.write_all(&file.content)?;
+    }
+    let content = archive.finish().context("cannot make the archive")?.into_inner();
+    Ok((format!("{folder}.zip"), content))
+}
+
+/// The name of a model's file as an identifier.
+fn identifier(file: &str) -> String {
+    let stem = file.strip_suffix(".json").unwrap_or(file);
+    let letters: String =
+        stem.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
+    format!("model_{letters}")
+}
+
+/// Lines that make the very same model.
+#[derive(Debug, Serialize)]
+pub struct Lines {
+    /// For a shell, in the folder of the project.
+    shell: String,
+    /// For Python, in the folder of the project; `null` where Python has no option for what was chosen.
+    python: Option<String>,
+}
+
+impl Lines {
+    /// For a model with these columns.
+    pub fn of(stored: &ProjectModel, names: &ColumnNames, folder: &std::path::Path) -> Self {
+        let begun = &stored.begun;
+        // What was guessed is said, so that the lines do not depend on the guess.
+        let columns = begun.understanding.columns.clone().unwrap_or_else(|| ChosenColumns {
+            record: None,
+            time: names.time.clone(),
+            inputs: names.inputs.clone(),
+            rate: names.rate.clone(),
+            output: names.output.clone(),
+        });
+        Self { shell: shell(stored, &columns, folder), python: python(begun, &columns, &stored.file) }
+    }
+}
+
+fn shell(stored: &ProjectModel, columns: &ChosenColumns, folder: &std::path::Path) -> String {
+    let quoted = |text: &str| shown(std::path::Path::new(text));
+    let begun = &stored.begun;
+    let mut words = vec!["hysid fit".to_string()];
+    words.extend(begun.files.iter().map(|file| quoted(&format!("data/{file}"))));
+    let mut option = |name: &str, value: &str| words.push(format!("{} {}", flag(name), quoted(value)));
+    columns.record.iter().for_each(|name| option("record", name));
+    columns.time.iter().for_each(|name| option("time", name));
+    columns.inputs.iter().for_each(|name| option("input", name));
+    option("output", &columns.output);
+    match (&columns.rate, begun.request.rate.as_deref()) {
+        (Some(column), _) => option("rate", column),
+        (None, Some(method)) if method != "auto" => option("rate", method),
+        _ => {}
+    }
+    words.extend(of_reading(&begun.understanding.reading));
+    for (name, value) in &begun.request.options {
+        words.extend(argument(name, value).map(|value| match value {
+            None => flag(name),
+            Some(value) => format!("{} {}", flag(name), quoted(&value)),
+        }));
+    }
+    words.extend(begun.request.time_limit.map(|seconds| format!("--time-limit {seconds}")));
+    words.push(format!("-o {}", quoted(&stored.file)));
+    format!("cd {}\n{}", shown(folder), words.join(" "))
+}
+
+fn of_reading(reading: &ReadingChoice) -> Vec<String> {
+    let Ok(Value::Object(named)) = serde_json::to_value(reading) else { unreachable!("it is a map") };
+    let quoted = |text: String| shown(std::path::Path::new(&text));
+    let mut words = Vec::new();
+    for (name, value) in &named {
+        match value {
+            Value::Array(all) => {
+                words.extend(all.iter().filter_map(Value::as_str).map(|one| {
+                    format!("{}={}", flag(name), quoted(one.to_string()))
+                }));
+            }
+            value => words.extend(argument(name, value).map(|value| match value {
+                None => flag(name),
+                Some(value) => format!("{} {}", flag(name), quoted(value)),
+            })),
+        }
+    }
+    words
+}
+
+/// The value of an option on the command line; `Some(None)` for a flag, `None` for what is not said.
+fn argument(name: &str, value: &Value) -> Option<Option<String>> {
+    let is_truth = OPTIONS.iter().any(|option| option.name == name && matches!(option.values, Values::Truth));
+    match value {
+        Value::Null => None,
+        Value::Bool(value) if is_truth => Some(Some(value.to_string())),
+        Value::Bool(false) => None,
+        Value::Bool(true) => Some(None),
+        Value::String(text) => Some(Some(text.clone())),
+        Value::Array(all) => {
+            Some(Some(all.iter().map(ToString::to_string).collect::<Vec<String>>().join(",")))
+        }
+        other => Some(Some(other.to_string())),
+    }
+}
+
+/// Python takes columns of arrays, so a table that is read in another way than pandas does has no line.
+fn python(begun: &Begun, columns: &ChosenColumns, file: &str) -> Option<String> {
+    let [data] = begun.files.as_slice() else { return None };
+    let is_csv = data.to_lowercase().ends_with(".csv");
+    if !is_csv || begun.understanding.reading != ReadingChoice::default() {
+        return None;
+    }
+    let text = |text: &str| Value::from(text).to_string();
+    let column = |name: &str| format!("table[{}]", text(name));
+    let inputs = columns.inputs.iter().map(|name| text(name)).collect::<Vec<String>>().join(", ");
+    let mut arguments = vec![format!("table[[{inputs}]]"), column(&columns.output)];
+    arguments.extend(columns.time.iter().map(|name| format!("time={}", column(name))));
+    arguments.extend(columns.record.iter().map(|name| format!("records={}", column(name))));
+    match (&columns.rate, begun.request.rate.as_deref()) {
+        (Some(name), _) => arguments.push(format!("rate={}", column(name))),
+        (None, Some(method)) if method != "auto" => arguments.push(format!("rate={}", text(method))),
+        _ => {}
+    }
+    for (name, value) in &begun.request.options {
+        let value = match value {
+            Value::Null => continue,
+            Value::Bool(true) => "True".to_string(),
+            Value::Bool(false) => "False".to_string(),
+            other => other.to_string(),
+        };
+        arguments.push(format!("{name}={value}"));
+    }
+    arguments.extend(begun.request.time_limit.map(|seconds| format!("time_limit={seconds}")));
+    Some(format!(
+        "import hysid\nimport pandas\n\ntable = pandas.read_csv({})\nmodel = hysid.fit({})\nmodel.save({})\n",
+        text(&format!("data/{data}")),
+        arguments.join(", "),
+        text(file),
+    ))
+}
