@@ -153,6 +153,9 @@ impl fmt::Debug for LawSoFar<'_> {
     }
 }
 
+/// A function that makes a law of searched parameters and weights.
+type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
+
 /// A function that gets the progress of a search and can stop it.
 pub type SearchObserver<'a> = dyn FnMut(SearchProgress) -> ControlFlow<()> + 'a;
 
@@ -281,7 +284,7 @@ where
 /// Searches the parameters of a family; `law` is made of parameters and weights for an observer that asks for it.
 fn search_parameters(
     family: &dyn Family,
-    law: &(dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync),
+    law: &MakesLaw<'_>,
     series: &[Series],
     effort: Effort,
     observer: &mut SearchObserver<'_>,
