@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::fit::network::random_stops::{RandomStopsOptions, fit_random_stops_until};
-use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
+use crate::fit::network::{Fitted, Observer, Present, Progress, SharedObserver};
 use crate::law::facts::Origin;
 use crate::model::history::{HistoryPoint, Phase, Run};
 use crate::model::input_transform::Transformed;
@@ -86,11 +86,26 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
                 train_nrmse_percent: progress.train_nrmse_percent,
             });
         }
-        observer.tell(&Progress::of_search(options.model, &progress))
+        let so_far = || {
+            let body = Predictor::Law(progress.law_so_far()?);
+            let runs = vec![run_of_law(history.clone(), Termination::Stopped)];
+            let evaluations = progress.evaluations;
+            let fitted = finished(data, options, &seen, body, evaluations, Termination::Stopped, runs);
+            Some(fitted.ok()?.model)
+        };
+        observer.tell(&Progress::of_search(options.model, &progress).with_state(Present::Law(&so_far)))
     };
     let found = law::fit(&seen.data, &of_seen, &mut of_round, stop)?;
     let termination = observer.termination(found.termination);
-    let run = Run {
+    let runs = if history.is_empty() { Vec::new() } else { vec![run_of_law(history, termination)] };
+    let body = Predictor::Law(found.law);
+    let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
+    Ok(Fitted { searched: found.searched, ..fitted })
+}
+
+/// The history of a search, as of the only start.
+fn run_of_law(history: Vec<HistoryPoint>, termination: Termination) -> Run {
+    Run {
         phase: Phase::AllData,
         start: 0,
         method: Method::LeastSquares,
@@ -98,11 +113,7 @@ fn of_law(data: &Dataset, options: &ClassicalOptions, observer: &mut Observer<'_
         termination,
         fold: None,
         validation_nrmse_percent: None,
-    };
-    let runs = if run.history.is_empty() { Vec::new() } else { vec![run] };
-    let body = Predictor::Law(found.law);
-    let fitted = finished(data, options, &seen, body, found.evaluations, termination, runs)?;
-    Ok(Fitted { searched: found.searched, ..fitted })
+    }
 }
 
 /// The data in the initial state that is asked for.

@@ -446,15 +446,17 @@ fn a_fit_can_be_broken_off_and_gives_the_best_so_far() {
         let options = ClassicalOptions { starts: Some(starts), epochs: Some(12), ..options(rate) };
         // In the search, and in the epochs on all data that follow if there was a choice.
         for last in [3, 13] {
-            let mut told = Vec::new();
+            let (mut told, mut so_far) = (Vec::new(), None);
             let mut observer = |progress: hysid::fit::law::search::SearchProgress| {
                 told.push(progress.round);
+                so_far = progress.law_so_far();
                 if progress.round == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let found = DuhemNn::fit(&data, &options, &mut observer).unwrap();
             let is_stopped = told.last() == Some(&last);
             assert!(is_stopped || starts == 1 && last == 13, "{told:?}");
             assert_eq!(found.termination == Termination::Stopped, is_stopped);
+            assert_eq!(so_far, Some(found.law.clone().into()));
             assert!(error(&found.law, &data, rate) < 100.0);
         }
         let untrained = ClassicalOptions { epochs: Some(0), ..options.clone() };

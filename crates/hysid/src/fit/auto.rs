@@ -32,6 +32,7 @@ mod selection;
 mod single;
 mod stages;
 mod trial;
+mod tried;
 mod warm_up;
 mod work;
 
@@ -60,6 +61,7 @@ use prior::Evidence;
 use selection::selection;
 use stages::Stages;
 use trial::{Bench, HeldOut, Trial, fit_members};
+pub use tried::{Standing, Tried};
 use work::Work;
 
 /// Most folds.

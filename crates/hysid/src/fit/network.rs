@@ -25,11 +25,13 @@ mod shared_observer;
 mod soundness;
 pub mod start;
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::HeldOutRows;
+use crate::fit::auto::Tried;
 use crate::fit::initial_state::Wanted;
 use crate::fit::law::search::SearchProgress;
 use crate::law::facts::Origin;
@@ -41,12 +43,11 @@ use crate::options::classical::ClassicalModel;
 use crate::options::network::FitOptions;
 use crate::options::network::Method;
 pub use checkpoint::Checkpoint;
-use checkpoint::Snapshot;
 use fitting::Fitting;
 pub(crate) use shared_observer::SharedObserver;
 
 /// Progress of a fit. The observer gets it after every epoch; during long epochs it gets the same again
-/// without a checkpoint, so that it can stop the fit.
+/// without a checkpoint and a model, so that it can stop the fit.
 #[derive(Debug, Clone)]
 pub struct Progress<'a> {
     /// The model that is being fitted.
@@ -68,62 +69,108 @@ pub struct Progress<'a> {
     pub train_nrmse_percent: f64,
     /// Completed share of the work, 0 to 1, if every start takes all its epochs.
     pub done: f64,
-    snapshot: Option<Snapshot<'a>>,
+    /// What has just become known of a candidate of `auto`; `None` if this tells of a fit on its way.
+    pub tried: Option<Tried<'a>>,
+    present: Option<Present<'a>>,
 }
 
-impl Progress<'_> {
+/// A fit on its way. What it has come to is copied only on request.
+#[derive(Clone, Copy)]
+pub(crate) enum Present<'a> {
+    Network(&'a Fitting<'a>),
+    /// The search of a law, by the model that it has come to.
+    Law(&'a (dyn Fn() -> Option<Model> + Sync)),
+}
+
+impl fmt::Debug for Present<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Present::Network(_) => "Network",
+            Present::Law(_) => "Law",
+        })
+    }
+}
+
+impl<'a> Progress<'a> {
     /// The state from which the fit can be resumed; `None` for a model without checkpoints. It is a copy,
     /// which is made only on request.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
-        self.snapshot.map(|snapshot| snapshot.checkpoint())
+        match self.present? {
+            Present::Network(fitting) => Some(fitting.checkpoint()),
+            Present::Law(_) => None,
+        }
     }
 
-    /// The same without the state, of a fit that is only a part of the work.
-    pub(crate) fn of_part(&self, done: f64) -> Progress<'static> {
-        Progress { done, is_part: true, snapshot: None, ..self.clone() }
+    /// The best model of the fit so far, complete, as if the fit had been stopped: the network with the lowest
+    /// objective, or the law that the search ranks first. It is made only on request, which takes a free run over the
+    /// training data.
+    ///
+    /// `None` before there is any model, for a law that is found without a search, and for a fit that is only a part
+    /// of the work; candidates of `auto` have models of their own in [`tried`](Self::tried).
+    pub fn model_so_far(&self) -> Option<Model> {
+        match self.present? {
+            Present::Network(fitting) => fitting.model_so_far(),
+            Present::Law(model) => model(),
+        }
     }
 
-    /// The same without the state.
+    /// The same of a fit that is only a part of the work, and so without its state.
+    pub(crate) fn of_part(&self, done: f64) -> Self {
+        Self { done, is_part: true, present: None, ..self.clone() }
+    }
+
+    /// The same without what it refers to.
     pub(crate) fn without_state(&self) -> Progress<'static> {
-        Progress { snapshot: None, ..self.clone() }
+        Progress { tried: None, present: None, ..self.clone() }
+    }
+
+    /// The same with the state of the fit.
+    pub(crate) fn with_state(self, present: Present<'a>) -> Self {
+        Self { present: Some(present), ..self }
     }
 
     /// Of a network's fit before its first epoch.
     pub(crate) fn of_beginning(options: &FitOptions) -> Self {
+        Self::beginning(ModelName::Network(options.model), options.training.plan(options.epochs)[0].0)
+    }
+
+    /// Of a model's fit that has no rounds.
+    pub(crate) fn of_least_squares(model: ClassicalModel) -> Self {
+        Self::beginning(ModelName::Classical(model), Method::LeastSquares)
+    }
+
+    /// Of a candidate of `auto`: what has become known of it, and its error on the rows that it was fitted to.
+    pub(crate) fn of_candidate(model: ModelName, done: f64, tried: Tried<'a>) -> Self {
+        let trained = tried.model.and_then(|model| model.provenance().trained_error().nrmse_std_percent);
+        let train_nrmse_percent = trained.unwrap_or(f64::NAN);
+        let beginning = Self::beginning(model, Method::LeastSquares);
+        Self { is_part: true, train_nrmse_percent, done, tried: Some(tried), ..beginning }
+    }
+
+    fn beginning(model: ModelName, method: Method) -> Self {
         Self {
-            model: ModelName::Network(options.model),
+            model,
             is_part: false,
             phase: Phase::AllData,
-            method: options.training.plan(options.epochs)[0].0,
+            method,
             start: 0,
             epoch: 0,
             evaluations: 0,
             train_nrmse_percent: f64::NAN,
             done: 0.0,
-            snapshot: None,
+            tried: None,
+            present: None,
         }
-    }
-
-    /// Of a model's fit that has no rounds.
-    pub(crate) fn of_least_squares(model: ClassicalModel) -> Self {
-        let nothing_yet =
-            SearchProgress { round: 0, rounds: 1, evaluations: 0, train_nrmse_percent: f64::NAN };
-        Self::of_search(model, &nothing_yet)
     }
 
     /// Of a classical model's search.
     pub(crate) fn of_search(model: ClassicalModel, progress: &SearchProgress) -> Self {
         Self {
-            model: ModelName::Classical(model),
-            is_part: false,
-            phase: Phase::AllData,
-            method: Method::LeastSquares,
-            start: 0,
             epoch: progress.round,
             evaluations: progress.evaluations,
             train_nrmse_percent: progress.train_nrmse_percent,
             done: progress.round as f64 / progress.rounds.max(1) as f64,
-            snapshot: None,
+            ..Self::of_least_squares(model)
         }
     }
 }

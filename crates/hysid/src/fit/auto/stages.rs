@@ -10,6 +10,7 @@ use crate::fit::auto::combination::Combination;
 use crate::fit::auto::prior::Evidence;
 use crate::fit::auto::score::Score;
 use crate::fit::auto::trial::{Bench, Trial};
+use crate::fit::auto::tried::{Standing, Tried};
 use crate::fit::network::Progress;
 use crate::model::Model;
 use crate::options::auto::AutoOptions;
@@ -56,6 +57,13 @@ pub(super) struct Stages<'w, 'o, 'a> {
     pub dropped: Vec<Candidate>,
 }
 
+/// A law that was fitted in haste, as it is to be tried on the folds.
+struct Hasty {
+    law: Candidate,
+    model: Option<Model>,
+    is_worth: bool,
+}
+
 impl Stages<'_, '_, '_> {
     /// Tries the candidates. `first` is a fit of the first of them to everything.
     pub fn run(&mut self, candidates: Vec<Candidate>, first: Option<Model>) {
@@ -96,32 +104,67 @@ impl Stages<'_, '_, '_> {
         self.trials.extend(candidates.into_iter().map(Trial::of));
         if let Some((model, trial)) = first.zip(self.trials.get_mut(begun)) {
             trial.members.insert(0, model);
+            self.tell(&[begun], Standing::Trying);
         }
         let (first_folds, other_folds) = self.first_folds();
         let all: Vec<usize> = (begun..self.trials.len()).collect();
         let urgent = if begun == 0 { all.len().min(SIDE_BY_SIDE) } else { 0 };
         let (urgent, others) = all.split_at(urgent);
         self.bench.try_folds(&mut self.trials, urgent, 0, &first_folds, true);
+        self.tell(urgent, Standing::Trying);
         self.bench.try_folds(&mut self.trials, urgent, 0, &other_folds, false);
+        self.tell(urgent, Standing::Trying);
         for few in others.chunks(SIDE_BY_SIDE) {
             self.bench.try_folds(&mut self.trials, few, 0, &first_folds, false);
+            self.tell(few, Standing::Trying);
         }
         let hopeful = self.hopeful(&all, &first_folds);
         let (tried, hopeful): (Vec<usize>, Vec<usize>) =
             hopeful.into_iter().partition(|place| urgent.contains(place));
-        self.bench.end_start(&mut self.trials, &tried);
+        self.end_start(&tried);
         for few in hopeful.chunks(SIDE_BY_SIDE) {
             self.bench.try_folds(&mut self.trials, few, 0, &other_folds, true);
-            self.bench.end_start(&mut self.trials, few);
+            self.end_start(few);
         }
         let is_dropped = |place: &usize| !tried.contains(place) && !hopeful.contains(place);
         let dropped: Vec<usize> = all.into_iter().filter(is_dropped).collect();
+        self.tell(&dropped, Standing::Dropped);
         self.dropped.extend(dropped.iter().map(|&place| self.trials[place].candidate.clone()));
         let mut place = 0;
         self.trials.retain(|_| {
             place += 1;
             !dropped.contains(&(place - 1))
         });
+    }
+
+    /// Ends the starts of some candidates that are under way, and tells what came of them.
+    fn end_start(&mut self, places: &[usize]) {
+        self.bench.end_start(&mut self.trials, places);
+        for &place in places {
+            let is_complete = self.trials[place].is_complete();
+            self.tell(&[place], if is_complete { Standing::Complete } else { Standing::Dropped });
+        }
+    }
+
+    /// Tells the observer how some candidates stand.
+    fn tell(&self, places: &[usize], standing: Standing) {
+        let Bench { folds, work, .. } = self.bench;
+        for trial in places.iter().map(|&place| &self.trials[place]) {
+            let (predicted, judged) = match standing {
+                Standing::Complete => (trial.predicted.clone(), (0..folds.len()).collect()),
+                _ => (trial.predicted_so_far(&[]).unwrap_or_default(), trial.folds_so_far()),
+            };
+            let error = || Score::of(&predicted, folds, |fold| judged.contains(&fold)).percent();
+            let tried = Tried {
+                name: trial.candidate.name(),
+                error_percent: (!judged.is_empty()).then(error),
+                folds: judged.len(),
+                of: folds.len(),
+                standing,
+                model: trial.any_model(),
+            };
+            work.tell(&trial.candidate, tried);
+        }
     }
 
     /// Of the candidates at some places, the best of each kind on these folds, best first, unless their errors are
@@ -205,17 +248,26 @@ impl Stages<'_, '_, '_> {
                 .as_ref()
                 .and_then(|fitted| fitted.model.provenance().trained_error().nrmse_std_percent);
             let is_worth = error.is_some_and(|error| error <= most);
-            let next = match is_without_noise {
-                true => law.thorough(),
-                false => law.near(fitted.map_or_else(Vec::new, |fitted| fitted.searched)),
-            };
-            (next, is_worth)
+            let (model, searched) =
+                fitted.map_or((None, Vec::new()), |fitted| (Some(fitted.model), fitted.searched));
+            let next = if is_without_noise { law.thorough() } else { law.near(searched) };
+            Hasty { law: next, model, is_worth }
         };
-        let tried: Vec<(Candidate, bool)> = laws.into_par_iter().map(fit).collect();
-        let is_worth = |(_, is_worth): &(Candidate, bool)| *is_worth;
-        let (worth, not): (Vec<_>, Vec<_>) = tried.into_iter().partition(is_worth);
-        self.dropped.extend(not.into_iter().map(|(law, _)| law));
-        worth.into_iter().map(|(law, _)| law).collect()
+        let tried: Vec<Hasty> = laws.into_par_iter().map(fit).collect();
+        let (worth, not): (Vec<Hasty>, Vec<Hasty>) = tried.into_iter().partition(|hasty| hasty.is_worth);
+        for Hasty { law, model, .. } in not {
+            let tried = Tried {
+                name: law.name(),
+                error_percent: None,
+                folds: 0,
+                of: self.bench.folds.len(),
+                standing: Standing::Dropped,
+                model: model.as_ref(),
+            };
+            self.bench.work.tell(&law, tried);
+            self.dropped.push(law);
+        }
+        worth.into_iter().map(|hasty| hasty.law).collect()
     }
 
     /// Further starts of the random candidates that count.
@@ -229,6 +281,7 @@ impl Stages<'_, '_, '_> {
         work.expect(self.fits_of_further_starts(places.len()));
         for start in 1..=further {
             self.bench.try_start(&mut self.trials, &places, start);
+            self.tell(&places, Standing::Complete);
         }
     }
 

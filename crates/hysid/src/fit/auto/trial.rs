@@ -117,6 +117,17 @@ impl Trial {
             .then(|| self.under_way.iter().map(|on_fold| predicted(on_fold).unwrap_or_default()).collect())
     }
 
+    /// The folds that the start under way has been fitted to.
+    pub fn folds_so_far(&self) -> Vec<usize> {
+        (0..self.under_way.len()).filter(|&fold| self.under_way[fold].is_some()).collect()
+    }
+
+    /// A fit to everything or, if there is none, to the training part of a fold.
+    pub fn any_model(&self) -> Option<&Model> {
+        let on_folds = self.under_way.iter().flatten().map(|on_fold| &on_fold.model);
+        self.members.values().chain(on_folds).next()
+    }
+
     /// Ends the start that is under way: it counts if it has been fitted to every fold.
     fn end_start(&mut self, folds: usize) {
         let under_way = std::mem::take(&mut self.under_way);

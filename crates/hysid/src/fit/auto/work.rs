@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use crate::data::record::Dataset;
 use crate::error::Result;
 use crate::fit::auto::candidates::Candidate;
+use crate::fit::auto::tried::Tried;
 use crate::fit::identify;
 use crate::fit::network::{Fitted, Observer, Progress, SharedObserver};
 use crate::model::Model;
@@ -101,12 +102,19 @@ impl<'o, 'a> Work<'o, 'a> {
 
     /// Tells the observer of a fit on its way.
     fn observe(&self, progress: &Progress) -> ControlFlow<()> {
-        let share = {
-            let mut fits = self.fits();
-            fits.told = fits.told.max((fits.done as f64 / fits.expected as f64).min(1.0));
-            fits.told
-        };
-        self.observer.tell(&progress.of_part(share))
+        self.observer.tell(&progress.of_part(self.share()))
+    }
+
+    /// Tells the observer what has become known of a candidate. What it says is heard before the next fit.
+    pub fn tell(&self, candidate: &Candidate, tried: Tried<'_>) {
+        let _ = self.observer.tell(&Progress::of_candidate(candidate.asked().model(), self.share(), tried));
+    }
+
+    /// The completed share of the work.
+    fn share(&self) -> f64 {
+        let mut fits = self.fits();
+        fits.told = fits.told.max((fits.done as f64 / fits.expected as f64).min(1.0));
+        fits.told
     }
 
     fn fits(&self) -> std::sync::MutexGuard<'_, Fits> {

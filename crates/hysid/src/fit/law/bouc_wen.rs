@@ -9,9 +9,9 @@ use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
+use crate::law::Sample;
 use crate::law::bouc_wen::{B_BOUNDS, BoucWen, BoucWenState, Degradation};
 use crate::law::series::Series;
-use crate::law::{Law, Sample};
 use crate::options::classical::ClassicalOptions;
 use crate::stop_check::StopCheck;
 
@@ -28,9 +28,7 @@ impl Identify for BoucWen {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
-        let found = search(&family, &series, effort, observer, stop)?;
-        let law = family.whole(&found.parameters, &found.weights);
-        Ok(found.identified(law.validated()?))
+        search(&family, &series, effort, observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

@@ -23,7 +23,7 @@ use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, OptionError, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::search::{
-    Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned_to,
+    Effort, Identified, LawSoFar, Memory, SearchObserver, SearchProgress, spread, thinned_to,
 };
 use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
 use crate::law::Law;
@@ -123,9 +123,13 @@ impl<'a> Training<'a> {
     fn run(mut self, whole: &Task<'_>, observer: &mut SearchObserver<'_>) -> Result<Identified<DuhemNn>> {
         let last = if self.held.is_some() { self.epochs.div_ceil(6) } else { 0 };
         let rounds = self.epochs + last;
-        let mut tell = |round, evaluations, nrmse_percent| {
-            let told =
-                observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent: nrmse_percent });
+        let mut tell = |round, evaluations, best: &Walk| {
+            let law = || {
+                let (parameters, value) = best.least();
+                whole.law(parameters, value).ok().map(Into::into)
+            };
+            let (train_nrmse_percent, law) = (best.value().nrmse_percent(), LawSoFar(Some(&law)));
+            let told = observer(SearchProgress { round, rounds, evaluations, train_nrmse_percent, law });
             if whole.stop.is_asked() { ControlFlow::Break(()) } else { told }
         };
         let Self { kept, held, ref mut walks, epochs } = self;
@@ -136,15 +140,10 @@ impl<'a> Training<'a> {
                 held.iter().for_each(|held| walk.judge(held));
             }
         };
-        let mut termination = walks.run(plan, advance, |walks, round| {
-            tell(round, walks.evaluations(), walks.best().value().nrmse_percent())
-        });
+        let mut termination =
+            walks.run(plan, advance, |walks, round| tell(round, walks.evaluations(), walks.best()));
         let evaluations = walks.evaluations();
-        let best = walks.best();
-        let (parameters, value) = best.least_on_held_out.as_ref().map_or_else(
-            || (best.search.parameters(), best.value()),
-            |(_, parameters, value)| (parameters.as_slice(), value),
-        );
+        let (parameters, value) = walks.best().least();
         if held.is_none() || termination == Termination::Stopped {
             return whole.identified(parameters, value, evaluations, termination);
         }
@@ -155,7 +154,7 @@ impl<'a> Training<'a> {
         }
         for epoch in 1..=last {
             walk.advance(whole);
-            let flow = tell(epochs + epoch, evaluations + walk.evaluations(), walk.value().nrmse_percent());
+            let flow = tell(epochs + epoch, evaluations + walk.evaluations(), &walk);
             if flow.is_break() {
                 termination = Termination::Stopped;
                 break;
@@ -288,6 +287,12 @@ impl<'a> Task<'a> {
     }
 
     /// The network with these parameters and the output weights there.
+    fn law(&self, parameters: &[f64], value: &Value) -> Result<DuhemNn> {
+        let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
+        DuhemNn { cell, ..self.frame.law.clone() }.validated()
+    }
+
+    /// The same as the result of a search.
     fn identified(
         &self,
         parameters: &[f64],
@@ -295,8 +300,7 @@ impl<'a> Task<'a> {
         evaluations: usize,
         termination: Termination,
     ) -> Result<Identified<DuhemNn>> {
-        let cell = self.frame.layout.cell(parameters, value.solution.weights.clone());
-        let law = DuhemNn { cell, ..self.frame.law.clone() }.validated()?;
+        let law = self.law(parameters, value)?;
         let train_nrmse_percent = value.nrmse_percent();
         Ok(Identified { law, train_nrmse_percent, evaluations, termination, searched: Vec::new() })
     }
@@ -465,6 +469,14 @@ impl Walk {
 
     fn value(&self) -> &Value {
         self.search.known_value().expect("a walk begins at a known value")
+    }
+
+    /// Where the error on what was held out is smallest, and the value there; the present place if that was not judged.
+    fn least(&self) -> (&[f64], &Value) {
+        self.least_on_held_out.as_ref().map_or_else(
+            || (self.search.parameters(), self.value()),
+            |(_, parameters, value)| (parameters.as_slice(), value),
+        )
     }
 }
 

@@ -13,7 +13,6 @@ use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, Effort, Family, Identified, Memory, SearchObserver, Variable, search, thinned,
 };
-use crate::law::Law;
 use crate::law::generalized_prandtl_ishlinskii::{
     Envelope, GeneralizedPrandtlIshlinskii, PlayWeights, follow,
 };
@@ -51,9 +50,7 @@ impl Identify for GeneralizedPrandtlIshlinskii {
         }
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
-        let found = search(&family, &series, effort, observer, stop)?;
-        let law = family.whole(&found.parameters, &found.weights);
-        Ok(found.identified(law.validated()?))
+        search(&family, &series, effort, observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

@@ -9,7 +9,6 @@ use crate::fit::law::linearised::{self, LawFamily, Linearised};
 use crate::fit::law::search::{
     Columns, EPOCHS, Effort, Family, Identified, Memory, STARTS, SearchObserver, Variable, search, thinned,
 };
-use crate::law::Law;
 use crate::law::jiles_atherton::{C_BOUNDS, JilesAtherton, JilesAthertonForm, JilesAthertonState};
 use crate::law::series::Series;
 use crate::options::classical::ClassicalOptions;
@@ -25,9 +24,7 @@ impl Identify for JilesAtherton {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
-        let found = search(&family, &series, effort, observer, stop)?;
-        let law = family.whole(&found.parameters, &found.weights);
-        Ok(found.identified(law.validated()?))
+        search(&family, &series, effort, observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

@@ -28,9 +28,7 @@ impl Identify for Lugre {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
         let effort = Effort::of(options, STARTS, EPOCHS);
-        let found = search(&family, &series, effort, observer, stop)?;
-        let law = family.whole(&found.parameters, &found.weights);
-        Ok(found.identified(law.validated()?))
+        search(&family, &series, effort, observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

@@ -19,11 +19,13 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::Identify;
-use crate::fit::law::search::{Effort, Identified, Memory, SearchObserver, SearchProgress, spread, thinned};
-use crate::law::Law;
+use crate::fit::law::search::{
+    Effort, Identified, LawSoFar, Memory, SearchObserver, SearchProgress, spread, thinned,
+};
 use crate::law::neuro_madelung::{Branch, LARGEST_WEIGHT, MOST_HIDDEN, NeuroMadelung, argument};
 use crate::law::series::Series;
 use crate::law::turning_point_stack::{TurningPoint, TurningPointStack};
+use crate::law::{Classical, Law};
 use crate::linear_algebra::{Symmetric, dot};
 use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, Slope, damped_step};
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
@@ -108,17 +110,17 @@ impl<'a> Training<'a> {
             }
         }
         self.walks.sort();
-        let best = self.walks.best();
-        let parameters = best.best.as_ref().map_or(best.parameters(), |(_, parameters)| parameters);
         // What was held out is learnt from where it was judged best, in few epochs.
-        let mut walk = Walk::at(whole, parameters.to_vec());
+        let mut walk = Walk::at(whole, self.walks.best().best_parameters().to_vec());
         for epoch in 1..=last {
             if termination == Termination::Stopped {
                 break;
             }
             walk.advance(whole);
+            let law = || whole.so_far(walk.parameters());
             let told = SearchProgress {
                 train_nrmse_percent: walk.nrmse_percent(),
+                law: LawSoFar(Some(&law)),
                 ..progress(&self.walks, self.epochs + epoch, rounds)
             };
             if observer(told) == ControlFlow::Break(()) || whole.stop.is_asked() {
@@ -156,10 +158,11 @@ impl<'a> Training<'a> {
             }
         };
         let tell = |walks: &MultiStart<Walk>, epoch| {
-            let mut told = progress(walks, epoch, rounds);
+            let law = || kept.so_far(walks.best().best_parameters());
+            let mut told = SearchProgress { law: LawSoFar(Some(&law)), ..progress(walks, epoch, rounds) };
             if epoch <= forced {
                 // With the measured output at every turning point it is no error of a free run.
-                told.train_nrmse_percent = f64::NAN;
+                (told.train_nrmse_percent, told.law) = (f64::NAN, LawSoFar(None));
             }
             let flow = observer(told);
             if stop.is_asked() { ControlFlow::Break(()) } else { flow }
@@ -172,9 +175,10 @@ impl<'a> Training<'a> {
     }
 }
 
-fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProgress {
+fn progress(walks: &MultiStart<Walk>, round: usize, rounds: usize) -> SearchProgress<'static> {
     let train_nrmse_percent = walks.best().nrmse_percent();
-    SearchProgress { round, rounds, evaluations: walks.evaluations(), train_nrmse_percent }
+    let evaluations = walks.evaluations();
+    SearchProgress { round, rounds, evaluations, train_nrmse_percent, law: LawSoFar(None) }
 }
 
 /// A model with its scales and without a network.
@@ -261,6 +265,11 @@ impl<'a> Task<'a> {
             virgin_output,
             ..self.frame.clone()
         }
+    }
+
+    /// The law for an observer.
+    fn so_far(&self, parameters: &[f64]) -> Option<Classical> {
+        self.law(parameters).validated().ok().map(Into::into)
     }
 
     fn random(&self, seed: u64, start: usize) -> Vec<f64> {
@@ -497,6 +506,11 @@ impl Walk {
 
     fn value(&self) -> &Value {
         self.search.known_value().expect("a walk begins at a known value")
+    }
+
+    /// Where a free run over what was held out has the smallest error; the present place if none was judged.
+    fn best_parameters(&self) -> &[f64] {
+        self.best.as_ref().map_or(self.parameters(), |(_, parameters)| parameters)
     }
 
     fn nrmse_percent(&self) -> f64 {

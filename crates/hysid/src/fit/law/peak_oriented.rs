@@ -30,9 +30,7 @@ impl Identify for PeakOriented {
     ) -> Result<Identified<Self>> {
         data.check_identifiable(FEWEST_ROWS)?;
         let (family, series) = posed(data, options)?;
-        let found = search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)?;
-        let law = family.whole(&found.parameters, &found.weights);
-        Ok(found.identified(law.validated()?))
+        search(&family, &series, Effort::of(options, STARTS, EPOCHS), observer, stop)
     }
 
     fn linearised(&self, data: &Dataset, options: &ClassicalOptions) -> Result<Option<Linearised>> {

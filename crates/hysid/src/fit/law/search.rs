@@ -19,6 +19,7 @@ mod descent;
 mod projection;
 mod rows;
 
+use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
@@ -27,7 +28,9 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use crate::error::{Error, Result};
+use crate::fit::law::linearised::LawFamily;
 use crate::law::series::Series;
+use crate::law::{Classical, Law};
 use crate::optimise::multi_start::{MultiStart, Plan};
 use crate::optimise::random::generator;
 use crate::options::classical::ClassicalOptions;
@@ -119,8 +122,8 @@ pub(crate) trait Family: Sync {
 }
 
 /// Progress of a search, after every round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchProgress {
+#[derive(Debug, Clone, Copy)]
+pub struct SearchProgress<'a> {
     /// Iterations of every remaining start.
     pub round: usize,
     /// Largest number of rounds.
@@ -130,7 +133,28 @@ pub struct SearchProgress {
     /// Error of the best start in free run, in percent of the standard deviation of the output; NaN before
     /// there is one.
     pub train_nrmse_percent: f64,
+    pub(crate) law: LawSoFar<'a>,
 }
+
+impl SearchProgress<'_> {
+    /// The law of the best start so far, which is made only on request; `None` before there is one.
+    pub fn law_so_far(&self) -> Option<Classical> {
+        self.law.0.and_then(|law| law())
+    }
+}
+
+/// How to make the law that a search has come to.
+#[derive(Clone, Copy)]
+pub(crate) struct LawSoFar<'a>(pub Option<&'a (dyn Fn() -> Option<Classical> + Sync)>);
+
+impl fmt::Debug for LawSoFar<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(if self.0.is_some() { "a law" } else { "no law" })
+    }
+}
+
+/// A function that makes a law of searched parameters and weights.
+type MakesLaw<'a> = dyn Fn(&[f64], &[f64]) -> Option<Classical> + Sync + 'a;
 
 /// A function that gets the progress of a search and can stop it.
 pub type SearchObserver<'a> = dyn FnMut(SearchProgress) -> ControlFlow<()> + 'a;
@@ -180,7 +204,7 @@ impl Effort {
 
 /// What a search found.
 #[derive(Debug, Clone)]
-pub(crate) struct Found {
+struct Found {
     /// Searched parameters.
     pub parameters: Vec<f64>,
     /// Weights of the features.
@@ -191,7 +215,7 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    pub fn identified<L>(&self, law: L) -> Identified<L> {
+    fn identified<L>(&self, law: L) -> Identified<L> {
         Identified {
             law,
             train_nrmse_percent: self.train_nrmse_percent,
@@ -235,14 +259,32 @@ impl Objective<'_> {
     }
 }
 
-/// Searches the parameters of a family. The result depends on data, effort and seed alone, not on the
-/// number of threads: a start is walked by itself, and the starts are compared in their order.
+/// Searches a law of a family. The result depends on data, effort and seed alone, not on the number of threads: a
+/// start is walked by itself, and the starts are compared in their order.
 ///
 /// # Errors
 /// No start asked for, or a stop before any start was evaluated. The data must have been found identifiable
 /// before.
-pub(crate) fn search(
+pub(crate) fn search<F: LawFamily>(
+    family: &F,
+    series: &[Series],
+    effort: Effort,
+    observer: &mut SearchObserver<'_>,
+    stop: StopCheck<'_>,
+) -> Result<Identified<F::Law>>
+where
+    F::Law: Into<Classical>,
+{
+    let law = |parameters: &[f64], weights: &[f64]| family.whole(parameters, weights).validated();
+    let so_far = |parameters: &[f64], weights: &[f64]| law(parameters, weights).ok().map(Into::into);
+    let found = search_parameters(family, &so_far, series, effort, observer, stop)?;
+    Ok(found.identified(law(&found.parameters, &found.weights)?))
+}
+
+/// Searches the parameters of a family; `law` is made of parameters and weights for an observer that asks for it.
+fn search_parameters(
     family: &dyn Family,
+    law: &MakesLaw<'_>,
     series: &[Series],
     effort: Effort,
     observer: &mut SearchObserver<'_>,
@@ -268,11 +310,14 @@ pub(crate) fn search(
     };
     let mut descents = MultiStart::new(begun);
     let tell = |descents: &MultiStart<Descent>, round| {
+        let best = descents.best();
+        let law = || law(&objective.parameters(best.u()), &best.value().weights);
         let told = observer(SearchProgress {
             round,
             rounds: effort.epochs,
             evaluations: drawn + descents.evaluations(),
-            train_nrmse_percent: objective.nrmse_percent(descents.best().value()),
+            train_nrmse_percent: objective.nrmse_percent(best.value()),
+            law: LawSoFar(Some(&law)),
         });
         if stop.is_asked() { ControlFlow::Break(()) } else { told }
     };

@@ -19,21 +19,12 @@ pub struct Checkpoint {
     state: State,
 }
 
-/// A view of a fit, of which a checkpoint can be made.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Snapshot<'a> {
-    pub options: &'a FitOptions,
-    pub data: &'a Dataset,
-    pub state: &'a State,
-}
-
-impl Snapshot<'_> {
-    pub fn checkpoint(&self) -> Checkpoint {
-        Checkpoint { options: self.options.clone(), data: checksum(self.data), state: self.state.clone() }
-    }
-}
-
 impl Checkpoint {
+    /// A copy of the state of a fit.
+    pub(crate) fn of(options: &FitOptions, data: &Dataset, state: &State) -> Self {
+        Self { options: options.clone(), data: checksum(data), state: state.clone() }
+    }
+
     /// The options of the fit.
     pub fn options(&self) -> &FitOptions {
         &self.options

@@ -16,11 +16,10 @@ use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::HeldOutRows;
-use crate::fit::network::checkpoint::Snapshot;
 use crate::fit::network::objective::Objective;
 use crate::fit::network::run::{From, TrainingRun};
 use crate::fit::network::soundness::{Frame, require};
-use crate::fit::network::{Fitted, Observer, Progress, SharedObserver, wanted_of};
+use crate::fit::network::{Checkpoint, Fitted, Observer, Present, Progress, SharedObserver, wanted_of};
 use crate::law::facts::Origin;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::model::history::Phase;
@@ -32,6 +31,7 @@ use crate::network::{Architecture, Network};
 use crate::options::network::{FitOptions, Regularisation, Trainer};
 use crate::options::{FitSpec, ModelName};
 use crate::stop_check::StopCheck;
+use crate::termination::Termination;
 use crate::validation::{Fold, PooledErrors, folds};
 
 /// Most folds that a fit is validated on.
@@ -197,27 +197,56 @@ impl<'a> Fitting<'a> {
         let (winner, penalties) = if validation.is_exact && !observer.is_over() {
             (self.without_penalties(observer)?, NO_PENALTIES)
         } else {
-            (best_of(&self.state.all_data), penalties)
+            (best_of(&self.state.all_data).expect("at least one run has begun").clone(), penalties)
         };
         let (winner, network) = self.finished(winner, penalties, observer)?;
 
         let runs =
             self.state.folds.iter().flat_map(TrainingRun::runs).chain(winner.runs()).cloned().collect();
         let evaluations = self.state.all_runs().map(TrainingRun::evaluations).sum();
-        let Self { measured, asked, whole, .. } = self;
-        let Part { preprocessing, scaling, .. } = whole;
         let found = Found {
-            chosen_start: winner.start(),
             termination: observer.termination(winner.termination()),
             runs,
             validation: validation.errors,
+            ..self.found(&winner, penalties)
+        };
+        let model = self.model(network, found)?;
+        Ok(Fitted::of(model, evaluations).with_held_out(validation.held_out))
+    }
+
+    /// What is known of a run on everything.
+    fn found(&self, run: &TrainingRun, penalties: Regularisation) -> Found {
+        Found {
+            chosen_start: run.start(),
+            termination: run.termination(),
+            runs: run.runs().to_vec(),
+            validation: None,
             penalties: Some(penalties),
             selection: None,
-            options: FitSpec::Network(asked.clone()),
-        };
-        let body = Predictor::Network { network, scaling };
-        let model = Model::new(body, preprocessing, asked.rate, measured, found)?;
-        Ok(Fitted::of(model, evaluations).with_held_out(validation.held_out))
+            options: FitSpec::Network(self.asked.clone()),
+        }
+    }
+
+    fn model(&self, network: Network, found: Found) -> Result<Model> {
+        let Part { preprocessing, scaling, .. } = &self.whole;
+        let body = Predictor::Network { network, scaling: scaling.clone() };
+        Model::new(body, preprocessing.clone(), self.asked.rate, self.measured, found)
+    }
+
+    /// The state from which the fit can be resumed.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint::of(&self.asked, self.measured, &self.state)
+    }
+
+    /// The network with the lowest objective so far, of the last stage on everything that has begun, with the output
+    /// weights that were found there; `None` if there is none yet.
+    pub fn model_so_far(&self) -> Option<Model> {
+        let State { all_data, all_exact, all_rows, .. } = &self.state;
+        let run = [all_rows, all_exact, all_data].into_iter().find_map(|runs| best_of(runs))?;
+        let penalties = if all_exact.is_empty() { self.asked.penalties() } else { NO_PENALTIES };
+        let network = run.network_as_trained(self.architecture).ok()?;
+        let found = Found { termination: Termination::Stopped, ..self.found(run, penalties) };
+        self.model(network, found).ok()
     }
 
     /// All starts on everything, thinned if it is much.
@@ -503,10 +532,10 @@ impl<'a> Fitting<'a> {
             evaluations: run.evaluations(),
             train_nrmse_percent: run.last().train_nrmse_percent,
             done,
-            snapshot: None,
+            tried: None,
+            present: None,
         };
-        let snapshot = Some(Snapshot { options: &self.asked, data: self.measured, state: &self.state });
-        Progress { snapshot, ..told }
+        told.with_state(Present::Network(self))
     }
 
     /// Share of the work done, if every run takes all its epochs.
@@ -573,10 +602,9 @@ fn onward(objective: usize, run: &TrainingRun) -> Beginning {
     Beginning { objective, start: run.start(), from: From::Parameters(run.best().parameters.clone()) }
 }
 
-/// The run with the lowest objective.
-fn best_of(runs: &[TrainingRun]) -> TrainingRun {
-    let lowest = runs.iter().min_by(|a, b| a.objective().total_cmp(&b.objective()));
-    lowest.expect("at least one run has begun").clone()
+/// The run with the lowest objective; `None` if no run has begun.
+fn best_of(runs: &[TrainingRun]) -> Option<&TrainingRun> {
+    runs.iter().min_by(|a, b| a.objective().total_cmp(&b.objective()))
 }
 
 impl State {
