@@ -8,6 +8,7 @@ mod plan;
 mod plot;
 mod program;
 mod reading;
+mod studio;
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -35,6 +36,7 @@ pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
 pub use program::{Completions, Man, Models};
 pub use reading::ReadingOptions;
+pub use studio::Studio;
 
 /// Identify models of hysteresis from measured input and output, simulate and evaluate them.
 #[derive(Debug, Parser)]
@@ -120,6 +122,8 @@ pub enum Command {
     Cycles(Cycles),
     /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
     Plot(Box<Plot>),
+    /// Identify in the browser, on this machine: drop a file, press a button, take the model away
+    Studio(Studio),
     /// Plan the next test: its input, with a reason for each segment
     Plan(Box<Plan>),
     /// Run the paper's experiments and compare the results with the paper

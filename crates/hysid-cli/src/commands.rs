@@ -18,6 +18,7 @@ pub mod plan;
 pub mod plot;
 pub mod reproduce;
 pub mod simulate;
+pub mod studio;
 pub mod validate;
 
 use std::path::{Path, PathBuf};

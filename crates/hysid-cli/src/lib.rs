@@ -62,6 +62,7 @@ pub fn run() -> ExitCode {
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Cycles(arguments) => commands::cycles::run(&arguments),
         Command::Plot(arguments) => commands::plot::run(&arguments),
+        Command::Studio(arguments) => commands::studio::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::run(&arguments),
         Command::Generate(arguments) => commands::generate::run(&arguments),

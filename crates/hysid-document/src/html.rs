@@ -34,6 +34,18 @@ pub fn page(page: &Page, beginning: &str) -> String {
     )
 }
 
+/// The parts of a page by themselves, for another page that has their [`style`].
+pub fn parts(parts: &[Part]) -> String {
+    parts.iter().map(part).collect()
+}
+
+/// The style sheet of parts inside elements that a selector chooses, for another page.
+pub fn style(selector: &str) -> String {
+    // The first rules define the colours and the page.
+    let (colours, rest) = STYLE.split_once("* {").expect("the style sheet has rules for all elements");
+    format!("{colours}{}\n{selector} {{\n* {{{rest}}}\n", chart::style())
+}
+
 fn script() -> String {
     format!("<script>\n{SCRIPT}</script>\n")
 }
@@ -44,10 +56,6 @@ fn content(all: &[Part]) -> String {
     let before = all.iter().position(|part| matches!(part, Part::Section(..))).unwrap_or(all.len());
     let (lead, sections) = all.split_at(before);
     format!("{}{}{}", parts(lead), contents.as_ref().map_or_else(String::new, part), parts(sections))
-}
-
-fn parts(parts: &[Part]) -> String {
-    parts.iter().map(part).collect()
 }
 
 fn part(part: &Part) -> String {

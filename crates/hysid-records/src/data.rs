@@ -42,7 +42,8 @@ pub struct Source {
 pub struct Place {
     /// Name of the record.
     pub record: String,
-    table: usize,
+    /// Place of its table among all.
+    pub table: usize,
     /// Its rows in the table.
     pub rows: Range<usize>,
 }
@@ -161,6 +162,11 @@ impl Data {
 }
 
 impl Source {
+    /// Where each record stands.
+    pub fn places(&self) -> &[Place] {
+        &self.places
+    }
+
     fn explain(&self, error: hysid_core::Error, roles: &Roles) -> anyhow::Error {
         let error = match error {
             hysid_core::Error::Data(error) => error,

@@ -37,22 +37,27 @@ pub struct Looked {
 }
 
 /// A column as it is read.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Column {
     /// Its name, with its unit.
     pub name: String,
     /// `time`, `input`, `output`, `rate`, `record`, `unused`; none if the roles are unclear.
     #[serde(skip_serializing_if = "Option::is_none")]
-    role: Option<&'static str>,
+    pub role: Option<&'static str>,
+    /// Its unit.
     #[serde(skip_serializing_if = "Option::is_none")]
-    unit: Option<String>,
+    pub unit: Option<String>,
+    /// The smallest number.
     #[serde(skip_serializing_if = "Option::is_none")]
-    minimum: Option<f64>,
+    pub minimum: Option<f64>,
+    /// The largest number.
     #[serde(skip_serializing_if = "Option::is_none")]
-    maximum: Option<f64>,
-    missing: usize,
+    pub maximum: Option<f64>,
+    /// Cells without a number.
+    pub missing: usize,
+    /// Why it is not used, or what is special.
     #[serde(skip_serializing_if = "Option::is_none")]
-    note: Option<String>,
+    pub note: Option<String>,
 }
 
 impl Looked {

@@ -5,8 +5,8 @@ use hysid::options::network::Trainer;
 use hysid::options::table::{FitOption, OPTIONS, Values};
 use hysid::specimens::Specimen;
 use hysid_export::Target;
-use hysid_report::models::Listed;
 use hysid_records::{READING_OPTIONS, ReadingOption};
+use hysid_report::models::Listed;
 use serde::Serialize;
 use serde_json::{Value, json};
 

@@ -1,8 +1,8 @@
 //! A model driven by hand: a path of inputs, from rest.
 
 use anyhow::{Result, bail};
-use hysid::data::record::{Excitation, Record};
 use hysid::data::rate::RateMethod;
+use hysid::data::record::{Excitation, Record};
 use hysid::model::{Model, Prediction};
 use hysid_report::BAND;
 

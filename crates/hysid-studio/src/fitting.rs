@@ -16,7 +16,8 @@ use hysid_report::{Beforehand, Identified};
 use rayon::ThreadPoolBuilder;
 
 pub use preview::Preview;
-pub use state::{Candidate, FitState, Standing};
+use state::Candidate;
+pub use state::FitState;
 use watch::Watch;
 
 /// The fits of a studio: the last one, running or ended.

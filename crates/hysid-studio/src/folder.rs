@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use hysid_files::{Destination, Failure, Kind, Lock};
 use hysid_records::Usage;
 
@@ -57,8 +57,9 @@ impl Folder {
         check_ours(asked)?;
         for inner in ["data", "models"] {
             let inner = asked.join(inner);
-            fs::create_dir_all(&inner)
-                .map_err(|error| anyhow!("{}: cannot be made: {}", inner.display(), hysid_files::reason(&error)))?;
+            fs::create_dir_all(&inner).map_err(|error| {
+                anyhow!("{}: cannot be made: {}", inner.display(), hysid_files::reason(&error))
+            })?;
         }
         let root = fs::canonicalize(asked).with_context(|| shown.to_string())?;
         match Lock::acquire(&root.join(PROJECT)) {
@@ -126,16 +127,19 @@ pub fn write(path: &Path, kind: Kind, content: &[u8]) -> Result<()> {
 
 /// Refuses a folder with other things in it.
 fn check_ours(folder: &Path) -> Result<()> {
-    let is_ours = folder.join(PROJECT).exists();
-    match fs::read_dir(folder) {
-        Ok(mut entries) if !is_ours && entries.any(|entry| entry.is_ok_and(|entry| !is_of_lock(&entry))) => {
-            let advice = "is no project of Hysid and is not empty: name another folder with --project";
-            Err(Usage(format!("{} {advice}", folder.display())).into())
-        }
-        Ok(_) => Ok(()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(anyhow!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error))),
+    if folder.join(PROJECT).exists() {
+        return Ok(());
     }
+    let mut entries = match fs::read_dir(folder) {
+        Ok(entries) => entries.flatten(),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => bail!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error)),
+    };
+    if entries.any(|entry| !is_of_lock(&entry)) {
+        let advice = "is no project of Hysid and is not empty: name another folder with --project";
+        return Err(Usage(format!("{} {advice}", folder.display())).into());
+    }
+    Ok(())
 }
 
 /// True for what a studio makes before the project has a file.
@@ -173,7 +177,9 @@ pub fn safe_name(given: &str, taken: &[&str]) -> String {
 /// Names of devices on Windows.
 fn is_reserved(stem: &str) -> bool {
     let stem = stem.to_uppercase();
-    let is_port = |name: &str| stem.starts_with(name) && stem.len() == 4 && stem.ends_with(|c: char| c.is_ascii_digit());
+    let is_port = |name: &str| {
+        stem.starts_with(name) && stem.len() == 4 && stem.ends_with(|c: char| c.is_ascii_digit())
+    };
     ["CON", "PRN", "AUX", "NUL"].contains(&stem.as_str()) || is_port("COM") || is_port("LPT")
 }
 

@@ -146,10 +146,12 @@ pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>>
     let Some(ensemble) = model.ensemble() else { return Ok(Vec::new()) };
     let run = |(number, member): (usize, &Model)| {
         let of_record = |record: &Record| member.simulate(record);
-        let output: Vec<Vec<f64>> =
-            data.records().iter().map(of_record).collect::<hysid::Result<_>>().with_context(|| {
-                format!("member {} cannot run on these data", number + 1)
-            })?;
+        let output: Vec<Vec<f64>> = data
+            .records()
+            .iter()
+            .map(of_record)
+            .collect::<hysid::Result<_>>()
+            .with_context(|| format!("member {} cannot run on these data", number + 1))?;
         Ok((format!("{} {}", number + 1, member.name().name()), output.concat()))
     };
     ensemble.members().iter().enumerate().map(run).collect()

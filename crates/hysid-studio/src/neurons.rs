@@ -15,9 +15,15 @@ pub fn networks(model: &Model) -> Vec<(String, &Model)> {
     match model.ensemble() {
         Some(ensemble) => {
             let numbered = ensemble.members().iter().enumerate().filter(|(_, member)| is_network(member));
-            numbered.map(|(number, member)| (format!("{} {}", number + 1, member.name().name()), &**member)).collect()
+            numbered
+                .map(|(number, member)| (format!("{} {}", number + 1, member.name().name()), member))
+                .collect()
         }
-        None => Some(model).into_iter().filter(is_network).map(|model| (model.name().name().into(), model)).collect(),
+        None => Some(model)
+            .into_iter()
+            .filter(is_network)
+            .map(|model| (model.name().name().into(), model))
+            .collect(),
     }
 }
 
@@ -56,7 +62,8 @@ impl Neurons {
         let parts = StopParts::of(network);
         let stop = |(index, part): (usize, &StopParts)| {
             let name = format!("stop {}", index + 1);
-            let known = influences.and_then(|weights| weights.neurons.iter().find(|neuron| neuron.name == name));
+            let known =
+                influences.and_then(|weights| weights.neurons.iter().find(|neuron| neuron.name == name));
             Stop {
                 threshold: scaling.inputs[0] / part.weights[0].abs(),
                 weights: part.weights.clone(),
@@ -106,7 +113,8 @@ pub fn along(model: &Model, network: usize, record: Record) -> Result<Vec<(Strin
     let run = |(index, part): (usize, StopParts)| {
         let beta = part.beta.unwrap_or(f64::INFINITY);
         let mut stop = DeterioratingStop::new(1.0, beta)?;
-        let at = |row: usize| part.weights.iter().zip(&drive).map(|(weight, channel)| weight * channel[row]).sum();
+        let at =
+            |row: usize| part.weights.iter().zip(&drive).map(|(weight, channel)| weight * channel[row]).sum();
         let rows = drive.first().map_or(0, Vec::len);
         Ok((format!("stop {}", index + 1), (0..rows).map(|row| stop.step(at(row))).collect()))
     };

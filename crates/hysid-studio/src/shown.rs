@@ -5,7 +5,7 @@ use std::sync::Arc;
 use hysid::data::metrics::Errors;
 use hysid::model::Model;
 use hysid_document::unit;
-use hysid_records::{Data, ReadingChoice, Roles};
+use hysid_records::{Column, Data, ReadingChoice, Roles};
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -28,6 +28,8 @@ pub struct Shown {
     problem: Option<String>,
     names: Option<Names>,
     labels: Option<Names>,
+    /// Unit of the output, if its name tells.
+    output_unit: Option<String>,
     models: Vec<ShownModel>,
     fit: Option<FitState>,
 }
@@ -51,20 +53,9 @@ struct ShownFile {
     problem: Option<String>,
     read_as: Option<String>,
     rows: usize,
-    columns: Vec<ShownColumn>,
+    columns: Vec<Column>,
     records: Vec<ShownRecord>,
     warnings: Vec<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct ShownColumn {
-    name: String,
-    role: Option<&'static str>,
-    unit: Option<String>,
-    minimum: Option<f64>,
-    maximum: Option<f64>,
-    missing: usize,
-    note: Option<String>,
 }
 
 /// Rows of a record among those of its file.
@@ -145,6 +136,7 @@ impl Shown {
             problem: view.problem.clone(),
             names: roles.map(|roles| names(roles, str::to_string)),
             labels: roles.map(|roles| names(roles, unit::label)),
+            output_unit: roles.and_then(|roles| unit::split(&roles.output).1),
             models: models.collect(),
             fit,
         }
@@ -182,18 +174,7 @@ impl ShownFile {
             problem: view.problem.clone(),
             read_as: table.map(|table| table.read_as.clone()),
             rows: table.map_or(0, |table| table.rows),
-            columns: columns
-                .iter()
-                .map(|column| ShownColumn {
-                    name: column.name.clone(),
-                    role: column.role,
-                    unit: column.unit.clone(),
-                    minimum: column.minimum,
-                    maximum: column.maximum,
-                    missing: column.missing,
-                    note: column.note.clone(),
-                })
-                .collect(),
+            columns: columns.to_vec(),
             records: view.data.as_deref().map_or_else(Vec::new, records),
             warnings: view.data.as_ref().map_or_else(Vec::new, |data| data.warnings.clone()),
         }

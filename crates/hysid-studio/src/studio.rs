@@ -10,16 +10,17 @@ use anyhow::{Context, Result, anyhow, bail};
 use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
 use hysid::diagnosis::before_a_fit;
-use hysid::diagnosis::{DataIssue, DiagnosisOptions};
+use hysid::diagnosis::{DataIssue, Diagnosis, DiagnosisOptions};
 use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::options::chosen::NamedOptions;
 use hysid::specimens::{Specimen, with_noise};
 use hysid_document::{Page, html};
 use hysid_files::Kind;
-use hysid_records::{ColumnChoice, Data, ReadingChoice, Roles, Usage, csv_text, understanding};
+use hysid_records::{ColumnChoice, Data, ReadingChoice, Roles, Usage, csv_text, summarised, understanding};
 use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
-use hysid_report::{Beforehand, Identified, data_warnings, date, origin, page_text};
+use hysid_report::{Beforehand, Identified, date, origin, page_text};
+use serde::Serialize;
 use tokio::sync::watch;
 
 use crate::fitting::{FitState, Fits, Preview, Work};
@@ -32,6 +33,15 @@ use crate::view::{View, read_named};
 
 /// Most files of a project.
 const MOST_FILES: usize = 200;
+
+/// What may be wrong with data.
+#[derive(Debug, Serialize)]
+pub struct Findings {
+    /// What a fit warns of.
+    warnings: Vec<String>,
+    /// What the diagnosis finds, with the rows that show it.
+    issues: Vec<DataIssue>,
+}
 
 /// Models that are kept in memory.
 const MOST_MODELS: usize = 20;
@@ -103,8 +113,7 @@ impl Studio {
         let mut changed = project.clone();
         let result = change(&mut changed)?;
         self.folder.write_project(&changed.text())?;
-        let is_read_again =
-            changed.files != project.files || changed.understanding != project.understanding;
+        let is_read_again = changed.files != project.files || changed.understanding != project.understanding;
         *project = changed;
         if is_read_again {
             let view = View::of(&project, &self.folder, &self.view());
@@ -168,8 +177,9 @@ impl Studio {
     /// # Errors
     /// A file that cannot be read.
     pub fn take_path(&self, path: &Path) -> Result<()> {
-        let content = fs::read(path)
-            .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))?;
+        let content = fs::read(path).map_err(|error| {
+            anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))
+        })?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let is_known = |file: &ProjectFile| {
             file.name == name && fs::read(self.folder.data(&file.name)).is_ok_and(|known| known == content)
@@ -298,22 +308,19 @@ impl Studio {
         }
     }
 
-    /// What may be wrong with the training data.
+    /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.
     ///
     /// # Errors
     /// As [`Studio::training_data`].
-    pub fn findings(&self) -> Result<Vec<DataIssue>> {
+    pub fn findings(&self) -> Result<Findings> {
         let data = self.training_data()?;
-        Ok(before_a_fit(&data.set)?)
-    }
-
-    /// The warnings of the training data.
-    ///
-    /// # Errors
-    /// As [`Studio::training_data`].
-    pub fn warnings(&self) -> Result<Vec<String>> {
-        let data = self.training_data()?;
-        Ok(data_warnings(&data, &Summary::of(&data.set)))
+        let warnings = summarised(&Summary::of(&data.set).warnings(&data.set));
+        // Data that cannot be diagnosed may still be fitted to.
+        let issues = match Diagnosis::of(&data.set, &DiagnosisOptions::default()) {
+            Ok(diagnosis) => diagnosis.doctor,
+            Err(_) => before_a_fit(&data.set).unwrap_or_default(),
+        };
+        Ok(Findings { warnings, issues })
     }
 
     /// The diagnosis of the training data, as HTML.
@@ -470,7 +477,8 @@ impl Studio {
             Some(model) => {
                 let id = begun.id;
                 let file = format!("{id}-{}.json", model.name().name());
-                fs::rename(&best, self.folder.models(&file)).context("the best model so far cannot be kept")?;
+                fs::rename(&best, self.folder.models(&file))
+                    .context("the best model so far cannot be kept")?;
                 let stored = ProjectModel {
                     begun,
                     file,
@@ -508,8 +516,9 @@ impl Studio {
             return Ok(Arc::clone(known));
         }
         let path = self.model_file(id)?;
-        let text = fs::read_to_string(&path)
-            .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))?;
+        let text = fs::read_to_string(&path).map_err(|error| {
+            anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))
+        })?;
         let model = Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))?;
         let model = Arc::new(model);
         let mut kept = kept();
@@ -542,7 +551,8 @@ impl Studio {
     /// There is none.
     pub fn report(&self, id: u64) -> Result<String> {
         let report = self.project().model(id)?.report.clone();
-        let report = report.ok_or_else(|| anyhow!("this model has no report: its fit did not come to its end"))?;
+        let report =
+            report.ok_or_else(|| anyhow!("this model has no report: its fit did not come to its end"))?;
         let path = self.folder.models(&report);
         fs::read_to_string(&path)
             .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))

@@ -104,9 +104,11 @@ fn of_reading(reading: &ReadingChoice) -> Vec<String> {
     for (name, value) in &named {
         match value {
             Value::Array(all) => {
-                words.extend(all.iter().filter_map(Value::as_str).map(|one| {
-                    format!("{}={}", flag(name), quoted(one.to_string()))
-                }));
+                words.extend(
+                    all.iter()
+                        .filter_map(Value::as_str)
+                        .map(|one| format!("{}={}", flag(name), quoted(one.to_string()))),
+                );
             }
             value => words.extend(argument(name, value).map(|value| match value {
                 None => flag(name),

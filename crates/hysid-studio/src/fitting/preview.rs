@@ -53,7 +53,7 @@ fn first_rows(data: &Data) -> Vec<Record> {
     let mut left = MOST_ROWS;
     let mut rows = Vec::new();
     for (record, place) in data.set.records().iter().zip(data.source.places()) {
-        if left == 0 || place.table() != 0 {
+        if left == 0 || place.table != 0 {
             break;
         }
         let taken = record.len().min(left);

@@ -102,7 +102,8 @@ impl<'c> Watch<'c> {
     }
 
     fn take_candidate(&mut self, tried: &Tried<'_>) {
-        let error = tried.error_percent.map(|(inside, outside)| (inside * outside).sqrt());
+        // Inside the trained range, by which the report ranks too.
+        let error = tried.error_percent.map(|(inside, _)| inside);
         let candidate = Candidate {
             name: tried.name.clone(),
             error_percent: error,

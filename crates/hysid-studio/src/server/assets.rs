@@ -10,8 +10,54 @@ use super::answer::{Answer, Problem};
 /// The page.
 const PAGE: &str = include_str!("../../page/index.html");
 
-/// Its files, by their addresses.
-const FILES: &[(&str, &[u8])] = &[];
+/// The files of a list, each with its content.
+macro_rules! files {
+    ($($name:literal,)*) => {
+        &[$(($name, include_bytes!(concat!("../../page/", $name)))),*]
+    };
+}
+
+/// Files of the page, by their addresses.
+const FILES: &[(&str, &[u8])] = files![
+    "controls.js",
+    "elements.js",
+    "main.js",
+    "notices.js",
+    "numbers.js",
+    "plots/figure.js",
+    "plots/gestures.js",
+    "plots/history-points.js",
+    "plots/link.js",
+    "plots/loop-points.js",
+    "plots/marks.js",
+    "plots/min-max-levels.js",
+    "plots/pace.js",
+    "plots/painter.js",
+    "plots/palette.js",
+    "plots/points.js",
+    "plots/record-figures.js",
+    "plots/save.js",
+    "plots/scatter-points.js",
+    "plots/svg.js",
+    "plots/trace.js",
+    "project.js",
+    "server.js",
+    "steps/compare.js",
+    "steps/data.js",
+    "steps/diagnose.js",
+    "steps/drives.js",
+    "steps/fit-progress.js",
+    "steps/identify.js",
+    "steps/judge.js",
+    "steps/model-choice.js",
+    "steps/network.js",
+    "steps/take-away.js",
+    "steps/try.js",
+    "studio.css",
+    "uplot/LICENSE",
+    "uplot/uPlot.esm.js",
+    "uplot/uPlot.min.css",
+];
 
 /// The page itself.
 pub async fn page() -> Html<&'static str> {
@@ -20,7 +66,7 @@ pub async fn page() -> Html<&'static str> {
 
 /// A file of the page.
 pub async fn asset(Path(path): Path<String>) -> Answer<Response> {
-    if path == "document.css" {
+    if path == "assets/document.css" {
         return Ok(([(header::CONTENT_TYPE, "text/css; charset=utf-8")], document_style()).into_response());
     }
     let found = FILES.iter().find(|(name, _)| *name == path);
@@ -41,4 +87,54 @@ fn kind(name: &str) -> &'static str {
 /// The style of what the program writes as documents, inside elements of the class `document`.
 fn document_style() -> String {
     html::style(".document")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+
+    /// All files in a folder, by their paths in it.
+    fn files_in(folder: &Path, within: &str) -> BTreeSet<String> {
+        let mut found = BTreeSet::new();
+        for entry in fs::read_dir(folder).unwrap() {
+            let entry = entry.unwrap();
+            let name = format!("{within}{}", entry.file_name().to_string_lossy());
+            match entry.file_type().unwrap().is_dir() {
+                true => found.extend(files_in(&entry.path(), &format!("{name}/"))),
+                false => found.extend([name]),
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn the_program_has_every_file_of_the_page() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("page");
+        let mut known: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_string()).collect();
+        known.insert("index.html".into());
+        assert_eq!(known, files_in(&folder, ""));
+    }
+
+    #[test]
+    fn the_page_is_below_500_kilobytes() {
+        let bytes: usize = FILES.iter().map(|(_, content)| content.len()).sum();
+        assert!(PAGE.len() + document_style().len() + bytes < 500_000, "{bytes}");
+    }
+
+    #[test]
+    fn the_page_loads_nothing_from_elsewhere_and_has_no_inline_script_or_style() {
+        for (name, content) in FILES.iter().chain([&("index.html", PAGE.as_bytes())]) {
+            let text = String::from_utf8_lossy(content);
+            let is_library = name.starts_with("uplot/");
+            let outside = ["https://", "http://"]
+                .iter()
+                .any(|scheme| text.contains(scheme) && !text.contains("http://www.w3.org/"));
+            assert!(is_library || !outside, "{name}");
+        }
+        assert!(!PAGE.contains("<style") && !PAGE.contains(" style=") && !PAGE.contains("<script>"));
+    }
 }

@@ -31,7 +31,8 @@ struct Known {
 /// Tells of changes until the page or the studio is closed. The first event is the state of the project.
 pub async fn events(State(shared): State<Shared>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let news = shared.studio.news();
-    let known = Known { fit: news.borrow().fit.wrapping_sub(1), news, shared, project: None };
+    let fit = news.borrow().fit.wrapping_sub(1);
+    let known = Known { fit, news, shared, project: None };
     Sse::new(unfold(known, next)).keep_alive(KeepAlive::new().interval(ALIVE))
 }
 

@@ -86,7 +86,8 @@ pub async fn upload(
 
 fn too_large() -> Problem {
     let most = MOST_FILE_BYTES >> 20;
-    let words = format!("the file is larger than {most} MB: keep the rows that are needed, or use the command line");
+    let words =
+        format!("the file is larger than {most} MB: keep the rows that are needed, or use the command line");
     Problem::new(StatusCode::PAYLOAD_TOO_LARGE, words)
 }
 
@@ -174,9 +175,7 @@ fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
     }
     let rate = |record: &Record| match record.given_rate() {
         Some(rate) => rate.to_vec(),
-        None => RateMethod::Central
-            .of(record.time().unwrap_or_default(), &record.inputs()[0])
-            .unwrap_or_else(|_| vec![f64::NAN; record.len()]),
+        None => RateMethod::Central.rate(record).unwrap_or_else(|_| vec![f64::NAN; record.len()]),
     };
     if data.set.has_time() || data.set.has_given_rate() {
         columns.push(("rate", joined(&rate)));
@@ -188,11 +187,6 @@ fn columns_of(data: &Data) -> Vec<(&'static str, Vec<f64>)> {
 /// What may be wrong with the training data.
 pub async fn findings(State(shared): State<Shared>) -> Answer<Response> {
     Ok(value(computed(shared, |studio| studio.findings()).await?))
-}
-
-/// The warnings of the training data.
-pub async fn warnings(State(shared): State<Shared>) -> Answer<Response> {
-    Ok(value(computed(shared, |studio| studio.warnings()).await?))
 }
 
 /// The diagnosis of the training data.

@@ -86,7 +86,8 @@ impl Guard {
 
     fn has_cookie(&self, headers: &HeaderMap) -> bool {
         let cookies = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
-        let mut pairs = cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| pair.trim().split_once('='));
+        let mut pairs =
+            cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| pair.trim().split_once('='));
         pairs.any(|(name, value)| name == self.0.cookie && self.is_token(value))
     }
 
@@ -128,7 +129,10 @@ pub async fn check(State(guard): State<Guard>, request: Request, next: Next) -> 
     if !headers.contains_key(header::CONTENT_SECURITY_POLICY) {
         headers.insert(header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY));
     }
-    if opens && is_answered && let Ok(cookie) = HeaderValue::from_str(&guard.cookie()) {
+    if opens
+        && is_answered
+        && let Ok(cookie) = HeaderValue::from_str(&guard.cookie())
+    {
         headers.insert(header::SET_COOKIE, cookie);
     }
     response

@@ -44,7 +44,10 @@ pub async fn preview(State(shared): State<Shared>) -> Answer<Arrays> {
 }
 
 /// The free run of a model over a file.
-pub async fn simulated(State(shared): State<Shared>, Path((model, file)): Path<(u64, u64)>) -> Answer<Arrays> {
+pub async fn simulated(
+    State(shared): State<Shared>,
+    Path((model, file)): Path<(u64, u64)>,
+) -> Answer<Arrays> {
     computed(shared, move |studio| Ok(Arrays::of(&studio.run(model, file)?.columns()))).await
 }
 
@@ -172,7 +175,8 @@ pub async fn report(State(shared): State<Shared>, Path(id): Path<u64>) -> Answer
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let letters = |three: &[u8]| {
-        let bits = three.iter().fold(0u32, |bits, byte| bits << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
+        let bits =
+            three.iter().fold(0u32, |bits, byte| bits << 8 | u32::from(*byte)) << (8 * (3 - three.len()));
         let letter = |place: usize| match place <= three.len() {
             true => char::from(LETTERS[(bits >> (18 - 6 * place)) as usize & 63]),
             false => '=',
@@ -205,7 +209,9 @@ mod tests {
 
     #[test]
     fn base_64_is_that_of_rfc_4648() {
-        for (bytes, text) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+        for (bytes, text) in
+            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")]
+        {
             assert_eq!(base64(bytes.as_bytes()), text);
         }
     }

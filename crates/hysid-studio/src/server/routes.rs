@@ -26,7 +26,6 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .route("/reading", post(files::reading))
         .route("/columns", post(files::columns))
         .route("/findings", get(files::findings))
-        .route("/warnings", get(files::warnings))
         .route("/diagnosis", get(files::diagnosis));
     let of_models = Router::new()
         .route("/fit", post(models::fit))
@@ -52,7 +51,7 @@ pub fn router(shared: Shared, guard: Guard) -> Router {
         .merge(of_models);
     Router::new()
         .route("/", get(assets::page))
-        .route("/assets/{*path}", get(assets::asset))
+        .route("/{*path}", get(assets::asset))
         .nest("/api", api)
         .fallback(async || Problem::new(StatusCode::NOT_FOUND, "there is no such address"))
         .layer(DefaultBodyLimit::max(MOST_BODY_BYTES))

@@ -1,0 +1,32 @@
+//! Arguments of `studio`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+const EXAMPLES: &str = "\
+Examples:
+  hysid studio                    opens the page in your browser
+  hysid studio data.csv           the same with a file
+  hysid studio --project DIR      opens a project again
+  hysid studio --no-open --port 8080
+
+The page is served on this machine alone, and nothing leaves it: docs/studio.md";
+
+/// Arguments of `studio`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Studio {
+    /// Tables with measured data, of which the project gets copies
+    #[arg(value_name = "DATA.csv")]
+    pub data: Vec<PathBuf>,
+    /// Folder of the project: data, columns, models [default: hysid-project, or hysid-project-2 and so on while others are open]
+    #[arg(long, value_name = "DIR")]
+    pub project: Option<PathBuf>,
+    /// Port on this machine [default: 4973, or a free one]
+    #[arg(long, value_name = "N")]
+    pub port: Option<u16>,
+    /// Print the address and do not open a browser
+    #[arg(long)]
+    pub no_open: bool,
+}

@@ -1,0 +1,49 @@
+// Problems in the server's words. A word such as --delimiter becomes a link to the control with that name.
+
+import { button, element } from "./elements.js";
+import { Gone } from "./server.js";
+
+/** Moves the focus to the control of an option and unfolds what it is in. */
+function focusOption(flag) {
+  const found = [...document.querySelectorAll("[data-flag]")].filter((node) => node.dataset.flag === flag);
+  const control = found.find((node) => node.closest("section")?.hidden === false) ?? found[0];
+  if (!control) return;
+  const section = control.closest("section");
+  if (section.hidden) location.hash = section.id;
+  // The step is shown in the next task, after the change of the hash.
+  setTimeout(() => {
+    for (let part = control.closest("details"); part; part = part.parentElement.closest("details")) part.open = true;
+    control.focus();
+    control.scrollIntoView({ block: "center" });
+  }, 50);
+}
+
+/** Words with links to the controls that they name. */
+export function linked(words) {
+  const parts = words.split(/(--[a-z][a-z-]*[a-z])/);
+  return element("span", {}, ...parts.map((part) => {
+    const isOption = part.startsWith("--") && document.querySelector(`[data-flag="${part}"]`);
+    return isOption ? button(part, () => focusOption(part), { class: "link" }) : part;
+  }));
+}
+
+export const problem = (words) => element("p", { class: "problem" }, linked(words));
+
+/** A place for the error of an action; empty as long as there is none. */
+export class Notice {
+  constructor() { this.node = element("div", { role: "alert" }); }
+  show(words) { this.node.replaceChildren(problem(words)); }
+  /** Shows why an action failed. The banner tells when the server is gone. */
+  fail(error) { if (!(error instanceof Gone)) this.show(error.message); }
+  clear() { this.node.replaceChildren(); }
+  /** Runs an action and shows its error. */
+  async during(action) {
+    this.clear();
+    try {
+      return await action();
+    } catch (error) {
+      this.fail(error);
+      return undefined;
+    }
+  }
+}

@@ -1,0 +1,81 @@
+// Step 5: all models side by side, and some of them over one file.
+
+import { button, element, Region } from "../elements.js";
+import { Notice, problem } from "../notices.js";
+import { counted, duration, percent } from "../numbers.js";
+import { RecordFigures } from "../plots/record-figures.js";
+import { project, startsOf } from "../project.js";
+import { remove } from "../server.js";
+import { fileChoice, fileOr, noModel } from "./model-choice.js";
+
+export class CompareStep {
+  constructor(body) {
+    this.notice = new Notice();
+    this.table = new Region();
+    this.pictures = new Region();
+    this.error = new Region();
+    /** @type {Set<number> | null} */
+    this.shown = null;
+    body.replaceChildren(this.notice.node, this.table.node, this.error.node, this.pictures.node);
+  }
+
+  async update() {
+    const { models } = project;
+    const file = fileOr(this.file);
+    if (models.length === 0 || !file) {
+      this.table.update("empty", () => [noModel()]);
+      this.pictures.update(null, () => { this.figures?.destroy(); this.figures = null; return []; });
+      return;
+    }
+    this.shown ??= new Set(models.slice(-2).map(({ id }) => id));
+    const unseen = project.usable("unseen");
+    const judged = await Promise.all(models.map((model) => Promise.all(unseen.map((one) => project.judgement(model, one).catch(() => null)))));
+    this.table.update([models, unseen, judged], () => this.build(models, unseen, judged));
+    this.draw(file);
+  }
+
+  build(models, unseen, judged) {
+    const best = (values) => Math.min(...values.filter((value) => Number.isFinite(value)));
+    const columns = [
+      ["Training", models.map((model) => model.train.nrmse_std_percent)], ["Validation", models.map((model) => model.validation?.nrmse_std_percent ?? null)],
+      ...unseen.map((file, k) => [`Unseen: ${file.name}`, judged.map((row) => row[k]?.errors.nrmse_std_percent ?? null)]),
+    ];
+    const cells = (k) => columns.map(([, values]) => {
+      const isBest = models.length > 1 && values[k] === best(values.filter((value) => value !== null));
+      return element("td", {}, isBest ? element("strong", { text: percent(values[k]) }) : percent(values[k]));
+    });
+    const row = (model, k) => element("tr", {},
+      element("th", { scope: "row" }, element("label", { class: "tick" }, element("input", {
+        type: "checkbox", id: `overlay-${model.id}`, checked: this.shown.has(model.id), on: { change: (event) => { this.shown[event.target.checked ? "add" : "delete"](model.id); this.update(); } },
+      }), model.is_stale ? `${model.title} (other data)` : model.title)),
+      ...cells(k), element("td", { text: counted(model.parameters) }), element("td", { text: duration(model.seconds) }),
+      element("td", {}, element("a", { href: `#judge/${model.id}`, text: "Judge", "aria-label": `Judge ${model.title}` }), " ",
+        button("Remove", () => this.notice.during(() => remove(`/api/models/${model.id}`)), { "aria-label": `Remove ${model.title}` })));
+    const heads = ["Model (tick to draw)", ...columns.map(([name]) => name), "Parameters", "Time"];
+    return [element("div", { class: "scroll", role: "region", "aria-label": "Models", tabindex: "0" }, element("table", {},
+      element("caption", { class: "hidden", text: "Models" }),
+      element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col", text })), element("td"))),
+      element("tbody", {}, ...models.map(row)))),
+    element("p", { class: "note", text: "Errors are NRMSE, in % of the standard deviation of the output; the lowest of each column is bold." })];
+  }
+
+  async draw(file) {
+    const chosen = project.models.filter(({ id }) => this.shown.has(id));
+    const key = `${project.dataKey(file)} ${file.use} ${project.usable().map(({ id }) => id)}`;
+    this.wanted = `${key} ${[...this.shown]}`;
+    const wanted = this.wanted;
+    try {
+      const [columns, ...simulated] = await Promise.all([project.columns(file), ...chosen.map((model) => project.simulated(model, file))]);
+      if (this.wanted !== wanted) return;
+      this.pictures.update(key, () => {
+        this.figures?.destroy();
+        this.figures = new RecordFigures({ columns, labels: project.labels, starts: startsOf(file) });
+        return [element("div", { class: "row" }, fileChoice("compare", file, (id) => { this.file = id; this.update(); })), this.figures.node];
+      });
+      this.figures.setOverlays(chosen.map((model, k) => ({ name: model.title, role: `series ${project.models.indexOf(model)}`, y: simulated[k].y })));
+      this.error.update(null, () => []);
+    } catch (error) {
+      this.error.update(error.message, () => [problem(error.message)]);
+    }
+  }
+}

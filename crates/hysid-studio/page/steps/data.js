@@ -1,0 +1,215 @@
+// Step 1: files, their columns, how they are read, and what the data look like.
+
+import { control, choice } from "../controls.js";
+import { button, element, newId, Region, table } from "../elements.js";
+import { Notice, linked, problem } from "../notices.js";
+import { bytes, counted, written } from "../numbers.js";
+import { RecordFigures } from "../plots/record-figures.js";
+import { project, startsOf } from "../project.js";
+import { getJson, post, remove, upload } from "../server.js";
+
+const ROLES = ["input", "output", "time", "record", "rate", "unused"];
+const FLAG_OF_ROLE = { input: "--input", output: "--output", time: "--time", record: "--record", rate: "--rate" };
+
+export class DataStep {
+  /** @param {HTMLElement} body */
+  constructor(body) {
+    this.notice = new Notice();
+    this.uploads = element("div", { role: "status" });
+    this.files = new Region();
+    this.columns = new Region();
+    this.reading = new Region();
+    this.view = new Region();
+    this.findings = new Region();
+    body.replaceChildren(this.adding(), this.notice.node, this.uploads, this.files.node, this.columns.node, this.reading.node, this.view.node, this.findings.node);
+    this.listenToDrops();
+  }
+
+  adding() {
+    const id = newId("files");
+    const file = element("input", { type: "file", id, multiple: true, on: { change: () => { this.add([...file.files]); file.value = ""; } } });
+    const specimens = project.choices.specimens;
+    const select = element("select", { "aria-label": "Synthetic specimen" }, ...specimens.map(({ name, what }) => element("option", { value: name, text: `${name}: ${what}` })));
+    this.box = element("div", { class: "empty" },
+      element("p", { text: "Drop CSV, spreadsheet or MATLAB files anywhere on this page, or choose them." }),
+      element("div", { class: "row centre" }, element("label", { for: id, text: "Choose files:" }), file),
+      element("div", { class: "row centre" }, element("span", { text: "No data yet? Take a synthetic specimen:" }), select,
+        button("Add", () => this.notice.during(() => post("/api/specimens", { name: select.value, seed: 1, noise_percent: 1 })))));
+    return this.box;
+  }
+
+  listenToDrops() {
+    const holdsFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+    addEventListener("dragover", (event) => {
+      if (!holdsFiles(event)) return;
+      event.preventDefault();
+      document.body.classList.add("dropping");
+    });
+    addEventListener("dragleave", (event) => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
+    addEventListener("drop", (event) => {
+      document.body.classList.remove("dropping");
+      if (!holdsFiles(event)) return;
+      event.preventDefault();
+      location.hash = "data";
+      this.add([...event.dataTransfer.files]);
+    });
+  }
+
+  async add(files) {
+    this.notice.clear();
+    for (const file of files) {
+      if (file.size > project.choices.file_bytes_limit) {
+        this.notice.show(`${file.name} has ${bytes(file.size)}; at most ${bytes(project.choices.file_bytes_limit)} are possible. Use --every or fewer columns.`);
+        continue;
+      }
+      const bar = element("div");
+      const progress = element("div", { class: "progress", role: "progressbar", "aria-label": `Upload of ${file.name}`, "aria-valuemin": "0", "aria-valuemax": "100" }, bar);
+      const line = element("div", {}, `${file.name}, ${bytes(file.size)}`, progress);
+      this.uploads.append(line);
+      await this.notice.during(() => upload(file, (share) => {
+        bar.style.width = `${100 * share}%`;
+        progress.setAttribute("aria-valuenow", String(Math.round(100 * share)));
+      }));
+      line.remove();
+    }
+  }
+
+  update() {
+    const { files, reading, columns, columns_are_chosen: areChosen, problem: whole } = project.state;
+    this.box.classList.toggle("compact", files.length > 0);
+    this.files.update([files, whole], () => this.fileList(files, whole));
+    this.columns.update([files, columns, areChosen], () => this.columnTables(files, areChosen));
+    this.reading.update([reading, files.length > 0, files.some((file) => file.problem)], () => (files.length > 0 ? [this.readingOptions(reading, files.some((file) => file.problem))] : []));
+    const shown = project.labels ? project.usable() : [];
+    if (!shown.some((file) => file.id === this.shown)) this.shown = shown[0]?.id;
+    this.drawView(shown);
+    this.updateFindings(shown);
+  }
+
+  fileList(files, whole) {
+    if (files.length === 0) return [];
+    const item = (file) => {
+      const id = `use-${file.id}`;
+      const use = element("select", { id, "aria-label": `Use of ${file.name}`, on: { change: () => this.notice.during(() => post(`/api/files/${file.id}/use`, { use: use.value })) } },
+        ...[["training", "training"], ["unseen", "unseen (test)"], ["unused", "not used"]].map(([value, text]) => element("option", { value, text })));
+      use.value = file.use;
+      const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
+      return element("li", {}, element("span", { class: "name", text: file.name }),
+        element("span", { class: "about", text: file.problem ? "not read" : `${counted(file.rows)} rows${records}, ${bytes(file.bytes)}. ${file.read_as}` }), use,
+        button("Remove", () => this.notice.during(() => remove(`/api/files/${file.id}`)), { "aria-label": `Remove ${file.name}` }),
+        file.problem ? problem(file.problem) : null,
+        file.warnings.length > 0 ? element("ul", { class: "warnings" }, ...file.warnings.map((words) => element("li", {}, linked(words)))) : null);
+    };
+    return [element("h2", { text: "Files" }), element("ul", { class: "files" }, ...files.map(item)),
+      whole ? problem(whole) : null];
+  }
+
+  columnTables(files, areChosen) {
+    const readable = files.filter((file) => file.columns.length > 0);
+    if (readable.length === 0) return [];
+    const flagged = new Set();
+    const row = (file, isFirst) => (column) => {
+      const id = `role-${file.id}-${file.columns.indexOf(column)}`;
+      const role = element("select", { id, "aria-label": `Role of ${column.name} in ${file.name}`, on: { change: () => this.chooseRole(file, column.name, role.value) } },
+        ...ROLES.map((name) => element("option", { value: name, text: name })));
+      role.value = column.role ?? "unused";
+      // Words such as --input in a problem lead to the select of the first column that fits.
+      const flag = FLAG_OF_ROLE[column.role];
+      if (isFirst && flag && !flagged.has(flag)) { role.dataset.flag = flag; flagged.add(flag); }
+      return [column.name, role, column.unit ?? "", written(column.minimum), written(column.maximum), counted(column.missing ?? 0), column.note ?? ""];
+    };
+    const words = { text: "Note", class: "words" };
+    const text = (name) => ({ text: name, class: "text" });
+    const tables = readable.map((file, k) => {
+      const made = table(`Columns of ${file.name}`, ["Column", text("Role"), text("Unit"), "Minimum", "Maximum", "Missing", words], file.columns.map(row(file, k === 0)));
+      if (k > 0) return element("details", {}, element("summary", { text: `Columns of ${file.name}` }), made);
+      // A role that no column has leads to the first select.
+      for (const flag of Object.values(FLAG_OF_ROLE)) {
+        if (!flagged.has(flag)) made.querySelector("select:not([data-flag])")?.setAttribute("data-flag", flag);
+      }
+      return made;
+    });
+    return [element("h2", { text: "Columns" }),
+      element("p", { class: "note", text: areChosen ? "Roles as you chose them. All files have the same roles." : "Roles were guessed from names and values. All files have the same roles." }),
+      ...tables, areChosen ? button("Guess again", () => this.notice.during(() => post("/api/columns", null))) : null];
+  }
+
+  /** Sends the whole choice. A role that only one column can have is taken from the column that had it. */
+  chooseRole(file, name, role) {
+    const roles = new Map(file.columns.map((column) => [column.name, column.role]));
+    if (role !== "input" && role !== "unused") for (const [other, had] of roles) if (had === role) roles.set(other, "unused");
+    roles.set(name, role);
+    const all = (wanted) => [...roles].filter(([, had]) => had === wanted).map(([column]) => column);
+    const one = (wanted) => all(wanted)[0] ?? null;
+    const choiceOfAll = { record: one("record"), time: one("time"), inputs: all("input"), rate: one("rate"), output: one("output") };
+    return this.notice.during(() => post("/api/columns", choiceOfAll)).then(() => project.load());
+  }
+
+  readingOptions(reading, isOpen) {
+    const send = () => {
+      const chosen = Object.fromEntries(controls.map((one) => [one.name, one.read()]).filter(([, value]) => value !== undefined));
+      return this.notice.during(() => post("/api/reading", chosen));
+    };
+    const controls = project.choices.reading.map((option) => control("read", { default: "detected", ...option }, reading[option.name], send));
+    return element("details", { open: isOpen }, element("summary", { text: "How files are read" }),
+      element("p", { class: "note", text: "Delimiter, decimal sign and header are detected. Change them only if a file is read wrongly." }),
+      element("div", { class: "controls" }, ...controls.map((one) => one.node)),
+      Object.keys(reading).length > 0 ? button("Detect all", () => this.notice.during(() => post("/api/reading", {}))) : null);
+  }
+
+  async drawView(shown) {
+    const file = shown.find((one) => one.id === this.shown);
+    const key = file ? [project.dataKey(file), project.labels, shown.map((one) => [one.id, one.name, one.use])] : null;
+    if (JSON.stringify(key) === this.view.key) return;
+    let columns = null;
+    if (file) columns = await this.notice.during(() => project.columns(file));
+    if (file && (!columns || file.id !== this.shown)) return;
+    this.view.update(key, () => {
+      this.figures?.destroy();
+      this.figures = null;
+      if (!file) return [];
+      this.figures = new RecordFigures({ columns, labels: project.labels, starts: startsOf(file), measuredRole: "data", withInput: true });
+      const files = choice("File", shown.map((one) => ({ value: one.id, text: `${one.name} (${one.use})` })), file.id, (id) => { this.shown = Number(id); this.update(); }, { id: "data-file" });
+      return [element("h2", { text: "What the data look like" }), shown.length > 1 ? element("div", { class: "row" }, files) : null, this.figures.node,
+        element("p", { class: "note", text: "Drag in a figure to zoom; the other figures show the same rows. Shift and drag to move, double-click to see everything." })];
+    });
+  }
+
+  async updateFindings(shown) {
+    if (shown.length === 0) return this.findings.update(null, () => []);
+    const key = project.state.files.map((file) => project.dataKey(file) + file.use);
+    const findings = await project.once(`findings ${key}`, () => getJson("/api/findings")).catch(() => null);
+    if (!findings) return undefined;
+    const { warnings, issues } = findings;
+    const all = [...warnings.map((statement) => ({ severity: "warning", statement, evidence: [] })), ...issues];
+    return this.findings.update([key, findings], () => [element("h2", { text: "Findings" }),
+      all.length === 0 ? element("p", { text: "No issues were found in the training data." })
+        : element("ul", { class: "findings" }, ...all.map((finding) => this.finding(finding))),
+      shown.some((file) => file.use === "training") ? element("p", { class: "steps-left" }, "Next: ", element("a", { href: "#diagnose", text: "diagnose the data" }), " or ", element("a", { href: "#identify", text: "identify a model" }), ".") : null]);
+  }
+
+  finding(finding) {
+    const isWarning = finding.severity === "warning";
+    const places = finding.evidence.map((one) => ({ one, file: project.files.find((file) => file.records.some((record) => record.name === one.record)) })).filter(({ file }) => file);
+    return element("li", {}, element("span", { class: isWarning ? "badge warning" : "badge", text: finding.severity }), linked(finding.statement),
+      places.length > 0 ? button("Show", () => this.showFinding(places), { "aria-label": `Show: ${finding.statement}` }) : null);
+  }
+
+  /** Marks the rows of a finding and zooms to the first of them. */
+  async showFinding(places) {
+    const { file } = places[0];
+    if (file.id !== this.shown) {
+      this.shown = file.id;
+      await this.drawView(project.usable());
+    }
+    if (!this.figures) return;
+    const ranges = places.filter((place) => place.file === file).map(({ one }) => {
+      const begin = file.records.find((record) => record.name === one.record).from;
+      return [begin + one.rows[0], begin + one.rows[1]];
+    });
+    this.figures.link.setMarked(ranges);
+    this.figures.output.showRows(...ranges[0]);
+    this.figures.loop.showRows(...ranges[0]);
+    this.figures.node.scrollIntoView({ block: "nearest" });
+  }
+}

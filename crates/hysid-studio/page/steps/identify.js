@@ -1,0 +1,80 @@
+// Step 3: choose a model and its options, start the fit, follow it, stop it.
+
+import { choice, control } from "../controls.js";
+import { button, element, emptyState, newId, Region } from "../elements.js";
+import { Notice, linked } from "../notices.js";
+import { project } from "../project.js";
+import { post } from "../server.js";
+import { FitProgress } from "./fit-progress.js";
+
+const COMMON = ["members", "stops", "hidden", "operators", "seed"];
+const RATES = [["auto", "auto"], ["none", "none"], ["central", "central differences"], ["backward", "backward differences"], ["savitzky-golay", "Savitzky-Golay"]];
+
+export class IdentifyStep {
+  constructor(body) {
+    this.notice = new Notice();
+    this.form = new Region();
+    this.progress = new FitProgress(this.notice);
+    this.model = project.models.at(-1)?.options?.model ?? "auto";
+    /** Values that were chosen, by option: they stay when the model changes. */
+    this.values = {};
+    this.rate = "auto";
+    this.limit = "";
+    body.replaceChildren(this.form.node, this.notice.node, this.progress.node);
+  }
+
+  update() {
+    const isRunning = project.state.fit?.is_running ?? false;
+    const isReady = project.labels && !project.state.problem;
+    this.form.update([isReady, isRunning, this.model], () => (isReady ? this.build(isRunning)
+      : [emptyState("There are no training data to fit a model to. ", element("a", { class: "button", href: "#data", text: "Add a file" })),
+        project.state.problem ? element("p", { class: "problem" }, linked(project.state.problem)) : null]));
+    this.progress.update();
+    // Start cannot be pressed now: the focus goes to Stop.
+    if (isRunning && this.hasStarted) {
+      this.hasStarted = false;
+      document.getElementById("fit-stop")?.focus({ preventScroll: true });
+    }
+  }
+
+  build(isRunning) {
+    const { models, options } = project.choices;
+    const model = models.find(({ name }) => name === this.model) ?? models[0];
+    const used = options.filter(({ name }) => model.options.includes(name));
+    const controls = new Map(used.map((option) => {
+      const made = control("fit", option, this.values[option.name], () => { this.values[option.name] = made.read(); });
+      return [option.name, made];
+    }));
+    const nodes = (list) => element("div", { class: "controls" }, ...list.map(({ name }) => controls.get(name).node));
+    const common = used.filter(({ name }) => COMMON.includes(name));
+    const rest = used.filter(({ name }) => !COMMON.includes(name));
+    const headings = [...new Set(rest.map(({ heading }) => heading))];
+    const limit = element("input", { type: "number", min: "1", step: "any", placeholder: "none", value: this.limit, id: newId("limit"), on: { change: () => { this.limit = limit.value; } } });
+    limit.dataset.flag = "--time-limit";
+    const rate = choice("Rate of the input", RATES.map(([value, text]) => ({ value, text })), this.rate, (value) => { this.rate = value; }, { "data-flag": "--rate" });
+    const facts = [model.rate === "needed" ? "Needs the rate of the input." : null, model.several_inputs ? "Takes several inputs." : null].filter(Boolean).join(" ");
+    const modelChoice = choice("Model", models.map(({ name }) => ({ value: name, text: name })), model.name, (name) => { this.model = name; this.update(); }, { id: "fit-model", "data-flag": "--model" });
+    const start = button("Start", () => this.start(model, controls), { class: "main", id: "fit-start", disabled: isRunning });
+    const what = `${model.what.charAt(0).toUpperCase()}${model.what.slice(1)}.`;
+    return [element("div", { class: "row" }, modelChoice, model.rate === "no" ? null : rate,
+      element("div", { class: "choice" }, element("label", { for: limit.id, text: "Time limit, s" }), limit), start),
+    element("p", { text: `${what} ${facts}` }),
+    common.length > 0 ? nodes(common) : null,
+    headings.length > 0 ? element("details", {}, element("summary", { text: `More options of ${model.name}` }),
+      ...headings.map((heading) => element("fieldset", {}, element("legend", { text: heading }), nodes(rest.filter((option) => option.heading === heading))))) : null];
+  }
+
+  start(model, controls) {
+    const options = { model: model.name };
+    for (const [name, one] of controls) {
+      const value = one.read();
+      if (value !== undefined) options[name] = value;
+    }
+    const limit = Number(this.limit) > 0 ? Number(this.limit) : null;
+    return this.notice.during(async () => {
+      await post("/api/fit", { options, rate: model.rate === "no" ? "none" : this.rate, time_limit: limit });
+      this.hasStarted = true;
+      this.update();
+    });
+  }
+}

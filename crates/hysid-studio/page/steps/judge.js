@@ -1,0 +1,121 @@
+// Step 4: measured against simulated, errors, residuals and facts of a model.
+
+import { tick } from "../controls.js";
+import { documentFragment, element, Region, table } from "../elements.js";
+import { linked, problem } from "../notices.js";
+import { counted, duration, percent, written } from "../numbers.js";
+import { Figure } from "../plots/figure.js";
+import { goingOn, RecordFigures } from "../plots/record-figures.js";
+import { project, startsOf } from "../project.js";
+import { fileChoice, fileOr, modelChoice, modelOr, noModel, stale } from "./model-choice.js";
+
+export class JudgeStep {
+  constructor(body) {
+    this.head = new Region();
+    this.pictures = new Region();
+    this.errors = new Region();
+    this.residuals = new Region();
+    this.facts = new Region();
+    this.withMembers = false;
+    this.drawn = [];
+    body.replaceChildren(this.head.node, this.pictures.node, this.errors.node, this.residuals.node, this.facts.node);
+  }
+
+  choose(id) { this.model = id; }
+
+  update() {
+    const model = modelOr(this.model);
+    const file = fileOr(this.file);
+    if (!model || !file) {
+      this.head.update("empty", () => [noModel()]);
+      for (const region of [this.pictures, this.errors, this.residuals, this.facts]) region.update(null, () => []);
+      this.dropFigures();
+      return;
+    }
+    const choose = (what) => (id) => { this[what] = id; this.update(); };
+    this.head.update([model, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
+      element("div", { class: "row" }, modelChoice("judge", model, choose("model")), fileChoice("judge", file, choose("file")),
+        tick("Members as thin lines", this.withMembers, (is) => { this.withMembers = is; this.update(); })),
+      stale(model), model.chosen ? element("p", { class: "verdict", text: model.chosen }) : null, model.why ? element("p", { text: model.why }) : null,
+      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There is no unseen file. The error on unseen data is the one that counts: drop a second file anywhere on this page. It is unseen data." }) : null]);
+    this.draw(model, file);
+  }
+
+  async draw(model, file) {
+    const key = `${model.id} ${project.dataKey(file)} ${file.use}`;
+    this.wanted = key;
+    const others = project.usable().filter(({ id, use }) => use === "unseen" && id !== file.id);
+    try {
+      const [columns, simulated] = await Promise.all([project.columns(file), project.simulated(model, file)]);
+      const members = this.withMembers ? await project.members(model, file) : [];
+      if (this.wanted !== key) return;
+      this.pictures.update(key, () => this.buildPictures(columns, file));
+      this.overlay(simulated, members);
+      const [judged, ...unseen] = await Promise.all([file, ...others].map((one) => project.judgement(model, one)));
+      if (this.wanted !== key) return;
+      this.errors.update([model, judged, unseen], () => this.errorTable(model, file, judged, others, unseen));
+      this.residuals.update([key, judged.residuals], () => this.buildResiduals(columns, simulated, file, judged));
+      const facts = await project.ofModel(model, "facts");
+      if (this.wanted === key) this.facts.update(model.id, () => [element("h2", { text: "Facts of the model" }), documentFragment(facts.html)]);
+    } catch (error) {
+      this.errors.update(error.message, () => [problem(error.message)]);
+    }
+  }
+
+  dropFigures() {
+    this.figures?.destroy();
+    this.figures = null;
+    this.drawn.forEach((figure) => figure.destroy());
+    this.drawn = [];
+  }
+
+  buildPictures(columns, file) {
+    this.figures?.destroy();
+    this.figures = new RecordFigures({ columns, labels: project.labels, starts: startsOf(file) });
+    return [this.figures.node];
+  }
+
+  overlay(simulated, members) {
+    const band = simulated.low ? [{ name: "prediction band", role: "band", style: "band", y: simulated.low, high: simulated.high }] : [];
+    const thin = members.map((member, k) => ({ name: member.name, role: `series ${k + 1}`, style: "thin", y: member.y }));
+    this.figures.setOverlays([...band, ...thin, { name: "simulated", role: "simulated", y: simulated.y }]);
+  }
+
+  errorTable(model, file, judged, others, unseen) {
+    const unit = project.state.output_unit;
+    const inUnit = (name) => (unit ? `${name} (${unit})` : name);
+    const row = (name, errors) => [name, counted(errors.samples), written(errors.rmse), written(errors.max_abs_error), percent(errors.nrmse_std_percent), percent(errors.fit_percent)];
+    const rows = [row("training", model.train)];
+    if (model.validation) rows.push(row("validation (held-out)", model.validation));
+    if (!judged.is_training) rows.push(row(`unseen: ${file.name}`, judged.errors));
+    others.forEach((other, k) => rows.push(row(`unseen: ${other.name}`, unseen[k].errors)));
+    const records = judged.records.length > 1 ? element("details", {}, element("summary", { text: `Errors of the ${judged.records.length} records of ${file.name}` }),
+      table("Errors of records", ["Record", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], judged.records.filter(({ errors }) => errors).map(({ name, errors }) => row(name, errors)))) : null;
+    return [element("h2", { text: "Errors" }),
+      table("Errors", ["Data", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], rows),
+      element("p", { class: "note", text: "NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error." }),
+      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the prediction band.` }),
+      judged.warnings.length > 0 ? element("ul", { class: "warnings" }, ...judged.warnings.map((words) => element("li", {}, linked(words)))) : null, records,
+      element("p", { class: "note", text: [`${counted(model.parameters)} parameters, ${duration(model.seconds)}, ${model.termination}.`, ...model.notes].join(" ") })];
+  }
+
+  buildResiduals(columns, simulated, file, judged) {
+    this.drawn.forEach((figure) => figure.destroy());
+    const residual = columns.output.map((value, row) => value - simulated.y[row]);
+    const { labels } = project;
+    const starts = startsOf(file);
+    const yLabel = `residual of ${labels.output}`;
+    const figure = (title, kind, xLabel, x) => {
+      const made = new Figure({ title, kind, xLabel, yLabel, height: 220 });
+      made.setTraces([{ name: "residual", role: "error", style: kind === "points" ? "points" : "line", x, y: residual, breaks: starts }]);
+      return made;
+    };
+    this.drawn = [figure("Residuals over time", "history", labels.time || "row", goingOn(columns.time, starts)), figure("Residuals over the input", "points", labels.inputs[0], columns.inputs[0])];
+    if (columns.rate) this.drawn.push(figure("Residuals over the rate", "points", `rate of ${labels.inputs[0]}`, columns.rate));
+    const text = (name) => ({ text: name, class: "text" });
+    return [element("h2", { text: "Residuals" }), element("p", { class: "note", text: "Measured minus simulated. A pattern means that the model leaves something unexplained." }),
+      element("div", { class: "grid" }, ...this.drawn.map(({ node }) => node)),
+      judged.residuals.length > 0 ? table("Residual tests", ["Test", text("Verdict"), "p", { text: "Statement", class: "words" }, { text: "Advice", class: "words" }],
+        judged.residuals.map((one) => [one.test, one.verdict, one.p ?? "\u2013", one.statement, one.advice ? linked(one.advice) : ""])) : null];
+  }
+}

@@ -1,0 +1,57 @@
+// Step 6: files to keep, and the commands that do the same without the page.
+
+import { button, element, Region } from "../elements.js";
+import { problem } from "../notices.js";
+import { project } from "../project.js";
+import { modelChoice, modelOr, noModel, stale } from "./model-choice.js";
+
+function copyable(title, text) {
+  const id = `copy-${title}`;
+  const copy = button("Copy", async () => {
+    try {
+      await navigator.clipboard.writeText(text);
+      copy.textContent = "Copied";
+    } catch {
+      // Without permission the text is selected, to be copied with the keyboard.
+      getSelection().selectAllChildren(document.getElementById(id));
+      copy.textContent = "Press Ctrl+C";
+    }
+    setTimeout(() => { copy.textContent = "Copy"; }, 2000);
+  }, { "aria-label": `Copy: ${title}` });
+  return element("div", {}, element("div", { class: "row" }, element("h3", { text: title }), copy), element("pre", { id, tabindex: "0", "aria-label": title, role: "region" }, element("code", { text })));
+}
+
+export class TakeAwayStep {
+  constructor(body) {
+    this.region = new Region();
+    this.commands = new Region();
+    body.replaceChildren(this.region.node, this.commands.node);
+  }
+  choose(id) { this.model = id; }
+
+  async update() {
+    const model = modelOr(this.model);
+    if (!model) {
+      this.region.update("empty", () => [noModel()]);
+      this.commands.update(null, () => []);
+      return;
+    }
+    const address = `/api/models/${model.id}`;
+    const { folder } = project.state;
+    this.region.update([project.models.map(({ id, title, is_stale: isStale }) => [id, title, isStale]), model.id, folder], () => [
+      element("div", { class: "row" }, modelChoice("take-away", model, (id) => { this.model = id; this.update(); })), stale(model),
+      element("h2", { text: "Files" }),
+      element("div", { class: "row" }, element("a", { class: "button", href: `${address}/file`, download: model.file, text: "Model file" }),
+        model.has_report ? element("a", { class: "button", href: `${address}/report`, target: "_blank", text: "Report (new tab)" }) : null),
+      element("p", { class: "note" }, "This model is also in the project's folder: ", element("code", { text: `${folder}/models/${model.file}` })),
+      element("h2", { text: "Source code and exports" }),
+      element("ul", { class: "files" }, ...project.choices.targets.map(({ name, what }) => element("li", {},
+        element("span", { class: "about", text: what }), element("a", { class: "button", href: `${address}/export/${encodeURIComponent(name)}`, download: "", text: `Download ${name}`, "aria-label": `Download ${name}: ${what}` }))))]);
+    try {
+      const { shell, python } = await project.ofModel(model, "commands");
+      if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), copyable("Command line", shell), python ? copyable("Python", python) : element("p", { class: "note", text: "For these files or options there are no lines of Python: see docs/python.md." })]);
+    } catch (error) {
+      this.commands.update(error.message, () => [problem(error.message)]);
+    }
+  }
+}
