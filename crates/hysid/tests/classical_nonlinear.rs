@@ -741,7 +741,7 @@ fn a_search_can_be_broken_off_and_gives_the_best_so_far() {
     assert_eq!(found.termination, Termination::Stopped);
     assert_eq!(told.iter().map(|(round, ..)| *round).collect::<Vec<_>>(), [1, 2, 3]);
     assert!(told.windows(2).all(|pair| pair[1].1 <= pair[0].1));
-    assert_eq!((found.train_nrmse_percent, Some(found.law.clone().into())), (told[2].1, told[2].2.clone()));
+    assert_eq!((found.train_nrmse_percent, Some(found.law.into())), (told[2].1, told[2].2.clone()));
     assert_relative_eq!(found.train_nrmse_percent, error(&found.law, &data, None), max_relative = 1e-6);
     let none = ClassicalOptions { starts: Some(0), ..ClassicalOptions::of(ClassicalModel::BoucWen) };
     assert!(BoucWen::fit(&data, &none, &mut go_on).is_err());
