@@ -171,6 +171,10 @@ fn run(
         let fitted = pool.install(|| identify(&data.set, &request, &mut |progress| watch.observe(progress)));
         let seconds = watch.finish();
         let fitted = fitted.map_err(|error| data.explain(error))?;
+        course.change(|state| {
+            (state.done, state.part) = (1.0, "writing model and report".into());
+            (state.remaining, state.remaining_seconds) = (None, None);
+        });
         let identified = Identified {
             model: fitted.model,
             evaluations: fitted.evaluations,

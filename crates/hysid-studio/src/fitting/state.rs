@@ -96,10 +96,10 @@ impl FitState {
     }
 
     /// Takes the error so far into the curve.
-    pub(super) fn add_error(&mut self, percent: f64) {
+    pub(super) fn add_error(&mut self, second: f64, percent: f64) {
         let lowest = self.curve.last().map_or(f64::INFINITY, |(_, lowest)| *lowest);
         self.error_percent = Some(percent.min(lowest));
-        self.curve.push((self.seconds, percent.min(lowest)));
+        self.curve.push((second, percent.min(lowest)));
         if self.curve.len() > MOST_POINTS {
             let last = self.curve.len() - 1;
             let mut place = 0;
@@ -151,8 +151,7 @@ mod tests {
     fn a_long_curve_keeps_its_ends_and_never_rises() {
         let mut state = state();
         for second in 0..5000 {
-            state.seconds = f64::from(second);
-            state.add_error(100.0 - f64::from(second % 70));
+            state.add_error(f64::from(second), 100.0 - f64::from(second % 70));
         }
         assert!(state.curve.len() <= MOST_POINTS);
         assert_eq!(state.curve[0], (0.0, 100.0));

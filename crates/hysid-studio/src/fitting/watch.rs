@@ -34,6 +34,8 @@ pub struct Watch<'c> {
     began: Instant,
     limit: Option<Duration>,
     told: Instant,
+    /// Errors since then, each with its second.
+    errors: Vec<(f64, f64)>,
     remaining: Remaining,
     models: Option<SyncSender<SoFar>>,
     model_due: Instant,
@@ -50,6 +52,7 @@ impl<'c> Watch<'c> {
             began: now,
             limit: time_limit.map(Duration::from_secs_f64),
             told: now,
+            errors: Vec::new(),
             remaining: Remaining::default(),
             models: None,
             model_due: now,
@@ -67,6 +70,12 @@ impl<'c> Watch<'c> {
     /// Takes what the fit tells; breaks if it is to end.
     pub fn observe(&mut self, progress: &Progress) -> ControlFlow<()> {
         self.words.take(progress);
+        let lowest = self.errors.last().map_or(f64::INFINITY, |(_, lowest)| *lowest);
+        if let Some(error) = self.words.error(progress)
+            && error < lowest
+        {
+            self.errors.push((self.began.elapsed().as_secs_f64(), error));
+        }
         if let Some(tried) = &progress.tried {
             self.take_candidate(tried);
         } else if Instant::now() >= self.model_due {
@@ -90,14 +99,14 @@ impl<'c> Watch<'c> {
         let seconds = self.began.elapsed().as_secs_f64();
         let most = self.limit.map(|limit| (limit.as_secs_f64() - seconds).max(0.0));
         let remaining = self.remaining.after(seconds, progress.done, most);
-        let (part, error) = (self.words.part(progress), self.words.error(progress));
+        let (part, errors) = (self.words.part(progress), std::mem::take(&mut self.errors));
         self.course.change(|state| {
             state.seconds = seconds;
             state.done = progress.done.max(state.done);
             state.remaining_seconds = remaining;
             state.remaining = remaining.map(in_words);
             state.part = part;
-            error.iter().for_each(|error| state.add_error(*error));
+            errors.iter().for_each(|(second, error)| state.add_error(*second, *error));
         });
     }
 
@@ -116,11 +125,12 @@ impl<'c> Watch<'c> {
             },
         };
         let is_best = error.is_some_and(|error| error < self.lowest) && tried.standing != Standing::Dropped;
+        let seconds = self.began.elapsed().as_secs_f64();
         self.course.change(|state| {
-            state.seconds = self.began.elapsed().as_secs_f64();
+            state.seconds = seconds;
             // The first error is on few folds; what counts is that of a candidate which was tried on all.
             if candidate.state == state::Standing::Complete {
-                error.iter().for_each(|error| state.add_error(*error));
+                error.iter().for_each(|error| state.add_error(seconds, *error));
             }
             state.add_candidate(candidate);
         });
