@@ -30,11 +30,9 @@ export const button = (text, action, properties = {}) =>
   element("button", { type: "button", text, on: { click: action }, ...properties });
 
 /** HTML that the server made and escaped. Nothing else on the page is read as HTML. */
-export function documentFragment(html) {
+export function documentOf(html) {
   const parsed = new DOMParser().parseFromString(html, "text/html");
-  const fragment = document.createDocumentFragment();
-  fragment.append(...parsed.body.childNodes);
-  return fragment;
+  return element("div", { class: "document" }, ...parsed.body.childNodes);
 }
 
 /**

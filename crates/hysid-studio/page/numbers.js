@@ -52,3 +52,6 @@ export function tickTexts(values, step) {
     return plain ? shown.toFixed(decimals).replace("-", "\u2212") : written(shown, 4);
   });
 }
+
+/** Words as a sentence. */
+export const sentence = (words) => `${words[0].toUpperCase()}${words.slice(1)}.`;

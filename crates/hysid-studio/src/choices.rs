@@ -6,6 +6,7 @@ use hysid::options::table::{FitOption, OPTIONS, Values};
 use hysid::specimens::Specimen;
 use hysid_export::Target;
 use hysid_records::{READING_OPTIONS, ReadingOption};
+use hysid_report::BAND;
 use hysid_report::models::Listed;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -18,6 +19,8 @@ pub const MOST_FILE_BYTES: u64 = 1 << 30;
 pub struct Choices {
     program: String,
     file_bytes_limit: u64,
+    /// Share of new rows that the prediction band is made for.
+    band: f64,
     models: Vec<Listed>,
     options: Vec<OptionChoice>,
     reading: Vec<ReadingChoice>,
@@ -57,6 +60,7 @@ impl Choices {
         Self {
             program: format!("hysid {}", env!("CARGO_PKG_VERSION")),
             file_bytes_limit: MOST_FILE_BYTES,
+            band: BAND,
             models: models.map(model).collect(),
             options: OPTIONS.iter().filter(|option| option.name != "model").map(OptionChoice::of).collect(),
             reading: READING_OPTIONS

@@ -157,10 +157,13 @@ pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>>
     ensemble.members().iter().enumerate().map(run).collect()
 }
 
+/// A run, with the numbers of its model and its file.
+type Kept = ((u64, u64), Arc<Run>);
+
 /// The last runs, by the numbers of model and file.
 #[derive(Default)]
 pub struct Runs {
-    kept: Mutex<VecDeque<((u64, u64), Arc<Run>)>>,
+    kept: Mutex<VecDeque<Kept>>,
 }
 
 impl Runs {

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, anyhow, bail};
 use hysid::options::chosen::RateChoice;
-use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Usage};
+use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles, Usage};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -49,6 +49,19 @@ pub struct ChosenColumns {
     pub inputs: Vec<String>,
     pub rate: Option<String>,
     pub output: String,
+}
+
+impl ChosenColumns {
+    /// The columns of these roles.
+    pub fn of(roles: &Roles) -> Self {
+        Self {
+            record: roles.record.clone(),
+            time: roles.time.clone(),
+            inputs: roles.inputs.clone(),
+            rate: roles.rate.clone(),
+            output: roles.output.clone(),
+        }
+    }
 }
 
 /// A file with data.
@@ -105,6 +118,8 @@ pub struct Begun {
     pub files: Vec<String>,
     /// How they were read.
     pub understanding: Understanding,
+    /// Which column was what, chosen or guessed.
+    pub columns: ChosenColumns,
 }
 
 /// A model.

@@ -30,6 +30,8 @@ pub struct Shown {
     labels: Option<Names>,
     /// Unit of the output, if its name tells.
     output_unit: Option<String>,
+    /// Label of the rate of the first input.
+    rate_label: Option<String>,
     models: Vec<ShownModel>,
     fit: Option<FitState>,
 }
@@ -99,6 +101,8 @@ struct Facts {
     is_network: bool,
     inputs: Vec<String>,
     input_labels: Vec<String>,
+    input_units: Vec<Option<String>>,
+    rate_label: String,
     output_label: String,
     time_label: String,
     ranges: Vec<(f64, f64)>,
@@ -131,25 +135,25 @@ impl Shown {
             folder: folder.root().display().to_string(),
             files: files.collect(),
             reading: project.understanding.reading.clone(),
-            columns: roles.map(columns),
+            columns: roles.map(ChosenColumns::of),
             columns_are_chosen: project.understanding.columns.is_some(),
             problem: view.problem.clone(),
             names: roles.map(|roles| names(roles, str::to_string)),
             labels: roles.map(|roles| names(roles, unit::label)),
             output_unit: roles.and_then(|roles| unit::split(&roles.output).1),
+            rate_label: roles.map(|roles| rate_label(&roles.inputs[0], roles.time.as_deref())),
             models: models.collect(),
             fit,
         }
     }
 }
 
-fn columns(roles: &Roles) -> ChosenColumns {
-    ChosenColumns {
-        record: roles.record.clone(),
-        time: roles.time.clone(),
-        inputs: roles.inputs.clone(),
-        rate: roles.rate.clone(),
-        output: roles.output.clone(),
+/// The rate of an input with its unit, as far as that is known.
+fn rate_label(input: &str, time: Option<&str>) -> String {
+    let ((name, unit), time) = (unit::split(input), time.and_then(|time| unit::split(time).1));
+    match (unit, time) {
+        (Some(unit), Some(time)) => format!("rate of {name} ({unit}/{time})"),
+        _ => format!("rate of {name}"),
     }
 }
 
@@ -246,6 +250,8 @@ impl Facts {
             is_network: !crate::neurons::networks(model).is_empty(),
             inputs: names.inputs.clone(),
             input_labels: names.inputs.iter().map(|name| unit::label(name)).collect(),
+            input_units: names.inputs.iter().map(|name| unit::split(name).1).collect(),
+            rate_label: rate_label(&names.inputs[0], names.time.as_deref()),
             output_label: unit::label(&names.output),
             time_label: names.time.as_deref().map_or_else(|| "time".into(), unit::label),
             ranges: model.trained_ranges().inputs.clone(),

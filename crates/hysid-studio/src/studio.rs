@@ -356,7 +356,9 @@ impl Studio {
         let begun = self.change(|project| {
             let id = project.next_id();
             let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
-            let begun = Begun { id, request, files, understanding: project.understanding.clone() };
+            let understanding = project.understanding.clone();
+            let columns = ChosenColumns::of(&data.roles);
+            let begun = Begun { id, request, files, understanding, columns };
             project.unfinished = Some(begun.clone());
             Ok(begun)
         })?;
@@ -590,10 +592,8 @@ impl Studio {
             let fitted = self.model(model)?;
             let table = read_named(&name, &self.folder, &reading.reading()?)?;
             // The model knows the names of its columns, whatever is chosen now.
-            let columns = ColumnChoice {
-                record: stored.begun.understanding.columns.and_then(|columns| columns.record),
-                ..ColumnChoice::default()
-            };
+            let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
+            let columns = ColumnChoice { record, ..ColumnChoice::default() };
             let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
             Run::of(&fitted, data.set)
         })
@@ -615,7 +615,6 @@ impl Studio {
     /// # Errors
     /// There is none of this number.
     pub fn lines(&self, id: u64) -> Result<Lines> {
-        let (stored, model) = (self.stored_model(id)?, self.model(id)?);
-        Ok(Lines::of(&stored, model.names(), self.folder.root()))
+        Ok(Lines::of(&self.stored_model(id)?, self.folder.root()))
     }
 }

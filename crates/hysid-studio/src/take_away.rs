@@ -3,7 +3,6 @@
 use std::io::{Cursor, Write};
 
 use anyhow::{Context, Result, anyhow};
-use hysid::data::record::ColumnNames;
 use hysid::model::Model;
 use hysid::options::table::{OPTIONS, Values};
 use hysid_document::shell::shown;
@@ -14,7 +13,7 @@ use serde_json::Value;
 use zip::write::{SimpleFileOptions, ZipWriter};
 
 use crate::choices::flag;
-use crate::project::{Begun, ChosenColumns, ProjectModel};
+use crate::project::{Begun, ProjectModel};
 
 /// A model for a target, as one archive; and its name.
 ///
@@ -55,24 +54,15 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// For a model with these columns.
-    pub fn of(stored: &ProjectModel, names: &ColumnNames, folder: &std::path::Path) -> Self {
-        let begun = &stored.begun;
-        // What was guessed is said, so that the lines do not depend on the guess.
-        let columns = begun.understanding.columns.clone().unwrap_or_else(|| ChosenColumns {
-            record: None,
-            time: names.time.clone(),
-            inputs: names.inputs.clone(),
-            rate: names.rate.clone(),
-            output: names.output.clone(),
-        });
-        Self { shell: shell(stored, &columns, folder), python: python(begun, &columns, &stored.file) }
+    /// Of a model. What was guessed is said, so that the lines do not depend on the guess.
+    pub fn of(stored: &ProjectModel, folder: &std::path::Path) -> Self {
+        Self { shell: shell(stored, folder), python: python(&stored.begun, &stored.file) }
     }
 }
 
-fn shell(stored: &ProjectModel, columns: &ChosenColumns, folder: &std::path::Path) -> String {
+fn shell(stored: &ProjectModel, folder: &std::path::Path) -> String {
     let quoted = |text: &str| shown(std::path::Path::new(text));
-    let begun = &stored.begun;
+    let (begun, columns) = (&stored.begun, &stored.begun.columns);
     let mut words = vec!["hysid fit".to_string()];
     words.extend(begun.files.iter().map(|file| quoted(&format!("data/{file}"))));
     let mut option = |name: &str, value: &str| words.push(format!("{} {}", flag(name), quoted(value)));
@@ -136,7 +126,8 @@ fn argument(name: &str, value: &Value) -> Option<Option<String>> {
 }
 
 /// Python takes columns of arrays, so a table that is read in another way than pandas does has no line.
-fn python(begun: &Begun, columns: &ChosenColumns, file: &str) -> Option<String> {
+fn python(begun: &Begun, file: &str) -> Option<String> {
+    let columns = &begun.columns;
     let [data] = begun.files.as_slice() else { return None };
     let is_csv = data.to_lowercase().ends_with(".csv");
     if !is_csv || begun.understanding.reading != ReadingChoice::default() {

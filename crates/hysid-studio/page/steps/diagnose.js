@@ -1,6 +1,6 @@
 // Step 2: the server's cards on the properties of the data.
 
-import { documentFragment, element, emptyState, Region } from "../elements.js";
+import { documentOf, element, emptyState, Region } from "../elements.js";
 import { problem } from "../notices.js";
 import { project } from "../project.js";
 import { getJson } from "../server.js";
@@ -28,7 +28,7 @@ export class DiagnoseStep {
 
   /** Links within the document would change the step: they scroll instead. */
   cards(html) {
-    const cards = element("div", {}, documentFragment(html));
+    const cards = documentOf(html);
     cards.addEventListener("click", (event) => {
       const link = event.target.closest("a[href^='#']");
       if (!link) return;

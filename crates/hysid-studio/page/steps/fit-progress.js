@@ -2,7 +2,7 @@
 
 import { button, element, Region, table } from "../elements.js";
 import { problem } from "../notices.js";
-import { duration, percent } from "../numbers.js";
+import { duration, percent, sentence } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
@@ -70,7 +70,7 @@ export class FitProgress {
     const held = model.validation ? ` and ${percent(model.validation.nrmse_std_percent)} in cross-validation` : "";
     return [element("h2", { text: "Result" }),
       element("p", { class: "verdict", text: `${model.title}: error ${percent(model.train.nrmse_std_percent)} on the training data${held}, in % of the standard deviation of the output. ${duration(model.seconds)}, ${model.termination}.` }),
-      ...[model.chosen, model.why].filter(Boolean).map((words) => element("p", { text: words })),
+      ...[model.chosen, model.why].filter(Boolean).map((words) => element("p", { text: sentence(words) })),
       judge(model)];
   }
 

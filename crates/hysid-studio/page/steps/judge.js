@@ -1,9 +1,9 @@
 // Step 4: measured against simulated, errors, residuals and facts of a model.
 
 import { tick } from "../controls.js";
-import { documentFragment, element, Region, table } from "../elements.js";
+import { documentOf, element, Region, table } from "../elements.js";
 import { linked, problem } from "../notices.js";
-import { counted, duration, percent, written } from "../numbers.js";
+import { counted, duration, percent, sentence, written } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { goingOn, RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
@@ -36,7 +36,7 @@ export class JudgeStep {
     this.head.update([model, project.usable().map(({ id, name, use }) => [id, name, use]), file.id, this.withMembers], () => [
       element("div", { class: "row" }, modelChoice("judge", model, choose("model")), fileChoice("judge", file, choose("file")),
         tick("Members as thin lines", this.withMembers, (is) => { this.withMembers = is; this.update(); })),
-      stale(model), model.chosen ? element("p", { class: "verdict", text: model.chosen }) : null, model.why ? element("p", { text: model.why }) : null,
+      stale(model), model.chosen ? element("p", { class: "verdict", text: sentence(model.chosen) }) : null, model.why ? element("p", { class: "note", text: sentence(model.why) }) : null,
       project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There is no unseen file. The error on unseen data is the one that counts: drop a second file anywhere on this page. It is unseen data." }) : null]);
     this.draw(model, file);
   }
@@ -55,11 +55,26 @@ export class JudgeStep {
       if (this.wanted !== key) return;
       this.errors.update([model, judged, unseen], () => this.errorTable(model, file, judged, others, unseen));
       this.residuals.update([key, judged.residuals], () => this.buildResiduals(columns, simulated, file, judged));
-      const facts = await project.ofModel(model, "facts");
-      if (this.wanted === key) this.facts.update(model.id, () => [element("h2", { text: "Facts of the model" }), documentFragment(facts.html)]);
+      this.facts.update(model.id, () => [this.factsOf(model)]);
     } catch (error) {
       this.errors.update(error.message, () => [problem(error.message)]);
     }
+  }
+
+  /** What driving the model over its range tells; it is computed when it is opened. */
+  factsOf(model) {
+    const facts = element("div", {}, element("p", { role: "status", text: "Driving the model over its range \u2026" }));
+    const folded = element("details", { on: { toggle: async () => {
+      if (!folded.open || this.told === model.id) return;
+      this.told = model.id;
+      try {
+        facts.replaceChildren(documentOf((await project.ofModel(model, "facts")).html));
+      } catch (error) {
+        facts.replaceChildren(problem(error.message));
+      }
+    } } }, element("summary", { text: "Facts of the model: properties, equations, neurons" }), facts);
+    this.told = null;
+    return folded;
   }
 
   dropFigures() {
@@ -94,7 +109,7 @@ export class JudgeStep {
     return [element("h2", { text: "Errors" }),
       table("Errors", ["Data", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], rows),
       element("p", { class: "note", text: "NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error." }),
-      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the prediction band.` }),
+      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the prediction band, which is made for ${percent(100 * project.choices.band)} of new rows.` }),
       judged.warnings.length > 0 ? element("ul", { class: "warnings" }, ...judged.warnings.map((words) => element("li", {}, linked(words)))) : null, records,
       element("p", { class: "note", text: [`${counted(model.parameters)} parameters, ${duration(model.seconds)}, ${model.termination}.`, ...model.notes].join(" ") })];
   }
@@ -111,9 +126,9 @@ export class JudgeStep {
       return made;
     };
     this.drawn = [figure("Residuals over time", "history", labels.time || "row", goingOn(columns.time, starts)), figure("Residuals over the input", "points", labels.inputs[0], columns.inputs[0])];
-    if (columns.rate) this.drawn.push(figure("Residuals over the rate", "points", `rate of ${labels.inputs[0]}`, columns.rate));
+    if (columns.rate) this.drawn.push(figure("Residuals over the rate", "points", project.state.rate_label, columns.rate));
     const text = (name) => ({ text: name, class: "text" });
-    return [element("h2", { text: "Residuals" }), element("p", { class: "note", text: "Measured minus simulated. A pattern means that the model leaves something unexplained." }),
+    return [element("h2", { text: "Residuals" }), element("p", { class: "note", text: "Measured minus simulated output. A pattern means that a better model is possible." }),
       element("div", { class: "grid" }, ...this.drawn.map(({ node }) => node)),
       judged.residuals.length > 0 ? table("Residual tests", ["Test", text("Verdict"), "p", { text: "Statement", class: "words" }, { text: "Advice", class: "words" }],
         judged.residuals.map((one) => [one.test, one.verdict, one.p ?? "\u2013", one.statement, one.advice ? linked(one.advice) : ""])) : null];

@@ -32,10 +32,11 @@ pub struct Preview {
 }
 
 /// Draws models as they come, until there are no more.
-pub fn draw(models: Receiver<SoFar>, course: &Course, data: &Data, file: u64, best: &Path) {
+pub fn draw(models: Receiver<Box<SoFar>>, course: &Course, data: &Data, file: u64, best: &Path) {
     let rows: Vec<Record> = first_rows(data);
     let mut due = Instant::now();
-    for SoFar { name, model } in models {
+    for so_far in models {
+        let SoFar { name, model } = *so_far;
         if Instant::now() >= due {
             // A disk that is full is told when the model itself is written.
             let _ = write(best, Kind::Model, model.to_json().as_bytes());

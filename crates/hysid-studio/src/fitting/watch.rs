@@ -37,10 +37,10 @@ pub struct Watch<'c> {
     /// Errors since then, each with its second.
     errors: Vec<(f64, f64)>,
     remaining: Remaining,
-    models: Option<SyncSender<SoFar>>,
+    models: Option<SyncSender<Box<SoFar>>>,
     model_due: Instant,
-    /// Lowest cross-validation error of a candidate whose model was passed on.
-    lowest: f64,
+    /// Folds that were not held out, and error, of the candidate whose model was passed on.
+    passed_on: (usize, f64),
 }
 
 impl<'c> Watch<'c> {
@@ -56,12 +56,12 @@ impl<'c> Watch<'c> {
             remaining: Remaining::default(),
             models: None,
             model_due: now,
-            lowest: f64::INFINITY,
+            passed_on: (usize::MAX, f64::INFINITY),
         }
     }
 
     /// The models that are passed on; they end with the fit.
-    pub fn models(&mut self) -> Receiver<SoFar> {
+    pub fn models(&mut self) -> Receiver<Box<SoFar>> {
         let (sender, receiver) = sync_channel(1);
         self.models = Some(sender);
         receiver
@@ -124,7 +124,10 @@ impl<'c> Watch<'c> {
                 Standing::Dropped => state::Standing::Dropped,
             },
         };
-        let is_best = error.is_some_and(|error| error < self.lowest) && tried.standing != Standing::Dropped;
+        // Errors on few folds say less than those on all.
+        let rank = (tried.of - tried.folds, error.unwrap_or(f64::INFINITY));
+        let is_best = rank.0 < self.passed_on.0 || (rank.0 == self.passed_on.0 && rank.1 < self.passed_on.1);
+        let is_best = is_best && error.is_some() && tried.standing != Standing::Dropped;
         let seconds = self.began.elapsed().as_secs_f64();
         self.course.change(|state| {
             state.seconds = seconds;
@@ -136,7 +139,7 @@ impl<'c> Watch<'c> {
         });
         if is_best && let Some(model) = tried.model {
             self.pass_on(SoFar { name: tried.name.clone(), model: model.clone() });
-            self.lowest = error.unwrap_or(self.lowest);
+            self.passed_on = rank;
         }
     }
 
@@ -153,6 +156,8 @@ impl<'c> Watch<'c> {
 
     /// While one is being drawn, the next waits for the one after it.
     fn pass_on(&self, model: SoFar) {
-        let _ = self.models.as_ref().map(|models| models.try_send(model));
+        if let Some(models) = &self.models {
+            drop(models.try_send(Box::new(model)));
+        }
     }
 }
