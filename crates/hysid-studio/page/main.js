@@ -77,6 +77,7 @@ const connect = listenToEvents({ project: load, fit: (fit) => project.setFit(fit
 connection.addEventListener("gone", () => {
   showBanner(element("p", {}, "The studio is not running. Start it again with: ", element("code", { text: "hysid studio" })), button("Try again", connect));
 });
+connection.addEventListener("stranger", ({ detail }) => showBanner(element("p", { text: `The studio was started anew: ${detail}.` })));
 connection.addEventListener("back", () => {
   banner.hidden = true;
   load();

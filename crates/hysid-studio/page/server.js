@@ -8,8 +8,14 @@ export class Gone extends Error {}
 /** Tells the page that the server is gone or back. */
 export const connection = new EventTarget();
 let isThere = true;
+let isStranger = false;
+/** The cookie of this page is that of an earlier studio: no request will be answered. */
+function estranged(words) {
+  isStranger = true;
+  connection.dispatchEvent(new CustomEvent("stranger", { detail: words }));
+}
 function say(there) {
-  if (there === isThere) return;
+  if (there === isThere || isStranger) return;
   isThere = there;
   connection.dispatchEvent(new CustomEvent(there ? "back" : "gone"));
 }
@@ -26,6 +32,7 @@ async function request(address, options) {
   say(true);
   if (response.ok) return response;
   const words = await response.json().then((answer) => answer.error, () => `The server answered with status ${response.status}.`);
+  if (response.status === 403) estranged(words);
   throw new ServerError(words);
 }
 
@@ -86,7 +93,8 @@ export function listenToEvents(listeners) {
     source.addEventListener("open", () => say(true));
     source.addEventListener("error", () => {
       say(false);
-      if (source.readyState === EventSource.CLOSED) again = setTimeout(open, 2000);
+      // The browser does not tell why: a request does.
+      if (source.readyState === EventSource.CLOSED) again = setTimeout(() => getJson("/api/choices").catch(() => {}).then(() => { if (!isStranger) open(); }), 2000);
     });
     for (const [name, listener] of Object.entries(listeners)) source.addEventListener(name, (event) => listener(JSON.parse(event.data)));
   };

@@ -76,7 +76,7 @@ fn shell(stored: &ProjectModel, folder: &std::path::Path) -> String {
         _ => {}
     }
     words.extend(of_reading(&begun.understanding.reading));
-    for (name, value) in &begun.request.options {
+    for (name, value) in chosen(begun) {
         words.extend(argument(name, value).map(|value| match value {
             None => flag(name),
             Some(value) => format!("{} {}", flag(name), quoted(&value)),
@@ -85,6 +85,13 @@ fn shell(stored: &ProjectModel, folder: &std::path::Path) -> String {
     words.extend(begun.request.time_limit.map(|seconds| format!("--time-limit {seconds}")));
     words.push(format!("-o {}", quoted(&stored.file)));
     format!("cd {}\n{}", shown(folder), words.join(" "))
+}
+
+/// The options that were chosen, the model first.
+fn chosen(begun: &Begun) -> Vec<(&String, &Value)> {
+    let mut options: Vec<(&String, &Value)> = begun.request.options.iter().collect();
+    options.sort_by_key(|(name, _)| *name != "model");
+    options
 }
 
 fn of_reading(reading: &ReadingChoice) -> Vec<String> {
@@ -144,7 +151,7 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
         (None, Some(method)) if method != "auto" => arguments.push(format!("rate={}", text(method))),
         _ => {}
     }
-    for (name, value) in &begun.request.options {
+    for (name, value) in chosen(begun) {
         let value = match value {
             Value::Null => continue,
             Value::Bool(true) => "True".to_string(),

@@ -58,13 +58,14 @@ export function historyPoints(trace, values, window, place, points, side = "both
       points.lift();
       continue;
     }
-    const at = place.xScale * x[Math.min(start + (rows >> 1), trace.length - 1)] + place.xOffset;
-    if (side === "low") points.add(at, yPixel(place, least));
-    else if (side === "high") points.add(at, yPixel(place, most));
+    const at = (share) => place.xScale * x[Math.min(start + Math.floor(share * rows), trace.length - 1)] + place.xOffset;
+    if (side === "low") points.add(at(0.5), yPixel(place, least));
+    else if (side === "high") points.add(at(0.5), yPixel(place, most));
     else {
+      // Where rows are far apart in time, a bucket is wider than a pixel: its two points lie apart, or a slope would be a stair.
       const isNearMost = Math.abs(most - last) < Math.abs(least - last);
-      points.add(at, yPixel(place, isNearMost ? most : least));
-      points.add(at, yPixel(place, isNearMost ? least : most));
+      points.add(at(0.25), yPixel(place, isNearMost ? most : least));
+      points.add(at(0.75), yPixel(place, isNearMost ? least : most));
       last = isNearMost ? least : most;
     }
   }

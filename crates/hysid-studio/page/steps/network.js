@@ -49,13 +49,13 @@ export class Network {
     const order = stops.map((_, k) => k).sort((a, b) => (stops[b].influence ?? 0) - (stops[a].influence ?? 0)).slice(0, this.all ? stops.length : FIRST);
     const [input, ...others] = this.model.input_labels;
     this.figures = order.map((stop) => ({
-      stop, figure: new Figure({ title: stops[stop].name, kind: "loop", xLabel: input, yLabel: "output of the stop", height: 170, isSmall: true }),
+      stop, figure: new Figure({ title: stops[stop].name, kind: "loop", xLabel: input, yLabel: `contribution to ${this.model.output_label}`, height: 170, isSmall: true }),
     }));
     const hasRate = stops[0].weights.length > 1 + others.length;
     const channels = ["weight", ...(hasRate ? ["weight of the rate"] : []), ...others.map((label) => `weight of ${label}`)];
     return [element("h2", { text: "Neurons" }),
       this.networks.length > 1 ? element("div", { class: "row" }, choice("Network", this.networks.map(({ name }, k) => ({ value: k, text: name })), this.chosen, (k) => { this.chosen = Number(k); this.redraw(); }, { id: "try-network" })) : null,
-      element("p", { class: "note", text: "Output of each stop along the driven path, in units of its threshold; the stop that changes the output of the model most comes first." }),
+      element("p", { class: "note", text: "What each stop contributes along the driven path: the output of the network minus its output without this stop. The stop that matters most comes first." }),
       element("div", { class: "grid many" }, ...this.figures.map(({ figure }) => figure.node)),
       stops.length > FIRST && !this.all ? button(`Show all ${stops.length} stops`, () => { this.all = true; this.redraw(); }) : null,
       element("details", {}, element("summary", { text: "Stops: thresholds and weights" }),

@@ -90,9 +90,14 @@ impl<'c> Watch<'c> {
         if is_late || self.course.is_to_stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Seconds of the fit.
+    /// Ends with the fit; tells its seconds.
     pub fn finish(self) -> f64 {
-        self.began.elapsed().as_secs_f64()
+        let seconds = self.began.elapsed().as_secs_f64();
+        self.course.change(|state| {
+            state.seconds = seconds;
+            self.errors.iter().for_each(|(second, error)| state.add_error(*second, *error));
+        });
+        seconds
     }
 
     fn tell(&mut self, progress: &Progress) {

@@ -105,7 +105,7 @@ pub async fn run(
     .await
 }
 
-/// Each stop of a network along a path from rest.
+/// What each stop of a network contributes along a path from rest.
 pub async fn run_neurons(
     State(shared): State<Shared>,
     Path(id): Path<u64>,
