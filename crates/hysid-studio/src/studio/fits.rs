@@ -1,0 +1,191 @@
+//! Fits to the training data, and what is kept of them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, Result, bail};
+use hysid::model::Model;
+use hysid::options::FitSpec;
+use hysid::options::chosen::NamedOptions;
+use hysid_files::Kind;
+use hysid_records::{Data, Usage};
+use hysid_report::{Beforehand, Identified, date, origin, page_text};
+
+use super::Studio;
+use crate::fitting::{FitState, Preview, Work};
+use crate::folder::write;
+use crate::project::{Begun, ChosenColumns, FitRequest, ProjectFile, ProjectModel, Use};
+use crate::view::read_named;
+
+impl Studio {
+    /// Begins a fit to the training data.
+    ///
+    /// # Errors
+    /// A request that is not valid, or not for these data; another fit that is running.
+    pub fn begin_fit(self: &Arc<Self>, request: FitRequest) -> Result<u64> {
+        if self.fits.state().is_some_and(|state| state.is_running) {
+            bail!("a fit is running: stop it, or wait until it ends");
+        }
+        if request.time_limit.is_some_and(|limit| !(limit > 0.0 && limit.is_finite() && limit <= 1e9)) {
+            return Err(Usage("--time-limit: a number of seconds above 0 is needed".into()).into());
+        }
+        let data = self.training_data()?;
+        let spec = self.spec(&request, &data)?;
+        // What can be refused is refused before anything is stored.
+        Beforehand::of(&data, &spec)?;
+        let best = self.folder.best_so_far();
+        let _ = fs::remove_file(&best);
+        let begun = self.change(|project| {
+            let id = project.next_id();
+            let files = project.files_for(Use::Training).map(|file| file.name.clone()).collect();
+            let understanding = project.understanding.clone();
+            let columns = ChosenColumns::of(&data.roles);
+            let begun = Begun { id, request, files, understanding, columns };
+            project.unfinished = Some(begun.clone());
+            Ok(begun)
+        })?;
+        let id = begun.id;
+        let file = self.project().files_for(Use::Training).next().map_or(0, |file| file.id);
+        let time_limit = begun.request.time_limit;
+        // The fit has data of its own: the page may read files in another way meanwhile.
+        let data = Arc::try_unwrap(data).or_else(|_| self.owned_training_data())?;
+        let work = Work { id, request: spec, data, file, time_limit, best };
+        let (finishing, telling) = (Arc::clone(self), Arc::clone(self));
+        let finish = Box::new(move |identified: Identified, data: &Data| {
+            finishing.take_model(begun, &identified, data).map(|()| id)
+        });
+        let tell = Arc::new(move || telling.news.send_modify(|news| news.fit += 1));
+        let begun = self.fits.begin(work, finish, tell);
+        if begun.is_err() {
+            self.forget_the_unfinished();
+        }
+        begun.map(|()| id)
+    }
+
+    fn owned_training_data(&self) -> Result<Data> {
+        let project = self.project();
+        let understanding = project.understanding.clone();
+        let reading = understanding.reading.reading()?;
+        let read = |file: &ProjectFile| read_named(&file.name, &self.folder, &reading);
+        let tables = project.files_for(Use::Training).map(read).collect::<Result<_>>()?;
+        drop(project);
+        Data::of_tables(tables, &understanding.choice(), understanding.reading.zero)
+    }
+
+    /// What a request asks for.
+    fn spec(&self, request: &FitRequest, data: &Data) -> Result<FitSpec> {
+        let chosen = NamedOptions::of(request.options.clone()).map_err(|error| Usage(error.to_string()))?;
+        request.rate(&self.project().understanding)?.request(&chosen, &data.roles)
+    }
+
+    /// Ends the fit with its best model so far.
+    pub fn stop_fit(&self) {
+        self.fits.stop();
+    }
+
+    /// The fit.
+    pub fn fit(&self) -> Option<FitState> {
+        self.fits.state()
+    }
+
+    /// What the best model so far simulates.
+    pub fn preview(&self) -> Option<Preview> {
+        self.fits.preview()
+    }
+
+    /// Ends everything: the fit stops with its best model so far, which is saved.
+    pub fn end(&self) {
+        self.fits.end();
+    }
+
+    /// Saves what a fit has found.
+    fn take_model(&self, begun: Begun, identified: &Identified, data: &Data) -> Result<()> {
+        let stem = format!("{}-{}", begun.id, identified.model.name().name());
+        let (file, report) = (format!("{stem}.json"), format!("{stem}.html"));
+        write(&self.folder.models(&file), Kind::Model, identified.model.to_json().as_bytes())?;
+        // A model is worth more than its report.
+        let report = self.write_report(&report, &file, identified, data, &begun).is_ok().then_some(report);
+        let stored = ProjectModel {
+            begun,
+            file,
+            report,
+            made: date::now(),
+            seconds: identified.seconds,
+            was_interrupted: false,
+        };
+        self.change(|project| {
+            project.unfinished = None;
+            project.models.push(stored);
+            Ok(())
+        })?;
+        let _ = fs::remove_file(self.folder.best_so_far());
+        Ok(())
+    }
+
+    fn write_report(
+        &self,
+        report: &str,
+        file: &str,
+        identified: &Identified,
+        data: &Data,
+        begun: &Begun,
+    ) -> Result<()> {
+        let trained = identified.model.as_trained(&data.set)?;
+        let mut page = identified.page(Path::new(file), &[("training", trained.as_ref())])?;
+        let inputs: Vec<PathBuf> = begun.files.iter().map(|file| self.folder.data(file)).collect();
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        page.parts.push(origin::section("hysid studio", &inputs));
+        write(&self.folder.models(report), Kind::Page, page_text(&page).as_bytes())
+    }
+
+    fn forget_the_unfinished(&self) {
+        let forgotten = self.change(|project| {
+            project.unfinished = None;
+            Ok(())
+        });
+        // The folder could be written to a moment ago; the next change tells if it no longer can.
+        drop(forgotten);
+    }
+
+    /// Keeps the best model of a fit that an earlier studio did not bring to its end, and says so.
+    pub(super) fn take_up_the_unfinished(&self) -> Result<()> {
+        let Some(begun) = self.project().unfinished.clone() else { return Ok(()) };
+        let chosen = NamedOptions::of(begun.request.options.clone()).unwrap_or_default();
+        let best = self.folder.best_so_far();
+        let model = fs::read_to_string(&best).ok().and_then(|text| Model::from_json(&text).ok());
+        let mut state = FitState::begun(begun.id, &FitSpec::of(chosen.model(), None, 1));
+        state.is_running = false;
+        state.was_interrupted = true;
+        let words = "the studio was ended before this fit";
+        match model {
+            Some(model) => {
+                let id = begun.id;
+                let file = format!("{id}-{}.json", model.name().name());
+                fs::rename(&best, self.folder.models(&file))
+                    .context("the best model so far cannot be kept")?;
+                let stored = ProjectModel {
+                    begun,
+                    file,
+                    report: None,
+                    made: date::now(),
+                    seconds: 0.0,
+                    was_interrupted: true,
+                };
+                self.change(|project| {
+                    project.unfinished = None;
+                    project.models.push(stored);
+                    Ok(())
+                })?;
+                state.made = Some(id);
+                state.problem = Some(format!("{words}; its best model so far is kept"));
+            }
+            None => {
+                self.forget_the_unfinished();
+                state.problem = Some(format!("{words} had a model; start it again"));
+            }
+        }
+        self.fits.interrupted(state);
+        Ok(())
+    }
+}

@@ -1,0 +1,132 @@
+//! Models of a project, and what they make of its files.
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::{Result, anyhow};
+use hysid::model::Model;
+use hysid_document::{Page, html};
+use hysid_records::{ColumnChoice, Data};
+use hysid_report::diagnosis::DiagnosedModel;
+
+use super::Studio;
+use crate::judgement::Run;
+use crate::project::ProjectModel;
+use crate::take_away::Lines;
+use crate::view::read_named;
+
+/// Models that are kept in memory.
+const MOST_MODELS: usize = 20;
+
+impl Studio {
+    /// The model of this number.
+    ///
+    /// # Errors
+    /// There is none, or its file cannot be read.
+    pub fn model(&self, id: u64) -> Result<Arc<Model>> {
+        let kept = || self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if let Some(known) = kept().get(&id) {
+            return Ok(Arc::clone(known));
+        }
+        let path = self.model_file(id)?;
+        let text = fs::read_to_string(&path).map_err(|error| {
+            anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))
+        })?;
+        let model = Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))?;
+        let model = Arc::new(model);
+        let mut kept = kept();
+        if kept.len() >= MOST_MODELS {
+            kept.clear();
+        }
+        kept.insert(id, Arc::clone(&model));
+        Ok(model)
+    }
+
+    /// What is stored of a model.
+    ///
+    /// # Errors
+    /// There is none of this number.
+    pub fn stored_model(&self, id: u64) -> Result<ProjectModel> {
+        self.project().model(id).cloned()
+    }
+
+    /// Where the file of a model is.
+    ///
+    /// # Errors
+    /// There is none of this number.
+    pub fn model_file(&self, id: u64) -> Result<PathBuf> {
+        Ok(self.folder.models(&self.project().model(id)?.file))
+    }
+
+    /// The text of a model's report.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn report(&self, id: u64) -> Result<String> {
+        let report = self.project().model(id)?.report.clone();
+        let report =
+            report.ok_or_else(|| anyhow!("this model has no report: its fit did not come to its end"))?;
+        let path = self.folder.models(&report);
+        fs::read_to_string(&path)
+            .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))
+    }
+
+    /// Removes a model.
+    ///
+    /// # Errors
+    /// There is none of this number.
+    pub fn remove_model(&self, id: u64) -> Result<()> {
+        self.change(|project| {
+            let stored = project.model(id)?.clone();
+            project.models.retain(|model| model.begun.id != id);
+            for file in std::iter::once(&stored.file).chain(&stored.report) {
+                let _ = fs::remove_file(self.folder.models(file));
+            }
+            Ok(())
+        })?;
+        self.models.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).remove(&id);
+        self.runs.clear();
+        Ok(())
+    }
+
+    /// The free run of a model over a file.
+    ///
+    /// # Errors
+    /// A file that the model cannot run on.
+    pub fn run(&self, model: u64, file: u64) -> Result<Arc<Run>> {
+        self.runs.of(model, file, || {
+            let (stored, name, reading) = {
+                let project = self.project();
+                let name = project.file(file)?.name.clone();
+                (project.model(model)?.clone(), name, project.understanding.reading.clone())
+            };
+            let fitted = self.model(model)?;
+            let table = read_named(&name, &self.folder, &reading.reading()?)?;
+            // The model knows the names of its columns, whatever is chosen now.
+            let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
+            let columns = ColumnChoice { record, ..ColumnChoice::default() };
+            let data = Data::of_model(vec![table], &fitted, &columns, reading.zero)?;
+            Run::of(&fitted, data.set)
+        })
+    }
+
+    /// What is known of a model, as HTML.
+    ///
+    /// # Errors
+    /// A model that cannot be diagnosed.
+    pub fn facts(&self, id: u64) -> Result<String> {
+        let (model, path) = (self.model(id)?, self.model_file(id)?);
+        let file = PathBuf::from(path.file_name().unwrap_or_default());
+        let page: Page = DiagnosedModel::of(&file, &model)?.page();
+        Ok(html::parts(&page.parts))
+    }
+
+    /// The lines that make a model without the studio.
+    ///
+    /// # Errors
+    /// There is none of this number.
+    pub fn lines(&self, id: u64) -> Result<Lines> {
+        Ok(Lines::of(&self.stored_model(id)?, self.folder.root()))
+    }
+}
