@@ -50,7 +50,7 @@ pub struct Work {
     /// What is to be identified.
     pub request: FitSpec,
     /// The data.
-    pub data: Data,
+    pub data: Arc<Data>,
     /// Number of the file with the first records, over which the best model so far is drawn.
     pub file: u64,
     /// Seconds after which the fit ends.
@@ -166,7 +166,7 @@ fn run(
     std::thread::scope(|scope| {
         let mut watch = Watch::new(course, request.starts(), time_limit);
         let drawn = watch.models();
-        let of_data = &data;
+        let of_data = &*data;
         scope.spawn(move || preview::draw(drawn, course, of_data, file, &best));
         let fitted = pool.install(|| identify(&data.set, &request, &mut |progress| watch.observe(progress)));
         let seconds = watch.finish();

@@ -25,6 +25,8 @@ pub struct Studio {
     project: Mutex<Project>,
     view: RwLock<Arc<View>>,
     fits: Fits,
+    /// Held while a fit begins, so that two requests do not begin two.
+    beginning: Mutex<()>,
     runs: Runs,
     models: Mutex<HashMap<u64, Arc<Model>>>,
     /// Numbers of changes: of the project, and of the fit.
@@ -53,6 +55,7 @@ impl Studio {
             project: Mutex::new(project),
             view: RwLock::new(Arc::new(view)),
             fits: Fits::default(),
+            beginning: Mutex::default(),
             runs: Runs::default(),
             models: Mutex::default(),
             news: watch::Sender::new(News::default()),

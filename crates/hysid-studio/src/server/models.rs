@@ -7,6 +7,7 @@ use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::header::{self, HeaderValue};
 use axum::response::{Html, IntoResponse, Response};
+use hysid::model::Model;
 use serde::Deserialize;
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -81,9 +82,13 @@ pub struct Driven {
     network: usize,
 }
 
-/// Numbers of a body.
-fn numbers(body: &Bytes) -> Vec<f64> {
-    body.chunks_exact(8).filter_map(|bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?))).collect()
+impl Driven {
+    /// The path whose numbers are a body.
+    fn path(&self, model: &Model, body: &Bytes) -> anyhow::Result<drive::Path> {
+        let number = |bytes: &[u8]| Some(f64::from_le_bytes(bytes.try_into().ok()?));
+        let numbers: Vec<f64> = body.chunks_exact(8).filter_map(number).collect();
+        drive::Path::of(model, &numbers, self.rows)
+    }
 }
 
 /// A model along a path from rest.
@@ -95,7 +100,7 @@ pub async fn run(
 ) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let model = studio.model(id)?;
-        let run = drive::Path::of(&model, &numbers(&body), driven.rows)?.run(&model)?;
+        let run = driven.path(&model, &body)?.run(&model)?;
         let mut columns = vec![("simulated", &run.output)];
         if !run.low.is_empty() {
             columns.extend([("low", &run.low), ("high", &run.high)]);
@@ -114,8 +119,7 @@ pub async fn run_neurons(
 ) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let model = studio.model(id)?;
-        let path = drive::Path::of(&model, &numbers(&body), driven.rows)?;
-        let stops = neurons::along(&model, driven.network, path.record()?)?;
+        let stops = neurons::along(&model, driven.network, driven.path(&model, &body)?.record()?)?;
         let names: Vec<&str> = stops.iter().map(|(name, _)| name.as_str()).collect();
         let columns: Vec<(&str, &[f64])> =
             stops.iter().map(|(_, output)| ("stop", output.as_slice())).collect();

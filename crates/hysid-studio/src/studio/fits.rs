@@ -15,8 +15,7 @@ use hysid_report::{Beforehand, Identified, date, origin, page_text};
 use super::Studio;
 use crate::fitting::{FitState, Preview, Work};
 use crate::folder::write;
-use crate::project::{Begun, ChosenColumns, FitRequest, ProjectFile, ProjectModel, Use};
-use crate::view::read_named;
+use crate::project::{Begun, ChosenColumns, FitRequest, ProjectModel, Use};
 
 impl Studio {
     /// Begins a fit to the training data.
@@ -24,6 +23,7 @@ impl Studio {
     /// # Errors
     /// A request that is not valid, or not for these data; another fit that is running.
     pub fn begin_fit(self: &Arc<Self>, request: FitRequest) -> Result<u64> {
+        let _only = self.beginning.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.fits.state().is_some_and(|state| state.is_running) {
             bail!("a fit is running: stop it, or wait until it ends");
         }
@@ -48,8 +48,6 @@ impl Studio {
         let id = begun.id;
         let file = self.project().files_for(Use::Training).next().map_or(0, |file| file.id);
         let time_limit = begun.request.time_limit;
-        // The fit has data of its own: the page may read files in another way meanwhile.
-        let data = Arc::try_unwrap(data).or_else(|_| self.owned_training_data())?;
         let work = Work { id, request: spec, data, file, time_limit, best };
         let (finishing, telling) = (Arc::clone(self), Arc::clone(self));
         let finish = Box::new(move |identified: Identified, data: &Data| {
@@ -61,16 +59,6 @@ impl Studio {
             self.forget_the_unfinished();
         }
         begun.map(|()| id)
-    }
-
-    fn owned_training_data(&self) -> Result<Data> {
-        let project = self.project();
-        let understanding = project.understanding.clone();
-        let reading = understanding.reading.reading()?;
-        let read = |file: &ProjectFile| read_named(&file.name, &self.folder, &reading);
-        let tables = project.files_for(Use::Training).map(read).collect::<Result<_>>()?;
-        drop(project);
-        Data::of_tables(tables, &understanding.choice(), understanding.reading.zero)
     }
 
     /// What a request asks for.

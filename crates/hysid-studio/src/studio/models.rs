@@ -17,7 +17,7 @@ use crate::take_away::Lines;
 use crate::view::read_named;
 
 /// Models that are kept in memory.
-const MOST_MODELS: usize = 20;
+const MOST_MODELS: usize = 200;
 
 impl Studio {
     /// The model of this number.
