@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from playwright.sync_api import sync_playwright
+from studio import Studio
 
 #: Without a network and a graphics card, as a test machine is; root needs no sandbox of Chromium.
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
@@ -89,3 +90,25 @@ def opened(browser, folder):
     yield open_page
     for context in contexts:
         context.close()
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts studios, which end with the test."""
+    started = []
+
+    def start_studio(*arguments: str, folder: Path = tmp_path) -> Studio:
+        started.append(Studio(folder, *arguments))
+        return started[-1]
+
+    yield start_studio
+    for studio in started:
+        studio.end()
+
+
+@pytest.fixture(scope="module")
+def shared(tmp_path_factory):
+    """A studio for all tests of a file."""
+    studio = Studio(tmp_path_factory.mktemp("studio"))
+    yield studio
+    studio.end()
