@@ -40,7 +40,7 @@ export function control(scope, option, value, changed = () => {}) {
   node.dataset.flag = option.flag;
   node.setAttribute("aria-describedby", help);
   node.addEventListener("change", changed);
-  const name = option.name.replaceAll("-", " ");
+  const name = option.name.replaceAll("_", " ");
   const label = element("label", { for: id, text: name.charAt(0).toUpperCase() + name.slice(1) });
   const read = () => {
     if (node.type === "checkbox") return node.checked ? true : undefined;

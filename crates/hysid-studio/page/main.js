@@ -2,7 +2,7 @@
 
 import { button, element } from "./elements.js";
 import { project } from "./project.js";
-import { connection, Gone, listenToEvents } from "./server.js";
+import { connection, Gone, isStranger, listenToEvents } from "./server.js";
 import { CompareStep } from "./steps/compare.js";
 import { DataStep } from "./steps/data.js";
 import { DiagnoseStep } from "./steps/diagnose.js";
@@ -64,7 +64,7 @@ function showFit() {
 }
 
 const load = () => project.load().catch((error) => {
-  if (!(error instanceof Gone)) showBanner(element("p", { text: error.message }), button("Try again", load));
+  if (!(error instanceof Gone || isStranger())) showBanner(element("p", { text: error.message }), button("Try again", load));
 });
 function showBanner(...content) {
   banner.replaceChildren(...content);

@@ -1,7 +1,10 @@
 // Problems in the server's words. A word such as --delimiter becomes a link to the control with that name.
 
 import { button, element } from "./elements.js";
+import { project } from "./project.js";
 import { Gone } from "./server.js";
+
+const OF_COLUMNS = ["--input", "--output", "--time", "--record", "--rate"];
 
 /** Moves the focus to the control of an option and unfolds what it is in. */
 function focusOption(flag) {
@@ -18,12 +21,13 @@ function focusOption(flag) {
   }, 50);
 }
 
+const isControl = (flag) => OF_COLUMNS.includes(flag) || [...project.choices.options, ...project.choices.reading].some((option) => option.flag === flag);
+
 /** Words with links to the controls that they name. */
 export function linked(words) {
   const parts = words.split(/(--[a-z][a-z-]*[a-z])/);
   return element("span", {}, ...parts.map((part) => {
-    const isOption = part.startsWith("--") && document.querySelector(`[data-flag="${part}"]`);
-    return isOption ? button(part, () => focusOption(part), { class: "link" }) : part;
+    return isControl(part) ? button(part, () => focusOption(part), { class: "link" }) : part;
   }));
 }
 

@@ -37,7 +37,8 @@ class Project extends EventTarget {
   }
 
   get files() { return this.state.files; }
-  get models() { return this.state.models; }
+  /** Models whose file can be read. */
+  get models() { return this.state.models.filter((model) => !model.problem); }
   get labels() { return this.state.labels; }
   usable(use) { return this.files.filter((file) => !file.problem && (use ? file.use === use : file.use !== "unused")); }
   /** Changes when the columns of a file mean something else. */

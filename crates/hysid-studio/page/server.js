@@ -8,14 +8,15 @@ export class Gone extends Error {}
 /** Tells the page that the server is gone or back. */
 export const connection = new EventTarget();
 let isThere = true;
-let isStranger = false;
+let isOfEarlierStart = false;
+export const isStranger = () => isOfEarlierStart;
 /** The cookie of this page is that of an earlier studio: no request will be answered. */
 function estranged(words) {
-  isStranger = true;
+  isOfEarlierStart = true;
   connection.dispatchEvent(new CustomEvent("stranger", { detail: words }));
 }
 function say(there) {
-  if (there === isThere || isStranger) return;
+  if (there === isThere || isOfEarlierStart) return;
   isThere = there;
   connection.dispatchEvent(new CustomEvent(there ? "back" : "gone"));
 }
@@ -29,7 +30,7 @@ async function request(address, options) {
     say(false);
     throw new Gone("The studio is not running.");
   }
-  say(true);
+  if (response.status !== 403) say(true);
   if (response.ok) return response;
   const words = await response.json().then((answer) => answer.error, () => `The server answered with status ${response.status}.`);
   if (response.status === 403) estranged(words);
@@ -94,7 +95,7 @@ export function listenToEvents(listeners) {
     source.addEventListener("error", () => {
       say(false);
       // The browser does not tell why: a request does.
-      if (source.readyState === EventSource.CLOSED) again = setTimeout(() => getJson("/api/choices").catch(() => {}).then(() => { if (!isStranger) open(); }), 2000);
+      if (source.readyState === EventSource.CLOSED) again = setTimeout(() => getJson("/api/choices").catch(() => {}).then(() => { if (!isOfEarlierStart) open(); }), 2000);
     });
     for (const [name, listener] of Object.entries(listeners)) source.addEventListener(name, (event) => listener(JSON.parse(event.data)));
   };

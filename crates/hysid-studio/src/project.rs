@@ -2,6 +2,7 @@
 
 use anyhow::{Result, anyhow, bail};
 use hysid::options::chosen::RateChoice;
+use hysid::options::table::{OPTIONS, Values};
 use hysid_records::{ColumnChoice, RateOption, ReadingChoice, Roles, Usage};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -228,6 +229,23 @@ impl Understanding {
 }
 
 impl FitRequest {
+    /// The same with values in place of their texts, as a form gives them.
+    ///
+    /// # Errors
+    /// A text that is no value of its option.
+    pub fn with_values(mut self) -> Result<Self, Usage> {
+        for (name, value) in &mut self.options {
+            let Some(option) = OPTIONS.iter().find(|option| option.name == name) else { continue };
+            if let Value::String(text) = value
+                && !matches!(option.values, Values::Names(_))
+            {
+                let needed = |needed| Usage(format!("--{}: {needed}", name.replace('_', "-")));
+                *value = option.read(text).map_err(needed)?;
+            }
+        }
+        Ok(self)
+    }
+
     /// Where the rate comes from, in a project with this understanding of its files.
     ///
     /// # Errors
@@ -245,6 +263,18 @@ impl FitRequest {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_of_a_form_become_values() {
+        let request = |options: &str| -> FitRequest {
+            serde_json::from_str(&format!("{{\"options\": {options}}}")).unwrap()
+        };
+        let texts = request(r#"{"model": "prandtl-ishlinskii", "thresholds": "0.1, 0.5", "seed": 3}"#);
+        let values = request(r#"{"model": "prandtl-ishlinskii", "thresholds": [0.1, 0.5], "seed": 3}"#);
+        assert_eq!(texts.with_values().unwrap(), values);
+        let error = request(r#"{"thresholds": "0.1; x"}"#).with_values().unwrap_err().to_string();
+        assert!(error.starts_with("--thresholds: numbers above 0"), "{error}");
+    }
 
     #[test]
     fn a_project_reads_back_as_it_was_written_and_a_damaged_one_says_so() {

@@ -56,6 +56,7 @@ export class CompareStep {
       element("caption", { class: "hidden", text: "Models" }),
       element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col", text })), element("td"))),
       element("tbody", {}, ...models.map(row)))),
+    ...project.state.models.filter((model) => model.problem).map((model) => problem(`Model ${model.id}, ${model.file}: ${model.problem}`)),
     element("p", { class: "note", text: "Errors are NRMSE, in % of the standard deviation of the output; the lowest of each column is bold." })];
   }
 

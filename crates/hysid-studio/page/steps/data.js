@@ -134,15 +134,18 @@ export class DataStep {
       ...tables, areChosen ? button("Guess again", () => this.notice.during(() => post("/api/columns", null))) : null];
   }
 
-  /** Sends the whole choice. A role that only one column can have is taken from the column that had it. */
+  /** Sends the whole choice. Two columns exchange a role that only one can have. */
   chooseRole(file, name, role) {
     const roles = new Map(file.columns.map((column) => [column.name, column.role]));
-    if (role !== "input" && role !== "unused") for (const [other, had] of roles) if (had === role) roles.set(other, "unused");
+    if (role !== "input" && role !== "unused") for (const [other, had] of roles) if (had === role) roles.set(other, roles.get(name));
     roles.set(name, role);
     const all = (wanted) => [...roles].filter(([, had]) => had === wanted).map(([column]) => column);
     const one = (wanted) => all(wanted)[0] ?? null;
     const choiceOfAll = { record: one("record"), time: one("time"), inputs: all("input"), rate: one("rate"), output: one("output") };
-    return this.notice.during(() => post("/api/columns", choiceOfAll)).then(() => project.load());
+    return this.notice.during(() => post("/api/columns", choiceOfAll)).then((answer) => {
+      if (answer?.note) this.notice.show(`${answer.note}.`);
+      return project.load();
+    });
   }
 
   readingOptions(reading, isOpen) {

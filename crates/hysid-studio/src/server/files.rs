@@ -13,7 +13,7 @@ use axum::response::Response;
 use futures_util::StreamExt;
 use hysid::data::rate::RateMethod;
 use hysid::data::record::Record;
-use hysid_records::{Data, ReadingChoice};
+use hysid_records::{Data, ReadingChoice, Usage as Wrong};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -143,13 +143,37 @@ pub async fn reading(State(shared): State<Shared>, Json(reading): Json<ReadingCh
     Ok(done())
 }
 
-/// Says which columns are what.
+/// Columns by their names, while they are being chosen.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AskedColumns {
+    record: Option<String>,
+    time: Option<String>,
+    inputs: Vec<String>,
+    rate: Option<String>,
+    output: Option<String>,
+}
+
+impl AskedColumns {
+    fn chosen(self) -> anyhow::Result<ChosenColumns> {
+        let Self { record, time, inputs, rate, output } = self;
+        let missing = |what: &str| Wrong(format!("no column is {what}: choose one (--{what})"));
+        if inputs.is_empty() {
+            return Err(missing("input").into());
+        }
+        let output = output.ok_or_else(|| missing("output"))?;
+        Ok(ChosenColumns { record, time, inputs, rate, output })
+    }
+}
+
+/// Says which columns are what; answers with a note if one of them stays what it was.
 pub async fn columns(
     State(shared): State<Shared>,
-    Json(columns): Json<Option<ChosenColumns>>,
+    Json(asked): Json<Option<AskedColumns>>,
 ) -> Answer<Response> {
-    computed(shared, move |studio| studio.choose_columns(columns)).await?;
-    Ok(done())
+    let note =
+        computed(shared, move |studio| studio.choose_columns(asked.map(AskedColumns::chosen).transpose()?));
+    Ok(value(json!({"note": note.await?})))
 }
 
 /// The numbers of a file.

@@ -10,6 +10,7 @@ use hysid::data::summary::Summary;
 use hysid::diagnosis::{DataIssue, Diagnosis, DiagnosisOptions, before_a_fit};
 use hysid::specimens::{Specimen, with_noise};
 use hysid_document::html;
+use hysid_document::visible::clipped;
 use hysid_records::{Data, ReadingChoice, Roles, csv_text, summarised, understanding};
 use hysid_report::diagnosis::DataDiagnosis;
 use serde::Serialize;
@@ -154,17 +155,23 @@ impl Studio {
     ///
     /// # Errors
     /// Columns that the training files do not have, or one with two roles. Nothing is then changed.
-    pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<()> {
+    ///
+    /// The answer is a note on a column that has a role by its name although none was chosen for it.
+    pub fn choose_columns(&self, columns: Option<ChosenColumns>) -> Result<Option<String>> {
         self.change(|project| {
             project.understanding.columns = columns;
             let first = project.files_for(Use::Training).chain(&project.files).next();
-            let Some(first) = first.map(|file| file.name.clone()) else { return Ok(()) };
+            let Some(first) = first.map(|file| file.name.clone()) else { return Ok(None) };
             let understanding = &project.understanding;
-            if understanding.columns.is_some() {
-                let table = read_named(&first, &self.folder, &understanding.reading.reading()?)?;
-                Roles::detect(&table, &understanding.choice())?;
-            }
-            Ok(())
+            let Some(chosen) = &understanding.columns else { return Ok(None) };
+            let table = read_named(&first, &self.folder, &understanding.reading.reading()?)?;
+            let found = Roles::detect(&table, &understanding.choice())?;
+            let roles = [("time", &chosen.time, &found.time), ("record", &chosen.record, &found.record)];
+            let by_name = roles.iter().find_map(|(role, chosen, found)| {
+                let name = found.as_ref().filter(|_| chosen.is_none())?;
+                Some(format!("\"{}\" stays {role}, because of its name or values", clipped(name)))
+            });
+            Ok(by_name)
         })
     }
 

@@ -30,6 +30,7 @@ impl Studio {
         if request.time_limit.is_some_and(|limit| !(limit > 0.0 && limit.is_finite() && limit <= 1e9)) {
             return Err(Usage("--time-limit: a number of seconds above 0 is needed".into()).into());
         }
+        let request = request.with_values()?;
         let data = self.training_data()?;
         let spec = self.spec(&request, &data)?;
         // What can be refused is refused before anything is stored.
