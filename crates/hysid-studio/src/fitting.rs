@@ -1,5 +1,6 @@
 //! Fits: one at a time, on a thread of its own, watched while it runs.
 
+mod latest;
 mod preview;
 mod state;
 mod watch;
@@ -15,6 +16,7 @@ use hysid_records::Data;
 use hysid_report::{Beforehand, Identified};
 use rayon::ThreadPoolBuilder;
 
+use latest::Latest;
 pub use preview::Preview;
 use state::Candidate;
 pub use state::FitState;
@@ -163,11 +165,11 @@ fn run(
     finish: Finish,
 ) -> Result<u64> {
     let Work { request, data, file, time_limit, best, .. } = work;
+    let models = Latest::default();
     std::thread::scope(|scope| {
-        let mut watch = Watch::new(course, request.starts(), time_limit);
-        let drawn = watch.models();
-        let of_data = &*data;
+        let (drawn, of_data) = (&models, &*data);
         scope.spawn(move || preview::draw(drawn, course, of_data, file, &best));
+        let mut watch = Watch::new(course, drawn, request.starts(), time_limit);
         let fitted = pool.install(|| identify(&data.set, &request, &mut |progress| watch.observe(progress)));
         let seconds = watch.finish();
         let fitted = fitted.map_err(|error| data.explain(error))?;

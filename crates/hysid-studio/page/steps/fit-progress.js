@@ -34,10 +34,11 @@ export class FitProgress {
       table("Candidates", ["Model", { text: "Error, % of std", class: "" }, "Folds", { text: "State", class: "text" }],
         fit.candidates.map((one) => [one.name, percent(one.error_percent), `${one.folds} of ${one.of}`, one.state])),
       element("p", { class: "note", text: "Cross-validation errors, in % of the standard deviation of the output." })]));
-    const { curve } = fit;
+    // Up to now the error is the last one.
+    const curve = fit.curve.length > 0 && fit.seconds > fit.curve.at(-1)[0] ? [...fit.curve, [fit.seconds, fit.curve.at(-1)[1]]] : fit.curve;
     this.below.hidden = curve.length < 2 && fit.candidates.length === 0;
-    if (curve.length > 1 && this.drawnCurve !== `${fit.id} ${curve.length}`) {
-      this.drawnCurve = `${fit.id} ${curve.length}`;
+    if (curve.length > 1 && this.drawnCurve !== `${fit.id} ${curve.at(-1)}`) {
+      this.drawnCurve = `${fit.id} ${curve.at(-1)}`;
       this.convergence.setTraces([{ name: fit.curve_is, role: "simulated", x: Float64Array.from(curve, ([seconds]) => seconds), y: Float64Array.from(curve, ([, error]) => error ?? NaN) }], true);
     }
     if (fit.preview > 0 && fit.is_running) this.preview(fit);

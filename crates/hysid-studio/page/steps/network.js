@@ -49,7 +49,7 @@ export class Network {
     const order = stops.map((_, k) => k).sort((a, b) => (stops[b].influence ?? 0) - (stops[a].influence ?? 0)).slice(0, this.all ? stops.length : FIRST);
     const [input, ...others] = this.model.input_labels;
     this.figures = order.map((stop) => ({
-      stop, figure: new Figure({ title: stops[stop].name, kind: "loop", xLabel: input, yLabel: `contribution to ${this.model.output_label}`, height: 170, isSmall: true }),
+      stop, figure: new Figure({ title: stops[stop].name, kind: "loop", xLabel: input, yLabel: this.model.output_label, height: 170, isSmall: true }),
     }));
     const hasRate = stops[0].weights.length > 1 + others.length;
     const channels = ["weight", ...(hasRate ? ["weight of the rate"] : []), ...others.map((label) => `weight of ${label}`)];

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use hysid::data::record::Record;
@@ -11,6 +10,7 @@ use hysid_files::Kind;
 use hysid_records::Data;
 
 use super::Course;
+use super::latest::Latest;
 use super::watch::SoFar;
 use crate::folder::write;
 
@@ -32,11 +32,11 @@ pub struct Preview {
 }
 
 /// Draws models as they come, until there are no more.
-pub fn draw(models: Receiver<Box<SoFar>>, course: &Course, data: &Data, file: u64, best: &Path) {
+pub fn draw(models: &Latest<SoFar>, course: &Course, data: &Data, file: u64, best: &Path) {
     let rows: Vec<Record> = first_rows(data);
     let mut due = Instant::now();
-    for so_far in models {
-        let SoFar { name, model } = *so_far;
+    while let Some(so_far) = models.take() {
+        let SoFar { name, model } = so_far;
         if Instant::now() >= due {
             // A disk that is full is told when the model itself is written.
             let _ = write(best, Kind::Model, model.to_json().as_bytes());

@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
 use hysid::fit::auto::{Standing, Tried};
@@ -10,6 +9,7 @@ use hysid::fit::network::Progress;
 use hysid::model::Model;
 use hysid_document::progress::{Remaining, in_words};
 
+use super::latest::Latest;
 use super::{Candidate, Course, state};
 
 /// Time between two changes that a page is told of.
@@ -37,14 +37,20 @@ pub struct Watch<'c> {
     /// Errors since then, each with its second.
     errors: Vec<(f64, f64)>,
     remaining: Remaining,
-    models: Option<SyncSender<Box<SoFar>>>,
+    models: &'c Latest<SoFar>,
     model_due: Instant,
     /// Folds that were not held out, and error, of the candidate whose model was passed on.
     passed_on: (usize, f64),
 }
 
 impl<'c> Watch<'c> {
-    pub fn new(course: &'c Arc<Course>, starts: usize, time_limit: Option<f64>) -> Self {
+    /// Passes the best model so far on to `models`.
+    pub fn new(
+        course: &'c Arc<Course>,
+        models: &'c Latest<SoFar>,
+        starts: usize,
+        time_limit: Option<f64>,
+    ) -> Self {
         let now = Instant::now();
         Self {
             course,
@@ -54,17 +60,10 @@ impl<'c> Watch<'c> {
             told: now,
             errors: Vec::new(),
             remaining: Remaining::default(),
-            models: None,
+            models,
             model_due: now,
             passed_on: (usize::MAX, f64::INFINITY),
         }
-    }
-
-    /// The models that are passed on; they end with the fit.
-    pub fn models(&mut self) -> Receiver<Box<SoFar>> {
-        let (sender, receiver) = sync_channel(1);
-        self.models = Some(sender);
-        receiver
     }
 
     /// Takes what the fit tells; breaks if it is to end.
@@ -91,11 +90,11 @@ impl<'c> Watch<'c> {
     }
 
     /// Ends with the fit; tells its seconds.
-    pub fn finish(self) -> f64 {
+    pub fn finish(mut self) -> f64 {
         let seconds = self.began.elapsed().as_secs_f64();
         self.course.change(|state| {
             state.seconds = seconds;
-            self.errors.iter().for_each(|(second, error)| state.add_error(*second, *error));
+            self.errors.drain(..).for_each(|(second, error)| state.add_error(second, error));
         });
         seconds
     }
@@ -143,7 +142,7 @@ impl<'c> Watch<'c> {
             state.add_candidate(candidate);
         });
         if is_best && let Some(model) = tried.model {
-            self.pass_on(SoFar { name: tried.name.clone(), model: model.clone() });
+            self.models.put(SoFar { name: tried.name.clone(), model: model.clone() });
             self.passed_on = rank;
         }
     }
@@ -155,14 +154,13 @@ impl<'c> Watch<'c> {
         let spent = began.elapsed();
         self.model_due = Instant::now() + BETWEEN_MODELS.max(spent.div_f64(LARGEST_SHARE));
         if let Some(model) = model {
-            self.pass_on(SoFar { name: progress.model.name().into(), model });
+            self.models.put(SoFar { name: progress.model.name().into(), model });
         }
     }
+}
 
-    /// While one is being drawn, the next waits for the one after it.
-    fn pass_on(&self, model: SoFar) {
-        if let Some(models) = &self.models {
-            drop(models.try_send(Box::new(model)));
-        }
+impl Drop for Watch<'_> {
+    fn drop(&mut self) {
+        self.models.close();
     }
 }
