@@ -341,6 +341,43 @@ def test_figures_zoom_together_tell_values_and_are_saved(start, visit):
     opened.check()
 
 
+def test_a_finding_is_marked_in_the_figures(start, visit):
+    studio = start()
+    rows = [f"{0.1 * k:.1f},{(k % 40) - 20},{(k % 40) * 0.5}" for k in range(400)]
+    rows[250] = "25.0,-10,9999"
+    studio.add("marked.csv", "t_s,x_mm,y_N\n" + "\n".join(rows) + "\n")
+    opened = visit(studio)
+    finding = opened.page.locator("#data .findings li", has_text="9999").first
+    finding.get_by_role("button", name="Show").click()
+    # The figures show the rows around the mark.
+    output = opened.figure("data", "Output")
+    _, content = saved(opened.page, lambda: output.get_by_role("button", name="CSV").click())
+    shown = [int(row["row"]) for row in csv.DictReader(io.StringIO(content.decode()))]
+    assert 251 in shown and len(shown) < 100
+    opened.check()
+
+
+def test_members_of_an_ensemble_are_drawn(start, visit):
+    studio = start()
+    train, unseen = studio.specimen("terfenol-rod")
+    model = studio.begin(model="pnn", members=3, stops=4, epochs=5)
+    assert studio.ended()["problem"] is None
+    status, headers, content = studio.request("GET", f"/api/models/{model}/members/{unseen}")
+    rows = next(file["rows"] for file in studio.state()["files"] if file["id"] == unseen)
+    members = studio.state()["models"][0]["members"][0]["count"]
+    assert status == 200 and len(content) == 8 * rows * members and members > 1
+    opened = visit(studio)
+    judge = opened.go("judge")
+    judge.get_by_label("Members as thin lines").check()
+    output = opened.figure("judge", "Output")
+    output.get_by_text(re.compile(r"^1 pnn")).first.wait_for()
+    _, table = saved(opened.page, lambda: output.get_by_role("button", name="CSV").click())
+    columns = table.decode().splitlines()[0].split(",")
+    assert sum(bool(re.match(r"\d pnn", name)) for name in columns) == members
+    assert train != unseen
+    opened.check()
+
+
 def test_a_model_is_driven_by_hand_and_by_waves(start, visit, tmp_path):
     studio = start()
     studio.specimen("magnetostrictive-actuator")

@@ -164,6 +164,18 @@ def test_what_is_wrong_is_refused_in_words(shared, method, path, body):
 COLUMN = "\"><img src=x onerror=\"document.title='taken'\">_N"
 
 
+def test_one_fit_at_a_time(start):
+    studio = start()
+    studio.specimen("terfenol-rod")
+    studio.begin(model="auto")
+    status, _, content = studio.request("POST", "/api/fit", {"options": {"model": "pnn"}})
+    assert status == 409 and "a fit is running" in json.loads(content)["error"]
+    studio.ask("/api/fit/stop", {})
+    studio.ended()
+    studio.begin(model="prandtl-ishlinskii")
+    assert studio.ended()["problem"] is None
+
+
 def test_names_are_text_and_never_html(browser, start):
     studio = start()
     rows = "".join(f"<b>r</b>,{k},{k % 7},{k % 7 + 0.1 * (k % 3)}\n" for k in range(60))

@@ -1,5 +1,7 @@
 //! Answers: JSON, arrays of numbers, downloads, and problems in words.
 
+use std::time::Duration;
+
 use axum::Json;
 use axum::body::Body;
 use axum::http::StatusCode;
@@ -50,6 +52,9 @@ impl IntoResponse for Problem {
 /// An answer, or why there is none.
 pub type Answer<T> = Result<T, Problem>;
 
+/// Time after which an answer is given up.
+const LONGEST_COMPUTATION: Duration = Duration::from_secs(600);
+
 /// Computes an answer on a thread of its own, one of few at a time.
 pub async fn computed<T: Send + 'static>(
     shared: Shared,
@@ -62,7 +67,9 @@ pub async fn computed<T: Send + 'static>(
         let _permit = permit;
         compute(&studio)
     });
-    match result.await {
+    let words = "this takes more than ten minutes and was given up: use fewer rows";
+    let late = |_| Problem::new(StatusCode::GATEWAY_TIMEOUT, words);
+    match tokio::time::timeout(LONGEST_COMPUTATION, result).await.map_err(late)? {
         Ok(result) => Ok(result?),
         Err(_) => Err(Problem::new(
             StatusCode::INTERNAL_SERVER_ERROR,
