@@ -57,6 +57,13 @@ async function binary(address, options) {
 }
 export const getBinary = (address) => binary(address);
 
+/** A file that the server makes, with its name. */
+export async function getFile(address) {
+  const response = await request(address);
+  const [, name] = /filename\*=UTF-8''(.+)$/.exec(response.headers.get("content-disposition") ?? "") ?? [];
+  return { name: name ? decodeURIComponent(name) : "file", content: await response.blob() };
+}
+
 /** Sends arrays one after the other, and gets arrays back. */
 export function runBinary(address, arrays, signal) {
   const rows = arrays[0].length;

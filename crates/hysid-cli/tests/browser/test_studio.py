@@ -191,7 +191,7 @@ def test_the_whole_way(start, visit, tmp_path):
     assert ran.returncode == 0, ran.stderr
     assert (studio.project / name).read_bytes() == content
     ast.parse(take.locator("pre").nth(1).inner_text())
-    _, archive = saved(page, lambda: take.get_by_role("link", name="Download c:").click())
+    _, archive = saved(page, lambda: take.get_by_role("button", name="Download c:").click())
     with zipfile.ZipFile(io.BytesIO(archive)) as files:
         assert any(file.endswith(".c") for file in files.namelist()) and files.testzip() is None
     with page.expect_popup() as popup:

@@ -1,8 +1,10 @@
 // Step 6: files to keep, and the commands that do the same without the page.
 
 import { button, element, Region } from "../elements.js";
-import { problem } from "../notices.js";
+import { Notice, problem } from "../notices.js";
+import { download } from "../plots/save.js";
 import { project } from "../project.js";
+import { getFile } from "../server.js";
 import { modelChoice, modelOr, noModel, stale } from "./model-choice.js";
 
 function copyable(title, text) {
@@ -23,11 +25,20 @@ function copyable(title, text) {
 
 export class TakeAwayStep {
   constructor(body) {
+    this.notice = new Notice();
     this.region = new Region();
     this.commands = new Region();
-    body.replaceChildren(this.region.node, this.commands.node);
+    body.replaceChildren(this.notice.node, this.region.node, this.commands.node);
   }
   choose(id) { this.model = id; }
+
+  /** A model that cannot be exported there is told in words, and not as a failed download. */
+  export(address) {
+    return this.notice.during(async () => {
+      const { name, content } = await getFile(address);
+      download(content, name);
+    });
+  }
 
   async update() {
     const model = modelOr(this.model);
@@ -46,7 +57,7 @@ export class TakeAwayStep {
       element("p", { class: "note" }, "This model is also in the project's folder: ", element("code", { text: `${folder}/models/${model.file}` })),
       element("h2", { text: "Source code and exports" }),
       element("ul", { class: "files" }, ...project.choices.targets.map(({ name, what }) => element("li", {},
-        element("span", { class: "about", text: what }), element("a", { class: "button", href: `${address}/export/${encodeURIComponent(name)}`, download: "", text: `Download ${name}`, "aria-label": `Download ${name}: ${what}` }))))]);
+        element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.export(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);
     try {
       const { shell, python } = await project.ofModel(model, "commands");
       if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), copyable("Command line", shell), python ? copyable("Python", python) : element("p", { class: "note", text: "For these files or options there are no lines of Python: see docs/python.md." })]);
