@@ -122,7 +122,7 @@ pub enum Command {
     Cycles(Cycles),
     /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
     Plot(Box<Plot>),
-    /// Identify in the browser, on this machine: drop a file, press a button, take the model away
+    /// Fit and judge models in the browser; everything runs on this machine
     Studio(Studio),
     /// Plan the next test: its input, with a reason for each segment
     Plan(Box<Plan>),

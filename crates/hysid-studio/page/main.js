@@ -55,7 +55,8 @@ function showProject() {
 let said = "";
 function showFit() {
   const { fit } = project.state;
-  const words = fit?.is_running ? `Fit running: ${Math.floor(10 * fit.done) * 10} %` : fit?.made ? "The fit is complete." : "";
+  const ended = () => (fit.was_interrupted ? "The fit was interrupted." : fit.made ? "The fit is complete." : "The fit failed.");
+  const words = fit?.is_running ? `Fit running: ${Math.floor(10 * fit.done) * 10} %` : fit ? ended() : "";
   if (words !== said) document.getElementById("live").textContent = words;
   said = words;
   document.getElementById("running").hidden = !fit?.is_running;
@@ -75,9 +76,9 @@ project.addEventListener("fit", showFit);
 addEventListener("hashchange", show);
 const connect = listenToEvents({ project: load, fit: (fit) => project.setFit(fit) });
 connection.addEventListener("gone", () => {
-  showBanner(element("p", {}, "The studio is not running. Start it again with: ", element("code", { text: "hysid studio" })), button("Try again", connect));
+  showBanner(element("p", {}, "The studio is not running. Start it again with: ", element("code", { text: `hysid studio --project "${project.state?.folder ?? "hysid-project"}"` })), button("Try again", connect));
 });
-connection.addEventListener("stranger", ({ detail }) => showBanner(element("p", { text: `The studio was started anew: ${detail}.` })));
+connection.addEventListener("stranger", ({ detail }) => showBanner(element("p", { text: detail })));
 connection.addEventListener("back", () => {
   banner.hidden = true;
   load();

@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// Largest file that is taken, in bytes.
-pub const MOST_FILE_BYTES: u64 = 1 << 30;
+pub const MOST_FILE_BYTES: u64 = 1_000_000_000;
 
 /// What can be chosen.
 #[derive(Debug, Serialize)]

@@ -24,7 +24,7 @@ impl Path {
         let needs_time = needs_time(model);
         let columns = model.names().inputs.len() + usize::from(needs_time);
         if rows == 0 || rows > MOST_ROWS {
-            bail!("a path has 1 to {MOST_ROWS} rows, not {rows}");
+            bail!("the input must have 1 to {MOST_ROWS} rows, not {rows}");
         }
         if values.len() != columns * rows {
             bail!("{columns} columns of {rows} rows are needed, not {} numbers", values.len());
@@ -40,7 +40,7 @@ impl Path {
     /// Values that are not finite, or time that does not grow.
     pub fn run(&self, model: &Model) -> Result<Prediction> {
         if model.rate() == Some(RateMethod::Given) {
-            bail!("the rate of this model is a column of its own, which no path by hand has");
+            bail!("this model needs a measured rate; it cannot be simulated here");
         }
         let inputs = self.inputs.iter().map(Vec::as_slice).collect();
         let mut excitation = Excitation::new("path", inputs)?;

@@ -48,7 +48,9 @@ impl Folder {
                 return Ok(folder);
             }
         }
-        Err(anyhow!("{MOST_FOLDERS} projects are open: close one, or name a folder with --project"))
+        Err(anyhow!(
+            "the default folders up to {DEFAULT}-{MOST_FOLDERS} are in use: name a folder with --project"
+        ))
     }
 
     /// `None` if another process has it.
@@ -136,7 +138,7 @@ fn check_ours(folder: &Path) -> Result<()> {
         Err(error) => bail!("{}: cannot be opened: {}", folder.display(), hysid_files::reason(&error)),
     };
     if entries.any(|entry| !is_of_lock(&entry)) {
-        let advice = "is no project of Hysid and is not empty: name another folder with --project";
+        let advice = "is not a Hysid project and is not empty: name another folder with --project";
         return Err(Usage(format!("{} {advice}", folder.display())).into());
     }
     Ok(())
@@ -225,7 +227,7 @@ mod tests {
         let other = place.path().join("mine");
         fs::create_dir(&other).unwrap();
         fs::write(other.join("thesis.doc"), "x").unwrap();
-        assert!(Folder::open(Some(&other)).unwrap_err().to_string().contains("is no project"));
+        assert!(Folder::open(Some(&other)).unwrap_err().to_string().contains("is not a Hysid project"));
         assert_eq!(fs::read_dir(&other).unwrap().count(), 1);
     }
 }

@@ -1,4 +1,4 @@
-//! What a model makes of a file: its free run, errors, tests of the residual.
+//! The free run of a model over a file: outputs, errors, tests of the residual.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -138,7 +138,7 @@ impl Run {
     }
 }
 
-/// What each member of an ensemble makes of a run's data.
+/// The output of each member of an ensemble for the data of a run.
 ///
 /// # Errors
 /// Data that the model cannot run on.

@@ -129,7 +129,7 @@ fn run(network: &Network, drive: &Drive) -> Vec<f64> {
     output
 }
 
-/// The same network with a stop that nothing listens to.
+/// The same network with zero output weights of a stop.
 fn without(network: &Network, stop: usize) -> Result<Network> {
     let a = *network.architecture();
     let neuron = usize::from(a.linear) + stop;

@@ -169,8 +169,8 @@ impl Project {
             .map_err(|error| wrong(format!("is damaged: {error} (restore it, or open another folder)")))?;
         match (value["format"].as_str(), value["version"].as_u64()) {
             (Some("hysid-project"), Some(version)) if version <= u64::from(VERSION) => {}
-            (Some("hysid-project"), _) => bail!(wrong("was written by a later version of hysid".into())),
-            _ => bail!(wrong("is no project of Hysid".into())),
+            (Some("hysid-project"), _) => bail!(wrong("was written by a later version of Hysid".into())),
+            _ => bail!(wrong("is not a Hysid project".into())),
         }
         serde_json::from_value(value).map_err(|error| wrong(format!("is damaged: {error}")))
     }

@@ -69,7 +69,7 @@ impl Studio {
         &self.folder
     }
 
-    /// Hears of changes.
+    /// Subscribes to changes.
     pub fn news(&self) -> watch::Receiver<News> {
         self.news.subscribe()
     }

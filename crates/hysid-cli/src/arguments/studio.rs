@@ -11,16 +11,16 @@ Examples:
   hysid studio --project DIR      opens a project again
   hysid studio --no-open --port 8080
 
-The page is served on this machine alone, and nothing leaves it: docs/studio.md";
+No data leave this machine. See docs/studio.md.";
 
 /// Arguments of `studio`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Studio {
-    /// Tables with measured data, of which the project gets copies
+    /// Files with measured data (text, spreadsheet, MATLAB); they are copied into the project
     #[arg(value_name = "DATA.csv")]
     pub data: Vec<PathBuf>,
-    /// Folder of the project: data, columns, models [default: hysid-project, or hysid-project-2 and so on while others are open]
+    /// Folder of the project: data, columns, models [default: hysid-project; if another studio has it open, hysid-project-2 and so on]
     #[arg(long, value_name = "DIR")]
     pub project: Option<PathBuf>,
     /// Port on this machine [default: 4973, or a free one]

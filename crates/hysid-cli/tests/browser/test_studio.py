@@ -139,11 +139,11 @@ def test_the_whole_way(start, visit, tmp_path):
     roles = {name: data.get_by_label(f"Role of {name} in rod.csv").input_value() for name in names}
     assert roles == {"t_s": "time", "current_A": "input", "displacement_um": "output"}
     data.get_by_label("Role of current_A in rod.csv").select_option("unused")
-    data.get_by_text("no column is input").first.wait_for()
+    data.get_by_text("no column has the role input").first.wait_for()
     assert json.loads((studio.project / "project.json").read_text())["understanding"]["columns"] is None
     data.get_by_label("Role of current_A in rod.csv").select_option("output")
     studio.wait(lambda state: state["columns"]["output"] == "current_A" and state["columns"]["inputs"] == ["displacement_um"])
-    data.get_by_role("button", name="Guess again").click()
+    data.get_by_role("button", name="Detect again").click()
     studio.wait(lambda state: state["columns"]["output"] == "displacement_um" and not state["columns_are_chosen"])
     drawn = data.locator("canvas")
     assert drawn.count() == 3 and all(is_drawn(drawn.nth(place)) for place in range(3))
@@ -165,7 +165,7 @@ def test_the_whole_way(start, visit, tmp_path):
     models = studio.state()["models"]
     opened.go("judge").get_by_label("Model", exact=True).select_option(str(models[0]["id"]))
     errors = json.loads(hysid(studio.project, "evaluate", f"models/{models[0]['file']}", "data/rod-test.csv", "--json"))
-    row = page.locator("#judge tr", has_text="unseen: rod-test.csv").filter(has_text=f"{errors['nrmse_std_percent']:.3g}")
+    row = page.locator("#judge tr", has_text="not used in training: rod-test.csv").filter(has_text=f"{errors['nrmse_std_percent']:.3g}")
     row.wait_for()
     cells = [float(text.replace("\u202f", "").replace(" ", "").rstrip("%")) for text in row.locator("td").all_inner_texts()]
     expected = [errors[name] for name in ("samples", "rmse", "max_abs_error", "nrmse_std_percent", "fit_percent")]
@@ -251,7 +251,7 @@ def test_nothing_is_lost_when_the_studio_ends_in_mid_fit(start, visit, how):
     if how == signal.SIGINT:
         assert status == 130 and kept[0]["termination"] == "stopped" and not kept[0]["was_interrupted"]
     else:
-        assert kept[0]["was_interrupted"] and "ended before this fit" in state["fit"]["problem"]
+        assert kept[0]["was_interrupted"] and "closed during this fit" in state["fit"]["problem"]
         page = visit(again)
         page.go("identify").get_by_text("The fit was interrupted").wait_for()
     # The model that was kept runs.
@@ -265,7 +265,7 @@ def test_a_page_of_an_earlier_start_says_what_to_do(start, visit):
     studio.end()
     opened.page.get_by_text("The studio is not running").wait_for()
     start("--port", studio.port)
-    opened.page.get_by_text("The studio was started anew").wait_for(timeout=20_000)
+    opened.page.get_by_text("The studio was restarted").wait_for(timeout=20_000)
 
 
 @pytest.mark.parametrize(

@@ -126,7 +126,7 @@ def test_no_address_reads_other_files(shared, path):
 def test_large_bodies_are_refused_before_they_are_sent(shared):
     headers = shared.headers() | {"Content-Length": str(2 << 30), "Content-Type": "application/octet-stream"}
     status, _, content = shared.request("POST", "/api/files?name=huge.csv", b"", headers)
-    assert status == 413 and "larger than 1024 MB" in json.loads(content)["error"]
+    assert status == 413 and "larger than 1 GB" in json.loads(content)["error"]
     status, _, content = shared.request("POST", "/api/reading", b" " * (9 << 20))
     assert status == 413 and "error" in json.loads(content)
     assert not list((shared.project / "data").glob(".upload-*"))
@@ -290,6 +290,6 @@ def test_a_port_that_is_taken_and_folders_that_are_none(start, tmp_path):
     mine.mkdir()
     (mine / "thesis.txt").write_text("x")
     status, words = refused_start(tmp_path, "--project", "mine")
-    assert status == 2 and "is no project" in words and [path.name for path in mine.iterdir()] == ["thesis.txt"]
+    assert status == 2 and "is not a Hysid project" in words and [path.name for path in mine.iterdir()] == ["thesis.txt"]
     status, words = refused_start(tmp_path, "nothing.csv", "--project", "new")
     assert status == 1 and words.startswith("error: nothing.csv: ")

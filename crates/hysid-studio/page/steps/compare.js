@@ -6,7 +6,7 @@ import { counted, duration, percent } from "../numbers.js";
 import { RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
 import { remove } from "../server.js";
-import { fileChoice, fileOr, noModel } from "./model-choice.js";
+import { fileChoice, fileOr, noFile, noModel } from "./model-choice.js";
 
 export class CompareStep {
   constructor(body) {
@@ -23,7 +23,7 @@ export class CompareStep {
     const { models } = project;
     const file = fileOr(this.file);
     if (models.length === 0 || !file) {
-      this.table.update("empty", () => [noModel()]);
+      this.table.update("empty", () => [models.length > 0 ? noFile() : noModel()]);
       this.pictures.update(null, () => { this.figures?.destroy(); this.figures = null; return []; });
       return;
     }
@@ -37,8 +37,8 @@ export class CompareStep {
   build(models, unseen, judged) {
     const best = (values) => Math.min(...values.filter((value) => Number.isFinite(value)));
     const columns = [
-      ["Training", models.map((model) => model.train.nrmse_std_percent)], ["Validation", models.map((model) => model.validation?.nrmse_std_percent ?? null)],
-      ...unseen.map((file, k) => [`Unseen: ${file.name}`, judged.map((row) => row[k]?.errors.nrmse_std_percent ?? null)]),
+      ["Training", models.map((model) => model.train.nrmse_std_percent)], ["Cross-validation", models.map((model) => model.validation?.nrmse_std_percent ?? null)],
+      ...unseen.map((file, k) => [file.name, judged.map((row) => (row[k] && !row[k].is_training ? row[k].errors.nrmse_std_percent : null))]),
     ];
     const cells = (k) => columns.map(([, values]) => {
       const isBest = models.length > 1 && values[k] === best(values.filter((value) => value !== null));
@@ -57,7 +57,7 @@ export class CompareStep {
       element("thead", {}, element("tr", {}, ...heads.map((text) => element("th", { scope: "col", text })), element("td"))),
       element("tbody", {}, ...models.map(row)))),
     ...project.state.models.filter((model) => model.problem).map((model) => problem(`Model ${model.id}, ${model.file}: ${model.problem}`)),
-    element("p", { class: "note", text: "Errors are NRMSE, in % of the standard deviation of the output; the lowest of each column is bold." })];
+    element("p", { class: "note", text: "Errors are NRMSE, in % of the standard deviation of the output; the lowest of each column is bold. Files are shown for models that were not fitted to them." })];
   }
 
   async draw(file) {

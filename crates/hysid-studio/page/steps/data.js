@@ -59,7 +59,7 @@ export class DataStep {
     this.notice.clear();
     for (const file of files) {
       if (file.size > project.choices.file_bytes_limit) {
-        this.notice.show(`${file.name} has ${bytes(file.size)}; at most ${bytes(project.choices.file_bytes_limit)} are possible. Use --every or fewer columns.`);
+        this.notice.show(`${file.name} has ${bytes(file.size)}; the studio takes at most ${bytes(project.choices.file_bytes_limit)}. Make it smaller on the command line, such as with hysid look FILE -o SMALLER.csv and every tenth row, or fit there.`);
         continue;
       }
       const bar = element("div");
@@ -91,7 +91,7 @@ export class DataStep {
     const item = (file) => {
       const id = `use-${file.id}`;
       const use = element("select", { id, "aria-label": `Use of ${file.name}`, on: { change: () => this.notice.during(() => post(`/api/files/${file.id}/use`, { use: use.value })) } },
-        ...[["training", "training"], ["unseen", "unseen (test)"], ["unused", "not used"]].map(([value, text]) => element("option", { value, text })));
+        ...[["training", "training"], ["unseen", "unseen"], ["unused", "not used"]].map(([value, text]) => element("option", { value, text })));
       use.value = file.use;
       const records = file.records.length > 1 ? `, ${file.records.length} records` : "";
       return element("li", {}, element("span", { class: "name", text: file.name }),
@@ -130,8 +130,8 @@ export class DataStep {
       return made;
     });
     return [element("h2", { text: "Columns" }),
-      element("p", { class: "note", text: areChosen ? "Roles as you chose them. All files have the same roles." : "Roles were guessed from names and values. All files have the same roles." }),
-      ...tables, areChosen ? button("Guess again", () => this.notice.during(() => post("/api/columns", null))) : null];
+      element("p", { class: "note", text: areChosen ? "Roles as you chose them. A record column separates runs; a rate column has the measured rate of the first input. All files have the same roles." : "Roles were detected from names and values. A record column separates runs; a rate column has the measured rate of the first input. All files have the same roles." }),
+      ...tables, areChosen ? button("Detect again", () => this.notice.during(() => post("/api/columns", null))) : null];
   }
 
   /** Sends the whole choice. Two columns exchange a role that only one can have. */

@@ -12,7 +12,7 @@ export class DiagnoseStep {
 
   async update() {
     if (!project.labels) {
-      return this.region.update("empty", () => [emptyState("There are no training data to diagnose. ", element("a", { class: "button", href: "#data", text: "Add a file" }))]);
+      return this.region.update(["empty", project.state.problem], () => [emptyState("There are no training data to diagnose. ", element("a", { class: "button", href: "#data", text: "Go to the data" })), project.state.problem ? problem(project.state.problem) : null]);
     }
     const key = project.usable("training").map((file) => project.dataKey(file)).join();
     if (this.region.key === JSON.stringify(key)) return undefined;

@@ -33,7 +33,7 @@ export class FitProgress {
     this.candidates.update(fit.candidates, () => (fit.candidates.length === 0 ? [] : [element("h3", { text: "Candidates" }),
       table("Candidates", ["Model", { text: "Error, % of std", class: "" }, "Folds", { text: "State", class: "text" }],
         fit.candidates.map((one) => [one.name, percent(one.error_percent), `${one.folds} of ${one.of}`, one.state])),
-      element("p", { class: "note", text: "Cross-validation errors, in % of the standard deviation of the output." })]));
+      element("p", { class: "note", text: "Cross-validation errors inside the trained range, in % of the standard deviation of the output. Candidates that are far from the best are dropped." })]));
     // Up to now the error is the last one.
     const curve = fit.curve.length > 0 && fit.seconds > fit.curve.at(-1)[0] ? [...fit.curve, [fit.seconds, fit.curve.at(-1)[1]]] : fit.curve;
     this.below.hidden = curve.length < 2 && fit.candidates.length === 0;
@@ -59,7 +59,7 @@ export class FitProgress {
     this.bar.style.width = `${share}%`;
     this.progress.setAttribute("aria-valuenow", String(share));
     const error = fit.error_percent === null ? "" : ` Best ${fit.curve_is} so far: ${percent(fit.error_percent)} of the standard deviation of the output.`;
-    this.words.textContent = `${share}\u202f %, ${duration(fit.seconds)}${fit.remaining ? `, ${fit.remaining}` : ""}: ${fit.part}.${error}`.replace("\u202f ", "\u202f");
+    this.words.textContent = `${share}\u202f %, ${duration(fit.seconds)} elapsed${fit.remaining ? `, ${fit.remaining}` : ""}: ${fit.part}.${error}`.replace("\u202f ", "\u202f");
   }
 
   ended(fit) {

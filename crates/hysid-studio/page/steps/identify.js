@@ -27,7 +27,7 @@ export class IdentifyStep {
     const isRunning = project.state.fit?.is_running ?? false;
     const isReady = project.labels && !project.state.problem;
     this.form.update([isReady, isRunning, this.model], () => (isReady ? this.build(isRunning)
-      : [emptyState("There are no training data to fit a model to. ", element("a", { class: "button", href: "#data", text: "Add a file" })),
+      : [emptyState("There are no training data to fit a model to. ", element("a", { class: "button", href: "#data", text: "Go to the data" })),
         project.state.problem ? element("p", { class: "problem" }, linked(project.state.problem)) : null]));
     this.progress.update();
     // Start cannot be pressed now: the focus goes to Stop.
@@ -56,7 +56,7 @@ export class IdentifyStep {
     const modelChoice = choice("Model", models.map(({ name }) => ({ value: name, text: name })), model.name, (name) => { this.model = name; this.update(); }, { id: "fit-model", "data-flag": "--model" });
     const start = button("Start", () => this.start(model, controls), { class: "main", id: "fit-start", disabled: isRunning });
     const what = `${model.what.charAt(0).toUpperCase()}${model.what.slice(1)}.`;
-    return [element("div", { class: "row" }, modelChoice, model.rate === "no" ? null : rate,
+    return [element("div", { class: "row" }, modelChoice, model.rate === "no" ? null : project.state.columns.rate ? element("p", { text: `Rate of the input: column ${project.state.columns.rate}.` }) : rate,
       element("div", { class: "choice" }, element("label", { for: limit.id, text: "Time limit, s" }), limit), start),
     element("p", { text: `${what} ${facts}` }),
     common.length > 0 ? nodes(common) : null,

@@ -7,7 +7,7 @@ import { counted, duration, percent, sentence, written } from "../numbers.js";
 import { Figure } from "../plots/figure.js";
 import { goingOn, RecordFigures } from "../plots/record-figures.js";
 import { project, startsOf } from "../project.js";
-import { fileChoice, fileOr, modelChoice, modelOr, noModel, stale } from "./model-choice.js";
+import { fileChoice, fileOr, modelChoice, modelOr, noFile, noModel, stale } from "./model-choice.js";
 
 export class JudgeStep {
   constructor(body) {
@@ -27,7 +27,7 @@ export class JudgeStep {
     const model = modelOr(this.model);
     const file = fileOr(this.file);
     if (!model || !file) {
-      this.head.update("empty", () => [noModel()]);
+      this.head.update("empty", () => [model ? noFile() : noModel()]);
       for (const region of [this.pictures, this.errors, this.residuals, this.facts]) region.update(null, () => []);
       this.dropFigures();
       return;
@@ -37,7 +37,7 @@ export class JudgeStep {
       element("div", { class: "row" }, modelChoice("judge", model, choose("model")), fileChoice("judge", file, choose("file")),
         tick("Members as thin lines", this.withMembers, (is) => { this.withMembers = is; this.update(); })),
       stale(model), model.chosen ? element("p", { class: "verdict", text: sentence(model.chosen) }) : null, model.why ? element("p", { class: "note", text: sentence(model.why) }) : null,
-      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There is no unseen file. The error on unseen data is the one that counts: drop a second file anywhere on this page. It is unseen data." }) : null]);
+      project.usable("unseen").length === 0 ? element("p", { class: "problem", text: "There are no unseen data. Drop a second measurement on this page to estimate the error on new data." }) : null]);
     this.draw(model, file);
   }
 
@@ -63,7 +63,7 @@ export class JudgeStep {
 
   /** What driving the model over its range tells; it is computed when it is opened. */
   factsOf(model) {
-    const facts = element("div", {}, element("p", { role: "status", text: "Driving the model over its range \u2026" }));
+    const facts = element("div", {}, element("p", { role: "status", text: "Diagnosing the model \u2026" }));
     const folded = element("details", { on: { toggle: async () => {
       if (!folded.open || this.told === model.id) return;
       this.told = model.id;
@@ -72,7 +72,7 @@ export class JudgeStep {
       } catch (error) {
         facts.replaceChildren(problem(error.message));
       }
-    } } }, element("summary", { text: "Facts of the model: properties, equations, neurons" }), facts);
+    } } }, element("summary", { text: "Model diagnosis: properties, equations, neurons" }), facts);
     this.told = null;
     return folded;
   }
@@ -101,15 +101,16 @@ export class JudgeStep {
     const inUnit = (name) => (unit ? `${name} (${unit})` : name);
     const row = (name, errors) => [name, counted(errors.samples), written(errors.rmse), written(errors.max_abs_error), percent(errors.nrmse_std_percent), percent(errors.fit_percent)];
     const rows = [row("training", model.train)];
-    if (model.validation) rows.push(row("validation (held-out)", model.validation));
-    if (!judged.is_training) rows.push(row(`unseen: ${file.name}`, judged.errors));
-    others.forEach((other, k) => rows.push(row(`unseen: ${other.name}`, unseen[k].errors)));
+    if (model.validation) rows.push(row("cross-validation", model.validation));
+    const of = (one, told) => row(`${told.is_training ? "used in training" : "not used in training"}: ${one.name}`, told.errors);
+    if (file.use !== "training" || !judged.is_training) rows.push(of(file, judged));
+    others.forEach((other, k) => rows.push(of(other, unseen[k])));
     const records = judged.records.length > 1 ? element("details", {}, element("summary", { text: `Errors of the ${judged.records.length} records of ${file.name}` }),
       table("Errors of records", ["Record", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], judged.records.filter(({ errors }) => errors).map(({ name, errors }) => row(name, errors)))) : null;
     return [element("h2", { text: "Errors" }),
       table("Errors", ["Data", "Samples", inUnit("RMSE"), inUnit("Largest error"), "NRMSE, % of std", "Fit"], rows),
-      element("p", { class: "note", text: "NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error." }),
-      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the prediction band, which is made for ${percent(100 * project.choices.band)} of new rows.` }),
+      element("p", { class: "note", text: "Errors of a free run: the model gets only the input. NRMSE: the root mean square error in % of the standard deviation of the output. Fit: 100 % minus that error. Cross-validation: all rows held out, together; the sentence above the figures has the geometric mean over the folds." }),
+      judged.inside_band_percent === null ? null : element("p", { text: `${percent(judged.inside_band_percent)} of the measured outputs of ${file.name} lie in the ${percent(100 * project.choices.band)} prediction band. On average over data sets it holds ${percent(100 * project.choices.band)}; a single file may deviate.` }),
       judged.warnings.length > 0 ? element("ul", { class: "warnings" }, ...judged.warnings.map((words) => element("li", {}, linked(words)))) : null, records,
       element("p", { class: "note", text: [`${counted(model.parameters)} parameters, ${duration(model.seconds)}, ${model.termination}.`, ...model.notes].join(" ") })];
   }
@@ -128,7 +129,7 @@ export class JudgeStep {
     this.drawn = [figure("Residuals over time", "history", labels.time || "row", goingOn(columns.time, starts)), figure("Residuals over the input", "points", labels.inputs[0], columns.inputs[0])];
     if (columns.rate) this.drawn.push(figure("Residuals over the rate", "points", project.state.rate_label, columns.rate));
     const text = (name) => ({ text: name, class: "text" });
-    return [element("h2", { text: "Residuals" }), element("p", { class: "note", text: "Measured minus simulated output. A pattern means that a better model is possible." }),
+    return [element("h2", { text: "Residuals" }), element("p", { class: "note", text: "Measured minus simulated output. A pattern suggests that the model misses something; the tests below say what." }),
       element("div", { class: "grid" }, ...this.drawn.map(({ node }) => node)),
       judged.residuals.length > 0 ? table("Residual tests", ["Test", text("Verdict"), "p", { text: "Statement", class: "words" }, { text: "Advice", class: "words" }],
         judged.residuals.map((one) => [one.test, one.verdict, one.p ?? "\u2013", one.statement, one.advice ? linked(one.advice) : ""])) : null];

@@ -61,7 +61,7 @@ export class Network {
       element("details", {}, element("summary", { text: "Stops: thresholds and weights" }),
         table("Stops", ["Stop", `Threshold of ${input}`, ...channels, "Capacity", "Influence"],
           stops.map((stop) => [stop.name, written(stop.threshold), ...stop.weights.map((weight) => written(weight)), stop.beta === null ? "\u2013" : written(stop.beta), percent(stop.influence === null ? null : 100 * stop.influence)])),
-        element("p", { class: "note", text: "Weights are of inputs scaled to 1 at their largest. Capacity: the slip, in thresholds, after which a stop has no strength left. Influence: change of the output without this stop, in % of its range." })),
+        element("p", { class: "note", text: "Weights apply to inputs scaled to a largest magnitude of 1. Capacity: the slip, in multiples of the threshold, after which the output of a stop is zero. Influence: change of the output without this stop, in % of the output's range." })),
       ...this.widths(network)];
   }
 
@@ -69,8 +69,8 @@ export class Network {
   widths({ K, P }) {
     if (K === null) return [];
     const [unit] = this.model.input_units;
-    const words = `K, the width of the loop over the trained range at a vanishing rate: ${written(K)}${unit ? ` ${unit}` : ""}.`;
-    return [element("h3", { text: "K and P" }), element("p", { text: P.length > 0 ? `${words} P is the width at a rate minus K.` : `${words} P is 0: the network does not depend on the rate.` }),
+    const words = `K, the width of the loop over the trained range as the rate tends to zero: ${written(K)}${unit ? ` ${unit}` : ""}.`;
+    return [element("h3", { text: "Width of the loop: K and P" }), element("p", { text: P.length > 0 ? `${words} P is the width at a rate minus K.` : `${words} P is 0: the network does not depend on the rate.` }),
       P.length > 0 ? table("P", [this.model.rate_label, unit ? `P (${unit})` : "P"], P.map(([rate, width]) => [written(rate), written(width)])) : null];
   }
 

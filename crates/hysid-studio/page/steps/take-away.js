@@ -7,7 +7,7 @@ import { project } from "../project.js";
 import { getFile } from "../server.js";
 import { modelChoice, modelOr, noModel, stale } from "./model-choice.js";
 
-function copyable(title, text) {
+function copyable(title, text, note = null) {
   const id = `copy-${title}`;
   const copy = button("Copy", async () => {
     try {
@@ -20,7 +20,7 @@ function copyable(title, text) {
     }
     setTimeout(() => { copy.textContent = "Copy"; }, 2000);
   }, { "aria-label": `Copy: ${title}` });
-  return element("div", {}, element("div", { class: "row" }, element("h3", { text: title }), copy), element("pre", { id, tabindex: "0", "aria-label": title, role: "region" }, element("code", { text })));
+  return element("div", {}, element("div", { class: "row" }, element("h3", { text: title }), copy), note ? element("p", { class: "note", text: note }) : null, element("pre", { id, tabindex: "0", "aria-label": title, role: "region" }, element("code", { text })));
 }
 
 export class TakeAwayStep {
@@ -60,7 +60,7 @@ export class TakeAwayStep {
         element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.export(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);
     try {
       const { shell, python } = await project.ofModel(model, "commands");
-      if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), copyable("Command line", shell), python ? copyable("Python", python) : element("p", { class: "note", text: "For these files or options there are no lines of Python: see docs/python.md." })]);
+      if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), copyable("Command line", shell), python ? copyable("Python", python, `Run in the folder ${folder}.`) : element("p", { class: "note", text: "Python code is not available for several training files, files other than CSV, and reading options." })]);
     } catch (error) {
       this.commands.update(error.message, () => [problem(error.message)]);
     }

@@ -68,13 +68,13 @@ export class TryStep {
     first.node.classList.add("large");
     const pace = element("input", { type: "number", step: "any", min: "0", id: "try-pace", value: String(this.hand.factor), on: { change: () => { if (Number(pace.value) > 0) this.hand.factor = Number(pace.value); } } });
     const byHand = element("fieldset", {}, element("legend", { text: "By hand" }),
-      element("p", { class: "note", text: "Move the slider, or use the arrow keys. The model follows from rest." }), first.node, ...others.map(({ node }) => node),
+      element("p", { class: "note", text: "Move the slider, or use the arrow keys. The simulation starts from the initial state." }), first.node, ...others.map(({ node }) => node),
       element("div", { class: "row" }, button("Clear", () => { this.hand.clear(); this.runHand(); }),
-        model.needs_time ? element("div", { class: "choice" }, element("label", { for: "try-pace", text: `Units of ${model.time_label} in one second` }), pace) : null));
+        model.needs_time ? element("div", { class: "choice" }, element("label", { for: "try-pace", text: `Model time in one second, ${model.time_label}` }), pace) : null));
 
     const changed = () => this.runWave();
     const amplitude = slider(`Amplitude of ${inputs[0]}`, { low: 0, high: 1.2 * half, value: half }, changed);
-    const rate = slider(`Cycles per unit of ${model.time_label}`, { low: 0.01 * this.hand.rate, high: 10 * this.hand.rate, value: this.hand.rate }, changed);
+    const rate = slider(model.time_label.endsWith("(s)") ? "Frequency, Hz" : `Cycles per unit of ${model.time_label}`, { low: 0.01 * this.hand.rate, high: 10 * this.hand.rate, value: this.hand.rate }, changed);
     const cycles = slider("Number of cycles", { low: 1, high: 20, value: 3, step: 1 }, changed);
     let form = "sine";
     const forms = choice("Wave form", [["sine", "sine"], ["triangle", "triangle"], ["decaying", "decaying sine"], ["growing", "growing sine"]].map(([value, text]) => ({ value, text })), form, (value) => { form = value; changed(); });

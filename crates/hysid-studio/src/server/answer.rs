@@ -21,12 +21,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Of this status.
+    /// A problem with this HTTP status.
     pub fn new(status: StatusCode, words: impl Into<String>) -> Self {
         Self { status, words: words.into() }
     }
 
-    /// Somebody else asks.
+    /// A request that is refused.
     pub fn refused(words: &str) -> Self {
         Self::new(StatusCode::FORBIDDEN, words)
     }
@@ -61,19 +61,19 @@ pub async fn computed<T: Send + 'static>(
     compute: impl FnOnce(&std::sync::Arc<Studio>) -> anyhow::Result<T> + Send + 'static,
 ) -> Answer<T> {
     let Shared { studio, computing, .. } = shared;
-    let words = "the studio is ending";
-    let permit = computing.acquire_owned().await.map_err(|_| Problem::refused(words))?;
+    let ending = |_| Problem::new(StatusCode::SERVICE_UNAVAILABLE, "the studio is ending");
+    let permit = computing.acquire_owned().await.map_err(ending)?;
     let result = tokio::task::spawn_blocking(move || {
         let _permit = permit;
         compute(&studio)
     });
-    let words = "this takes more than ten minutes and was given up: use fewer rows";
+    let words = "this takes more than ten minutes and was stopped: use fewer rows";
     let late = |_| Problem::new(StatusCode::GATEWAY_TIMEOUT, words);
     match tokio::time::timeout(LONGEST_COMPUTATION, result).await.map_err(late)? {
         Ok(result) => Ok(result?),
         Err(_) => Err(Problem::new(
             StatusCode::INTERNAL_SERVER_ERROR,
-            "the studio made an error in this computation; its project is safe",
+            "internal error in this computation; the project is unchanged",
         )),
     }
 }
@@ -85,7 +85,7 @@ pub struct Arrays {
 }
 
 impl Arrays {
-    /// Of these columns.
+    /// Arrays of these columns.
     pub fn of<V: AsRef<[f64]>>(columns: &[(&str, V)]) -> Self {
         let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
         let rows = columns.first().map_or(0, |(_, values)| values.as_ref().len());

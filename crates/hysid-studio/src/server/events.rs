@@ -1,4 +1,4 @@
-//! News for the page, as server-sent events.
+//! Changes, as server-sent events for the page.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use crate::studio::News;
 /// Least time between two events: a page cannot show more.
 const BETWEEN: Duration = Duration::from_millis(150);
 
-/// Time between signs of life, without which a browser would not notice that a connection is gone.
+/// Time between two keep-alive messages, by which a browser notices that a connection is gone.
 const ALIVE: Duration = Duration::from_secs(15);
 
 /// What a page knows already.

@@ -85,9 +85,8 @@ pub async fn upload(
 }
 
 fn too_large() -> Problem {
-    let most = MOST_FILE_BYTES >> 20;
-    let words =
-        format!("the file is larger than {most} MB: keep the rows that are needed, or use the command line");
+    let most = MOST_FILE_BYTES / 1_000_000_000;
+    let words = format!("the file is larger than {most} GB: make it smaller, or fit on the command line");
     Problem::new(StatusCode::PAYLOAD_TOO_LARGE, words)
 }
 
@@ -157,7 +156,7 @@ pub struct AskedColumns {
 impl AskedColumns {
     fn chosen(self) -> anyhow::Result<ChosenColumns> {
         let Self { record, time, inputs, rate, output } = self;
-        let missing = |what: &str| Wrong(format!("no column is {what}: choose one (--{what})"));
+        let missing = |what: &str| Wrong(format!("no column has the role {what}: choose one (--{what})"));
         if inputs.is_empty() {
             return Err(missing("input").into());
         }

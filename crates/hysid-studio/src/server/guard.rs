@@ -1,4 +1,4 @@
-//! Who may ask: only the page that this studio opened.
+//! Access: only the page that this studio opened gets answers.
 //!
 //! A random token is in the address that is opened, and from then on in a cookie that the browser sends from this page
 //! alone. A page of somebody else has neither; nor can it pretend to be this machine by a name of its own (DNS rebinding),
@@ -33,7 +33,7 @@ const HEADERS: [(HeaderName, &str); 6] = [
     (header::CACHE_CONTROL, "no-store"),
 ];
 
-/// Knows the page of this studio.
+/// The address, token and cookie of this studio.
 #[derive(Clone)]
 pub struct Guard(Arc<Known>);
 
@@ -66,21 +66,21 @@ impl Guard {
         let headers = request.headers();
         let host = text(headers, &header::HOST).unwrap_or_default();
         if !self.0.hosts.iter().any(|known| known == host) {
-            return Some(Problem::refused("this address is not the studio's"));
+            return Some(Problem::refused("request refused: wrong address"));
         }
         let own = format!("http://{host}");
         let origin = text(headers, &header::ORIGIN);
         let is_reading = matches!(*request.method(), Method::GET | Method::HEAD);
         if origin.is_some_and(|origin| origin != own) || (origin.is_none() && !is_reading) {
-            return Some(Problem::refused("only the page of this studio may ask for this"));
+            return Some(Problem::refused("request refused: it did not come from the page of this studio"));
         }
         let is_opening = request.uri().path() == "/";
         let site = text(headers, &HeaderName::from_static("sec-fetch-site"));
         if !is_opening && site.is_some_and(|site| site != "same-origin" && site != "none") {
-            return Some(Problem::refused("only the page of this studio may ask for this"));
+            return Some(Problem::refused("request refused: it did not come from the page of this studio"));
         }
         let has_token = self.has_cookie(headers) || (is_opening && self.has_token(request));
-        let words = "this page needs the address that `hysid studio` has printed: open that one";
+        let words = "The studio was restarted, or this page was not opened by it. Open the address that `hysid studio` has printed.";
         (!has_token).then(|| Problem::refused(words))
     }
 

@@ -52,7 +52,7 @@ pub async fn simulated(
     computed(shared, move |studio| Ok(Arrays::of(&studio.run(model, file)?.columns()))).await
 }
 
-/// What each member of an ensemble makes of a file.
+/// The output of each member of an ensemble for a file.
 pub async fn members(State(shared): State<Shared>, Path((model, file)): Path<(u64, u64)>) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let (run, model) = (studio.run(model, file)?, studio.model(model)?);

@@ -169,7 +169,7 @@ impl Studio {
             let roles = [("time", &chosen.time, &found.time), ("record", &chosen.record, &found.record)];
             let by_name = roles.iter().find_map(|(role, chosen, found)| {
                 let name = found.as_ref().filter(|_| chosen.is_none())?;
-                Some(format!("\"{}\" stays {role}, because of its name or values", clipped(name)))
+                Some(format!("\"{}\" keeps the role {role}, which is detected from its name or values; another column can get the role", clipped(name)))
             });
             Ok(by_name)
         })
@@ -186,7 +186,7 @@ impl Studio {
     /// All training data, as a fit takes them.
     ///
     /// # Errors
-    /// None; or files that cannot be used.
+    /// No training file, or files that cannot be used.
     pub fn training_data(&self) -> Result<Arc<Data>> {
         let (files, understanding) = {
             let project = self.project();

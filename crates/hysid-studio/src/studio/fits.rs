@@ -146,7 +146,7 @@ impl Studio {
         let mut state = FitState::begun(begun.id, &FitSpec::of(chosen.model(), None, 1));
         state.is_running = false;
         state.was_interrupted = true;
-        let words = "the studio was ended before this fit";
+        let words = "the studio was closed";
         match model {
             Some(model) => {
                 let id = begun.id;
@@ -167,11 +167,11 @@ impl Studio {
                     Ok(())
                 })?;
                 state.made = Some(id);
-                state.problem = Some(format!("{words}; its best model so far is kept"));
+                state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
             }
             None => {
                 self.forget_the_unfinished();
-                state.problem = Some(format!("{words} had a model; start it again"));
+                state.problem = Some(format!("{words} before this fit had a model: start it again"));
             }
         }
         self.fits.interrupted(state);

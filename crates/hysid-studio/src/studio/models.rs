@@ -1,4 +1,4 @@
-//! Models of a project, and what they make of its files.
+//! Models of a project, and their runs over its files.
 
 use std::fs;
 use std::path::PathBuf;
@@ -65,8 +65,9 @@ impl Studio {
     /// There is none.
     pub fn report(&self, id: u64) -> Result<String> {
         let report = self.project().model(id)?.report.clone();
-        let report =
-            report.ok_or_else(|| anyhow!("this model has no report: its fit did not come to its end"))?;
+        let report = report.ok_or_else(|| {
+            anyhow!("this model has no report: the fit was interrupted, or the report could not be written")
+        })?;
         let path = self.folder.models(&report);
         fs::read_to_string(&path)
             .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))
