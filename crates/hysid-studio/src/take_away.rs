@@ -5,6 +5,7 @@ use std::io::{Cursor, Write};
 use anyhow::{Context, Result, anyhow};
 use hysid::model::Model;
 use hysid::options::table::{OPTIONS, Values};
+use hysid::termination::Termination;
 use hysid_document::shell::shown;
 use hysid_export::{Options, Target};
 use hysid_records::ReadingChoice;
@@ -51,12 +52,24 @@ pub struct Lines {
     shell: String,
     /// For Python, in the folder of the project; `null` where Python has no option for what was chosen.
     python: Option<String>,
+    /// Why they make another model, if they do.
+    note: Option<&'static str>,
 }
 
 impl Lines {
     /// Of a model. What was guessed is said, so that the lines do not depend on the guess.
-    pub fn of(stored: &ProjectModel, folder: &std::path::Path) -> Self {
-        Self { shell: shell(stored, folder), python: python(&stored.begun, &stored.file) }
+    pub fn of(stored: &ProjectModel, model: &Model, folder: &std::path::Path) -> Self {
+        let is_cut_short = stored.was_interrupted || model.provenance().termination == Termination::Stopped;
+        let note = match (is_cut_short, stored.begun.request.time_limit) {
+            (false, _) => None,
+            (true, Some(_)) => {
+                Some("The time limit ended this fit: the result depends on the speed of the machine.")
+            }
+            (true, None) => {
+                Some("This fit was stopped early. The commands run it to its end, and give another model.")
+            }
+        };
+        Self { shell: shell(stored, folder), python: python(&stored.begun, &stored.file), note }
     }
 }
 

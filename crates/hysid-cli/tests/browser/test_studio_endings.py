@@ -36,7 +36,7 @@ def test_the_progress_of_a_single_model_grows_until_it_is_stopped(start, visit):
     identify.get_by_role("button", name="Start").click()
     identify.get_by_role("progressbar").wait_for()
     identify.locator("canvas").first.wait_for()
-    opened.page.wait_for_function("window.told.some((share) => share > 0)", timeout=60_000)
+    opened.page.wait_for_function("() => window.told.some((share) => share > 0)", timeout=60_000)
     identify.get_by_role("button", name="Stop and keep the best model").click()
     opened.page.get_by_role("link", name="Judge this model").wait_for(timeout=60_000)
     told = opened.page.evaluate("window.told")

@@ -27,7 +27,11 @@ export class CompareStep {
       this.pictures.update(null, () => { this.figures?.destroy(); this.figures = null; return []; });
       return;
     }
-    this.shown ??= new Set(models.slice(-2).map(({ id }) => id));
+    // The two newest are drawn at first, and each that is new.
+    const added = this.known ? models.filter(({ id }) => !this.known.has(id)) : models.slice(-2);
+    this.known = new Set(models.map(({ id }) => id));
+    this.shown ??= new Set();
+    added.forEach(({ id }) => this.shown.add(id));
     const unseen = project.usable("unseen");
     const judged = await Promise.all(models.map((model) => Promise.all(unseen.map((one) => project.judgement(model, one).catch(() => null)))));
     this.table.update([models, unseen, judged], () => this.build(models, unseen, judged));

@@ -59,8 +59,8 @@ export class TakeAwayStep {
       element("ul", { class: "files" }, ...project.choices.targets.map(({ name, what }) => element("li", {},
         element("span", { class: "about", text: what }), button(`Download ${name}`, () => this.export(`${address}/export/${encodeURIComponent(name)}`), { "aria-label": `Download ${name}: ${what}` }))))]);
     try {
-      const { shell, python } = await project.ofModel(model, "commands");
-      if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), copyable("Command line", shell), python ? copyable("Python", python, `Run in the folder ${folder}.`) : element("p", { class: "note", text: "Python code is not available for several training files, files other than CSV, and reading options." })]);
+      const { shell, python, note } = await project.ofModel(model, "commands");
+      if (modelOr(this.model) === model) this.commands.update([model.id, shell, python], () => [element("h2", { text: "Without this page" }), note ? problem(note) : null, copyable("Command line", shell), python ? copyable("Python", python, `Run in the folder ${folder}.`) : element("p", { class: "note", text: "Python code is not available for several training files, files other than CSV, and reading options." })]);
     } catch (error) {
       this.commands.update(error.message, () => [problem(error.message)]);
     }

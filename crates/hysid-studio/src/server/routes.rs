@@ -75,5 +75,7 @@ async fn in_words(response: Response) -> Response {
         return response;
     }
     let bytes = axum::body::to_bytes(response.into_body(), 4096).await.unwrap_or_default();
-    Problem::new(status, String::from_utf8_lossy(&bytes).into_owned()).into_response()
+    let words = String::from_utf8_lossy(&bytes)
+        .replace("Failed to deserialize the JSON body into the target type", "the request is not valid");
+    Problem::new(status, words).into_response()
 }

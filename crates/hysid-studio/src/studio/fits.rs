@@ -28,7 +28,9 @@ impl Studio {
             bail!("a fit is running: stop it, or wait until it ends");
         }
         if request.time_limit.is_some_and(|limit| !(limit > 0.0 && limit.is_finite() && limit <= 1e9)) {
-            return Err(Usage("--time-limit: a number of seconds above 0 is needed".into()).into());
+            return Err(
+                Usage("--time-limit: a number of seconds above 0, at most 1e9, is needed".into()).into()
+            );
         }
         let request = request.with_values()?;
         let data = self.training_data()?;

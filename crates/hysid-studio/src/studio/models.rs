@@ -128,6 +128,6 @@ impl Studio {
     /// # Errors
     /// There is none of this number.
     pub fn lines(&self, id: u64) -> Result<Lines> {
-        Ok(Lines::of(&self.stored_model(id)?, self.folder.root()))
+        Ok(Lines::of(&self.stored_model(id)?, &*self.model(id)?, self.folder.root()))
     }
 }
