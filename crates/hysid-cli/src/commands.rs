@@ -25,11 +25,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, ensure};
 use hysid::model::Model;
+use hysid_tables::{Table, is_json};
 
 use crate::arguments::ReadingOptions;
 use crate::files;
 use crate::messages::Usage;
-use hysid_tables::{Table, is_json};
 
 /// Refuses a model without a band.
 fn check_band(model: &Model, path: &Path) -> Result<()> {

@@ -14,15 +14,14 @@ use hysid::model::Model;
 use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid::termination::Termination;
-use hysid_records::understanding;
+use hysid_records::{Data as Read, understanding};
+use hysid_report::ns_per_sample;
 
 use crate::arguments::Compare;
-use crate::data::Data as Read;
 use crate::identification::check_memory;
 use crate::interrupt;
 use crate::messages::note;
 use crate::terminal;
-use hysid_report::ns_per_sample;
 pub use page::page;
 
 /// A simulation is timed over at least this time.

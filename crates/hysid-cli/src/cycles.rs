@@ -17,6 +17,7 @@ use hysid::diagnosis::model::ModelCycles;
 use hysid::diagnosis::reversal_curves::{ReversalCurveOptions, ReversalCurves};
 use hysid_document::count;
 use hysid_records::Data;
+use hysid_report::quantities::Quantities;
 use serde::Serialize;
 
 pub use curves::{BEGINNING as BEGINNING_OF_CURVES, csv as curves_csv};
@@ -25,7 +26,6 @@ pub use table::{BEGINNING, csv};
 pub use text::text;
 
 use crate::terminal;
-use hysid_report::quantities::Quantities;
 
 /// Cycles, and what they are cycles of.
 pub struct Cycles<'a> {

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use hysid::model::Model;
-use hysid_records::Factors;
-pub use hysid_records::{Data, Roles};
+use hysid_records::{Data, Factors, Roles};
 use hysid_tables::Table;
 
 use crate::arguments::{ColumnOptions, ReadingOptions};

@@ -13,10 +13,10 @@ use hysid::options::FitSpec;
 use hysid::significant::Significant;
 use hysid_document::plain::rendered;
 use hysid_document::{Cell, Part, Table, count};
+use hysid_report::{initial_state, parameters, provenance};
 use serde::{Deserialize, Serialize};
 
 use crate::errors_table::{AFTER_WARM_UP, errors_table};
-use hysid_report::{initial_state, parameters, provenance};
 
 /// A model and its file.
 pub struct Inspected<'m> {

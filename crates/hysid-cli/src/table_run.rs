@@ -11,10 +11,10 @@ use hysid_records::{
     Factors, Kind, MOST_ROWS_OF_ZERO, RecordNames, Roles, checked, equal_stamps, explained, offset_of,
     place_of,
 };
+use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 use crate::messages::warning;
 use crate::terminal::clipped;
-use hysid_tables::{CellReader, ColumnReader, Head, Row, Rows, spread_equal, starts_again};
 
 /// Rows that are simulated together.
 const BLOCK: usize = MOST_ROWS_OF_ZERO;

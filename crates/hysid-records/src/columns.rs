@@ -4,6 +4,7 @@ mod guess;
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::path::Path;
 
 use anyhow::{Result, bail, ensure};
 use hysid_core::data::rate::RateMethod;
@@ -15,6 +16,7 @@ use hysid_core::options::{FitSpec, ModelName};
 use self::guess::Guess;
 use crate::usage::Usage;
 use hysid_core::data::unit::{self, Conversion};
+use hysid_document::shell::shown;
 use hysid_document::visible::{clipped, listed};
 use hysid_tables::{Head, Table, is_record};
 
@@ -31,6 +33,21 @@ pub struct ColumnChoice {
     pub output: Option<String>,
     /// Rate of the first input.
     pub rate: RateOption,
+}
+
+impl ColumnChoice {
+    /// The options by which a command is told the same columns, for a shell.
+    pub fn options(&self) -> Vec<String> {
+        let rate = match &self.rate {
+            RateOption::Column(name) => Some(name),
+            RateOption::Choice(_) => None,
+        };
+        let named = [("record", &self.record), ("time", &self.time), ("output", &self.output)];
+        let named = named.into_iter().filter_map(|(option, name)| Some((option, name.as_ref()?)));
+        let named = named.chain(self.input.iter().map(|name| ("input", name)));
+        let named = named.chain(rate.map(|name| ("rate", name)));
+        named.map(|(option, name)| format!("--{option} {}", shown(Path::new(name)))).collect()
+    }
 }
 
 /// Where the rate of the first input comes from.

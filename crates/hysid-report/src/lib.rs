@@ -37,6 +37,7 @@ pub use band_coverage::BandCoverage;
 pub use course::Course;
 pub use figures::{MEASURED_WIDTH, MODEL_WIDTH, loops, path_curves, scored_rows, small_loops};
 pub use identified::{Beforehand, Identified, data_warnings};
+pub use neurons::Stop;
 pub use timing::ns_per_sample;
 pub use tracks::Tracks;
 

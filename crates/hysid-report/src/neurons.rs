@@ -21,18 +21,34 @@ const MOST_WEIGHTS: usize = 10;
 const MOST_CHANNELS: usize = 5;
 
 /// A stop in the user's unit.
-struct Stop {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stop {
     /// Number, counted from 1.
-    number: usize,
+    pub number: usize,
     /// Threshold in the unit of the first input.
-    threshold: f64,
+    pub threshold: f64,
     /// Weights of the scaled channels.
-    weights: Vec<f64>,
+    pub weights: Vec<f64>,
     /// Capacity; infinite without deterioration.
-    beta: f64,
+    pub beta: f64,
 }
 
 impl Stop {
+    /// All stops of a network, by their numbers.
+    pub fn all(network: &Network, scaling: &Scaling) -> Vec<Self> {
+        let (a, parameters) = (network.architecture(), network.parameters());
+        let layout = Layout::new(*a);
+        let betas = &parameters[layout.ln_beta.clone()];
+        let weights = parameters[layout.stop_weights.clone()].chunks(a.channels().max(1));
+        let stop = |(j, weights): (usize, &[f64])| Self {
+            number: j + 1,
+            threshold: scaling.inputs[0] / weights[0].abs(),
+            weights: weights.to_vec(),
+            beta: betas.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp()),
+        };
+        weights.enumerate().map(stop).collect()
+    }
+
     /// True if no input within the trained ranges makes it slip.
     fn never_slips(&self) -> bool {
         self.weights.iter().map(|w| w.abs()).sum::<f64>() <= 1.0
@@ -70,20 +86,7 @@ fn scaling<'a>(report: &'a Report) -> &'a Scaling {
 
 /// All stops, the smallest threshold first.
 fn stops(report: &Report) -> Vec<Stop> {
-    let network = network(report);
-    let (a, parameters) = (network.architecture(), network.parameters());
-    let layout = Layout::new(*a);
-    let betas = &parameters[layout.ln_beta.clone()];
-    let weights = parameters[layout.stop_weights.clone()].chunks(a.channels().max(1));
-    let mut stops: Vec<Stop> = weights
-        .enumerate()
-        .map(|(j, weights)| Stop {
-            number: j + 1,
-            threshold: scaling(report).inputs[0] / weights[0].abs(),
-            weights: weights.to_vec(),
-            beta: betas.get(j).map_or(f64::INFINITY, |ln_beta| ln_beta.exp()),
-        })
-        .collect();
+    let mut stops = Stop::all(network(report), scaling(report));
     stops.sort_by(|a, b| a.threshold.total_cmp(&b.threshold));
     stops
 }

@@ -53,6 +53,8 @@ pub struct Work {
     pub request: FitSpec,
     /// The data.
     pub data: Arc<Data>,
+    /// What is told of both before the fit.
+    pub beforehand: Beforehand,
     /// Number of the file with the first records, over which the best model so far is drawn.
     pub file: u64,
     /// Seconds after which the fit ends.
@@ -68,13 +70,12 @@ impl Fits {
     /// Begins a fit.
     ///
     /// # Errors
-    /// Another one is running; data that the model cannot be fitted to; too little memory.
+    /// Another one is running; too little memory.
     pub fn begin(&self, work: Work, finish: Finish, tell: Tell) -> Result<()> {
         let mut last = self.last();
         if last.as_ref().is_some_and(|last| last.course.state().is_running) {
             bail!("a fit is running: stop it, or wait until it ends");
         }
-        let beforehand = Beforehand::of(&work.data, &work.request)?;
         let pool = ThreadPoolBuilder::new().build().context("cannot start the threads")?;
         memory_need(&work.data.set, &work.request, pool.current_num_threads())
             .and_then(|need| need.check(hysid_files::available_memory()))
@@ -87,7 +88,7 @@ impl Fits {
         });
         let own = Arc::clone(&course);
         let thread = std::thread::Builder::new().name("fit".into()).spawn(move || {
-            let ended = run(&own, work, beforehand, &pool, finish);
+            let ended = run(&own, work, &pool, finish);
             own.change(|state| state.end(ended));
         });
         let thread = Some(thread.context("cannot start the fit")?);
@@ -157,14 +158,8 @@ impl Course {
 }
 
 /// The number of the model that was found.
-fn run(
-    course: &Arc<Course>,
-    work: Work,
-    beforehand: Beforehand,
-    pool: &rayon::ThreadPool,
-    finish: Finish,
-) -> Result<u64> {
-    let Work { request, data, file, time_limit, best, .. } = work;
+fn run(course: &Arc<Course>, work: Work, pool: &rayon::ThreadPool, finish: Finish) -> Result<u64> {
+    let Work { request, data, beforehand, file, time_limit, best, .. } = work;
     let models = Latest::default();
     std::thread::scope(|scope| {
         let (drawn, of_data) = (&models, &*data);

@@ -105,7 +105,7 @@ impl Folder {
         match fs::read_to_string(&path) {
             Ok(text) => Ok(Some(text)),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))),
+            Err(error) => Err(cannot_read(&path, &error)),
         }
     }
 
@@ -116,6 +116,11 @@ impl Folder {
     pub fn write_project(&self, text: &str) -> Result<()> {
         write(&self.root.join(PROJECT), Kind::Beginning(BEGINNING.to_vec()), text.as_bytes())
     }
+}
+
+/// What is said of a file that cannot be read.
+pub fn cannot_read(path: &Path, error: &std::io::Error) -> anyhow::Error {
+    anyhow!(hysid_files::unreadable(&path.display().to_string(), error))
 }
 
 /// Writes a file of the project. What the project wrote before is replaced.

@@ -13,6 +13,8 @@ use hysid_report::residual_words::{name, p_value, verdict};
 use hysid_report::{BAND, BandCoverage, ReportSet};
 use serde::Serialize;
 
+use crate::neurons::numbered;
+
 /// Runs that are kept.
 const MOST_KEPT: usize = 8;
 
@@ -71,23 +73,6 @@ impl Run {
         Ok(Self { data, is_training, predicted, errors })
     }
 
-    /// Errors over all records.
-    pub fn errors(&self) -> &Errors {
-        &self.errors
-    }
-
-    /// Outputs, and the edges of the band if there is one, over all rows.
-    pub fn columns(&self) -> Vec<(&'static str, Vec<f64>)> {
-        let all = |part: fn(&Prediction) -> &Vec<f64>| -> Vec<f64> {
-            self.predicted.iter().flat_map(part).copied().collect()
-        };
-        let mut columns = vec![("simulated", all(|run| &run.output))];
-        if self.predicted.iter().all(|run| !run.low.is_empty()) {
-            columns.extend([("low", all(|run| &run.low)), ("high", all(|run| &run.high))]);
-        }
-        columns
-    }
-
     /// What is told of it.
     ///
     /// # Errors
@@ -138,23 +123,31 @@ impl Run {
     }
 }
 
+/// Outputs of predictions one after the other, and the edges of the band if all have one.
+pub fn columns(predicted: &[Prediction]) -> Vec<(&'static str, Vec<f64>)> {
+    let all = |part: fn(&Prediction) -> &Vec<f64>| -> Vec<f64> {
+        predicted.iter().flat_map(part).copied().collect()
+    };
+    let mut columns = vec![("simulated", all(|run| &run.output))];
+    if predicted.iter().all(|run| !run.low.is_empty()) {
+        columns.extend([("low", all(|run| &run.low)), ("high", all(|run| &run.high))]);
+    }
+    columns
+}
+
 /// The output of each member of an ensemble for the data of a run.
 ///
 /// # Errors
 /// Data that the model cannot run on.
 pub fn members(model: &Model, data: &Dataset) -> Result<Vec<(String, Vec<f64>)>> {
     let Some(ensemble) = model.ensemble() else { return Ok(Vec::new()) };
-    let run = |(number, member): (usize, &Model)| {
+    let run = |(name, member): (String, &Model)| {
         let of_record = |record: &Record| member.simulate(record);
-        let output: Vec<Vec<f64>> = data
-            .records()
-            .iter()
-            .map(of_record)
-            .collect::<hysid::Result<_>>()
-            .with_context(|| format!("member {} cannot run on these data", number + 1))?;
-        Ok((format!("{} {}", number + 1, member.name().name()), output.concat()))
+        let output: hysid::Result<Vec<Vec<f64>>> = data.records().iter().map(of_record).collect();
+        let output = output.with_context(|| format!("member {name} cannot run on these data"))?;
+        Ok((name, output.concat()))
     };
-    ensemble.members().iter().enumerate().map(run).collect()
+    numbered(ensemble).map(run).collect()
 }
 
 /// A run, with the numbers of its model and its file.

@@ -3,33 +3,31 @@
 use anyhow::{Result, anyhow};
 use hysid::data::record::{Dataset, Record};
 use hysid::diagnosis::model::ModelDiagnosis;
-use hysid::model::{Model, Predictor};
+use hysid::model::{Ensemble, Model, Predictor};
 use hysid::network::{Drive, Layout, Network};
+use hysid_report::Stop;
 use serde::Serialize;
 
 /// The networks of a model: itself, or members of an ensemble.
 pub fn networks(model: &Model) -> Vec<(String, &Model)> {
-    let is_network = |model: &&Model| model.network().is_some();
-    match model.ensemble() {
-        Some(ensemble) => {
-            let numbered = ensemble.members().iter().enumerate().filter(|(_, member)| is_network(member));
-            numbered
-                .map(|(number, member)| (format!("{} {}", number + 1, member.name().name()), member))
-                .collect()
-        }
-        None => Some(model)
-            .into_iter()
-            .filter(is_network)
-            .map(|model| (model.name().name().into(), model))
-            .collect(),
-    }
+    let all = match model.ensemble() {
+        Some(ensemble) => numbered(ensemble).collect(),
+        None => vec![(model.name().name().to_string(), model)],
+    };
+    all.into_iter().filter(|(_, model)| model.network().is_some()).collect()
+}
+
+/// The members of an ensemble, each named by its number and its model.
+pub fn numbered(ensemble: &Ensemble) -> impl Iterator<Item = (String, &Model)> {
+    let members = ensemble.members().iter().enumerate();
+    members.map(|(number, member)| (format!("{} {}", number + 1, member.name().name()), member))
 }
 
 /// A network's stops.
 #[derive(Debug, Serialize)]
 pub struct Neurons {
     name: String,
-    stops: Vec<Stop>,
+    stops: Vec<ShownStop>,
     /// Width of the loop over the whole trained range as the rate goes to zero; `null` if there is none.
     #[serde(rename = "K")]
     k: Option<f64>,
@@ -40,7 +38,7 @@ pub struct Neurons {
 
 /// A stop. The threshold is in the unit of the first input.
 #[derive(Debug, Serialize)]
-struct Stop {
+struct ShownStop {
     name: String,
     threshold: f64,
     /// Weights of the scaled channels: the input, and its rate if the network has it.
@@ -57,15 +55,14 @@ impl Neurons {
         let Predictor::Network { network, scaling } = model.predictor() else { return None };
         let diagnosis = ModelDiagnosis::of(model).ok();
         let influences = diagnosis.as_ref().and_then(|diagnosis| diagnosis.weights.as_ref());
-        let parts = StopParts::of(network);
-        let stop = |(index, part): (usize, &StopParts)| {
-            let name = format!("stop {}", index + 1);
+        let stop = |stop: Stop| {
+            let name = format!("stop {}", stop.number);
             let known =
                 influences.and_then(|weights| weights.neurons.iter().find(|neuron| neuron.name == name));
-            Stop {
-                threshold: scaling.inputs[0] / part.weights[0].abs(),
-                weights: part.weights.clone(),
-                beta: part.beta,
+            ShownStop {
+                threshold: stop.threshold,
+                weights: stop.weights,
+                beta: stop.beta.is_finite().then_some(stop.beta),
                 influence: known.map(|neuron| neuron.influence),
                 name,
             }
@@ -75,27 +72,7 @@ impl Neurons {
         let p = widths.map_or_else(Vec::new, |widths| {
             widths.dynamic.iter().filter_map(|at| Some((at.speed, at.widening?))).collect()
         });
-        Some(Self { name, stops: parts.iter().enumerate().map(stop).collect(), k, p })
-    }
-}
-
-/// The numbers of a stop.
-struct StopParts {
-    weights: Vec<f64>,
-    beta: Option<f64>,
-}
-
-impl StopParts {
-    fn of(network: &Network) -> Vec<Self> {
-        let architecture = *network.architecture();
-        let (layout, parameters) = (Layout::new(architecture), network.parameters());
-        let betas = &parameters[layout.ln_beta.clone()];
-        let weights = parameters[layout.stop_weights.clone()].chunks(architecture.channels().max(1));
-        let part = |(index, weights): (usize, &[f64])| Self {
-            weights: weights.to_vec(),
-            beta: betas.get(index).map(|ln_beta| ln_beta.exp()),
-        };
-        weights.enumerate().map(part).collect()
+        Some(Self { name, stops: Stop::all(network, scaling).into_iter().map(stop).collect(), k, p })
     }
 }
 

@@ -52,7 +52,21 @@ pub struct ChosenColumns {
     pub output: String,
 }
 
+impl Begun {
+    /// The method of the rate that was asked for; `None` for the default, and for a column.
+    pub fn rate_method(&self) -> Option<&str> {
+        self.request.rate.as_deref().filter(|method| self.columns.rate.is_none() && *method != "auto")
+    }
+}
+
 impl ChosenColumns {
+    /// What is said of the columns.
+    pub fn choice(&self) -> ColumnChoice {
+        let Self { record, time, inputs, rate, output } = self.clone();
+        let rate = rate.map_or_else(RateOption::default, RateOption::Column);
+        ColumnChoice { record, time, input: inputs, output: Some(output), rate }
+    }
+
     /// The columns of these roles.
     pub fn of(roles: &Roles) -> Self {
         Self {
@@ -217,14 +231,7 @@ impl Project {
 impl Understanding {
     /// What is said of the columns.
     pub fn choice(&self) -> ColumnChoice {
-        let Some(columns) = self.columns.clone() else { return ColumnChoice::default() };
-        ColumnChoice {
-            record: columns.record,
-            time: columns.time,
-            input: columns.inputs,
-            output: Some(columns.output),
-            rate: columns.rate.map_or_else(RateOption::default, RateOption::Column),
-        }
+        self.columns.as_ref().map_or_else(ColumnChoice::default, ChosenColumns::choice)
     }
 }
 

@@ -30,7 +30,7 @@ const COMPUTING: usize = 2;
 pub struct Server {
     runtime: Runtime,
     listener: TcpListener,
-    context: Shared,
+    shared: Shared,
     token: String,
     port: u16,
 }
@@ -81,8 +81,8 @@ impl Server {
         };
         let port = listener.local_addr()?.port();
         let (ending, is_over) = watch::channel(false);
-        let context = Shared { studio, computing: Arc::new(Semaphore::new(COMPUTING)), is_over };
-        Ok((Self { runtime, listener, context, token: guard::token()?, port }, Ending(ending)))
+        let shared = Shared { studio, computing: Arc::new(Semaphore::new(COMPUTING)), is_over };
+        Ok((Self { runtime, listener, shared, token: guard::token()?, port }, Ending(ending)))
     }
 
     /// The address that opens the page.
@@ -95,9 +95,9 @@ impl Server {
     /// # Errors
     /// What the system refuses.
     pub fn serve(self) -> Result<()> {
-        let Self { runtime, listener, context, token, port } = self;
-        let mut is_over = context.is_over.clone();
-        let router = routes::router(context, Guard::new(port, token));
+        let Self { runtime, listener, shared, token, port } = self;
+        let mut is_over = shared.is_over.clone();
+        let router = routes::router(shared, Guard::new(port, token));
         runtime.block_on(async move {
             let over = async move {
                 let _ = is_over.wait_for(|is_over| *is_over).await;

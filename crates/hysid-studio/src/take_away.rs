@@ -1,6 +1,7 @@
 //! What is taken away of a model: exports, and the lines that make the very same model without the studio.
 
 use std::io::{Cursor, Write};
+use std::path::Path;
 
 use anyhow::{Context, Result, anyhow};
 use hysid::model::Model;
@@ -58,7 +59,7 @@ pub struct Lines {
 
 impl Lines {
     /// Of a model. What was guessed is said, so that the lines do not depend on the guess.
-    pub fn of(stored: &ProjectModel, model: &Model, folder: &std::path::Path) -> Self {
+    pub fn of(stored: &ProjectModel, model: &Model, folder: &Path) -> Self {
         let is_cut_short = stored.was_interrupted || model.provenance().termination == Termination::Stopped;
         let note = match (is_cut_short, stored.begun.request.time_limit) {
             (false, _) => None,
@@ -73,27 +74,15 @@ impl Lines {
     }
 }
 
-fn shell(stored: &ProjectModel, folder: &std::path::Path) -> String {
-    let quoted = |text: &str| shown(std::path::Path::new(text));
+fn shell(stored: &ProjectModel, folder: &Path) -> String {
     let (begun, columns) = (&stored.begun, &stored.begun.columns);
     let mut words = vec!["hysid fit".to_string()];
     words.extend(begun.files.iter().map(|file| quoted(&format!("data/{file}"))));
-    let mut option = |name: &str, value: &str| words.push(format!("{} {}", flag(name), quoted(value)));
-    columns.record.iter().for_each(|name| option("record", name));
-    columns.time.iter().for_each(|name| option("time", name));
-    columns.inputs.iter().for_each(|name| option("input", name));
-    option("output", &columns.output);
-    match (&columns.rate, begun.request.rate.as_deref()) {
-        (Some(column), _) => option("rate", column),
-        (None, Some(method)) if method != "auto" => option("rate", method),
-        _ => {}
-    }
+    words.extend(columns.choice().options());
+    words.extend(begun.rate_method().map(|method| format!("--rate {method}")));
     words.extend(of_reading(&begun.understanding.reading));
     for (name, value) in chosen(begun) {
-        words.extend(argument(name, value).map(|value| match value {
-            None => flag(name),
-            Some(value) => format!("{} {}", flag(name), quoted(&value)),
-        }));
+        words.extend(word(name, value));
     }
     words.extend(begun.request.time_limit.map(|seconds| format!("--time-limit {seconds}")));
     words.push(format!("-o {}", quoted(&stored.file)));
@@ -107,42 +96,35 @@ fn chosen(begun: &Begun) -> Vec<(&String, &Value)> {
     options
 }
 
+/// The options that tell how tables are read.
 fn of_reading(reading: &ReadingChoice) -> Vec<String> {
     let Ok(Value::Object(named)) = serde_json::to_value(reading) else { unreachable!("it is a map") };
-    let quoted = |text: String| shown(std::path::Path::new(&text));
-    let mut words = Vec::new();
-    for (name, value) in &named {
-        match value {
-            Value::Array(all) => {
-                words.extend(
-                    all.iter()
-                        .filter_map(Value::as_str)
-                        .map(|one| format!("{}={}", flag(name), quoted(one.to_string()))),
-                );
-            }
-            value => words.extend(argument(name, value).map(|value| match value {
-                None => flag(name),
-                Some(value) => format!("{} {}", flag(name), quoted(value)),
-            })),
+    let words = |(name, value): (String, Value)| match value {
+        // One for each cell, which may begin with a minus sign.
+        Value::Array(cells) => {
+            let cells = cells.iter().filter_map(Value::as_str);
+            cells.map(|cell| format!("{}={}", flag(&name), quoted(cell))).collect()
         }
-    }
-    words
+        value => word(&name, &value).into_iter().collect::<Vec<String>>(),
+    };
+    named.into_iter().flat_map(words).collect()
 }
 
-/// The value of an option on the command line; `Some(None)` for a flag, `None` for what is not said.
-fn argument(name: &str, value: &Value) -> Option<Option<String>> {
+/// An option on the command line; `None` for one that is not said.
+fn word(name: &str, value: &Value) -> Option<String> {
     let is_truth = OPTIONS.iter().any(|option| option.name == name && matches!(option.values, Values::Truth));
-    match value {
-        Value::Null => None,
-        Value::Bool(value) if is_truth => Some(Some(value.to_string())),
-        Value::Bool(false) => None,
-        Value::Bool(true) => Some(None),
-        Value::String(text) => Some(Some(text.clone())),
-        Value::Array(all) => {
-            Some(Some(all.iter().map(ToString::to_string).collect::<Vec<String>>().join(",")))
-        }
-        other => Some(Some(other.to_string())),
-    }
+    let value = match value {
+        Value::Null => return None,
+        Value::Bool(value) if !is_truth => return value.then(|| flag(name)),
+        Value::String(text) => text.clone(),
+        Value::Array(all) => all.iter().map(ToString::to_string).collect::<Vec<String>>().join(","),
+        other => other.to_string(),
+    };
+    Some(format!("{} {}", flag(name), quoted(&value)))
+}
+
+fn quoted(text: &str) -> String {
+    shown(Path::new(text))
 }
 
 /// Python takes columns of arrays, so a table that is read in another way than pandas does has no line.
@@ -159,11 +141,8 @@ fn python(begun: &Begun, file: &str) -> Option<String> {
     let mut arguments = vec![format!("table[[{inputs}]]"), column(&columns.output)];
     arguments.extend(columns.time.iter().map(|name| format!("time={}", column(name))));
     arguments.extend(columns.record.iter().map(|name| format!("records={}", column(name))));
-    match (&columns.rate, begun.request.rate.as_deref()) {
-        (Some(name), _) => arguments.push(format!("rate={}", column(name))),
-        (None, Some(method)) if method != "auto" => arguments.push(format!("rate={}", text(method))),
-        _ => {}
-    }
+    arguments.extend(columns.rate.iter().map(|name| format!("rate={}", column(name))));
+    arguments.extend(begun.rate_method().map(|method| format!("rate={}", text(method))));
     for (name, value) in chosen(begun) {
         let value = match value {
             Value::Null => continue,

@@ -2,13 +2,13 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow, bail};
 use hysid_records::{Data, Looked, Roles};
 use hysid_tables::{Reading, Table};
 
-use crate::folder::Folder;
+use crate::folder::{Folder, cannot_read};
 use crate::project::{Project, ProjectFile, Understanding, Use};
 
 /// The files of a project as they are read.
@@ -23,6 +23,8 @@ pub struct View {
     pub roles: Option<Roles>,
     /// Why the columns of the first file cannot be told apart.
     pub problem: Option<String>,
+    /// All training files together, once they were asked for.
+    together: OnceLock<Arc<Data>>,
 }
 
 /// A file as it is read.
@@ -71,7 +73,7 @@ impl View {
         if before.understanding == *understanding && before.first == view.first {
             (view.roles, view.problem) = (before.roles.clone(), before.problem.clone());
         } else if let Some(first) = first {
-            match read(first, folder, &reading) {
+            match read(&first.name, folder, &reading) {
                 Err(problem) => view.problem = Some(format!("{problem:#}")),
                 Ok(table) => {
                     match Roles::detect(&table, &understanding.choice()) {
@@ -90,7 +92,7 @@ impl View {
             let of_file = read_before(file).unwrap_or_else(|| {
                 let table = match first_table.take_if(|(id, _)| *id == file.id) {
                     Some((_, table)) => Ok(table),
-                    None => read(file, folder, &reading),
+                    None => read(&file.name, folder, &reading),
                 };
                 let of = first.map_or("", |first| &first.name);
                 Arc::new(FileView::of(file.id, table, view.roles.as_ref(), of, understanding))
@@ -114,7 +116,28 @@ impl View {
     /// There is none of this number, or it cannot be used.
     pub fn data(&self, id: u64) -> Result<Arc<Data>> {
         let file = self.file(id)?;
-        file.data.clone().ok_or_else(|| anyhow!("{}", file.problem.clone().unwrap_or_default()))
+        let problem = || file.problem.clone().or_else(|| self.problem.clone()).unwrap_or_default();
+        file.data.clone().ok_or_else(|| anyhow!(problem()))
+    }
+
+    /// The training files of the project that this is a view of, as one set of data.
+    ///
+    /// # Errors
+    /// No training file, or files that cannot be used.
+    pub fn training(&self, project: &Project, folder: &Folder) -> Result<Arc<Data>> {
+        let files: Vec<&ProjectFile> = project.files_for(Use::Training).collect();
+        match (files.as_slice(), self.together.get()) {
+            ([], _) => bail!("there are no training data: drop a file, or choose one for training"),
+            ([one], _) => return self.data(one.id),
+            (_, Some(together)) => return Ok(Arc::clone(together)),
+            _ => {}
+        }
+        let roles = self.roles.clone().ok_or_else(|| anyhow!(self.problem.clone().unwrap_or_default()))?;
+        let reading = &project.understanding.reading;
+        let as_read = reading.reading()?;
+        let tables = files.iter().map(|file| read(&file.name, folder, &as_read)).collect::<Result<_>>()?;
+        let data = Arc::new(Data::new(tables, roles, reading.zero)?);
+        Ok(Arc::clone(self.together.get_or_init(|| data)))
     }
 }
 
@@ -149,22 +172,12 @@ impl FileView {
     }
 }
 
-/// The table of a file, which errors call by its name.
+/// The table of a file of this name, by which errors call it.
 ///
 /// # Errors
 /// A file that cannot be read or is no table.
-pub fn read(file: &ProjectFile, folder: &Folder, reading: &Reading) -> Result<Table> {
-    read_named(&file.name, folder, reading)
-}
-
-/// As [`read`], by the name of a file.
-///
-/// # Errors
-/// A file that cannot be read or is no table.
-pub fn read_named(name: &str, folder: &Folder, reading: &Reading) -> Result<Table> {
+pub fn read(name: &str, folder: &Folder, reading: &Reading) -> Result<Table> {
     let path = folder.data(name);
-    let content = fs::read(&path)
-        .map_err(|error| anyhow!("cannot be read: {}", hysid_files::reason(&error)))
-        .with_context(|| path.display().to_string())?;
+    let content = fs::read(&path).map_err(|error| cannot_read(&path, &error))?;
     Table::from_bytes(Path::new(name), content, reading)
 }

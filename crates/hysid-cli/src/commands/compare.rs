@@ -8,6 +8,7 @@ use hysid::options::ModelName;
 use hysid::options::chosen::NamedOptions;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
+use hysid_report::data_warnings;
 
 use crate::Outcome;
 use crate::arguments::Compare;
@@ -16,7 +17,6 @@ use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::interrupt;
 use crate::messages::{json_results, note, results, summarised, warning};
-use hysid_report::data_warnings;
 
 /// Runs the command.
 pub fn run(arguments: &Compare) -> Result<Outcome> {

@@ -9,6 +9,8 @@ use hysid::data::record::Dataset;
 use hysid::specimens::Specimen;
 use hysid_files::{Destination, Kind};
 use hysid_records::Data;
+use hysid_records::csv_text;
+use hysid_tables::{Reading, Table};
 
 use crate::Outcome;
 use crate::arguments::{Arguments, Command, Demo};
@@ -17,8 +19,6 @@ use crate::files::{self, check_outputs};
 use crate::identification::{self, Work, identify, note_interrupted};
 use crate::interrupt;
 use crate::messages::{note, results};
-use hysid_records::csv_text;
-use hysid_tables::{Reading, Table};
 
 /// Runs the command.
 pub fn run(arguments: &Demo) -> Result<Outcome> {

@@ -9,6 +9,8 @@ use hysid::options::chosen::RateChoice;
 use hysid_document::Page;
 use hysid_files::{Destination, Kind};
 use hysid_records::understanding;
+use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
+use hysid_tables::Table;
 
 use crate::Outcome;
 use crate::arguments::{ColumnOptions, Diagnose, RateOption};
@@ -16,8 +18,6 @@ use crate::commands::{Given, model_from_bytes};
 use crate::data::data_of;
 use crate::files::{self, check_outputs};
 use crate::messages::{note, note_labelled, results, warning};
-use hysid_report::diagnosis::{DataDiagnosis, DiagnosedModel};
-use hysid_tables::Table;
 
 /// What is told of a diagnosis, and the page if there is to be one.
 struct Told {
@@ -59,22 +59,9 @@ fn of_data(arguments: &Diagnose, tables: Vec<Table>) -> Result<Told> {
 
 /// The command that fits a model to the same data.
 fn fit_command(arguments: &Diagnose) -> String {
-    let columns = &arguments.columns;
-    let rate = match &columns.rate {
-        RateOption::Column(name) => Some(name),
-        _ => None,
-    };
-    let named = [("--record", &columns.record), ("--time", &columns.time), ("--output", &columns.output)];
-    let named = named.into_iter().filter_map(|(option, name)| Some((option, name.as_ref()?)));
-    let named = named.chain(columns.input.iter().map(|name| ("--input", name)));
-    let mut command = String::from("hysid fit");
-    for file in &arguments.files {
-        command += &format!(" {}", files::shown(file));
-    }
-    for (option, name) in named.chain(rate.map(|name| ("--rate", name))) {
-        command += &format!(" {option} {}", files::shown(Path::new(name)));
-    }
-    command
+    let files = arguments.files.iter().map(|file| files::shown(file));
+    let words = std::iter::once("hysid fit".to_string()).chain(files);
+    words.chain(arguments.columns.choice().options()).collect::<Vec<String>>().join(" ")
 }
 
 fn of_model(arguments: &Diagnose, content: Vec<u8>) -> Result<Told> {

@@ -7,6 +7,8 @@ use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::error::{Channel, DataError, DataProblem};
 use hysid_records::{Roles, explained};
+use hysid_report::BandCoverage;
+use hysid_tables::Rows;
 
 use crate::Outcome;
 use crate::arguments::Evaluate;
@@ -17,8 +19,6 @@ use crate::gathered::Gatherer;
 use crate::messages::{json_results, results, summarised, warning};
 use crate::residual_tests;
 use crate::table_run::{self, Simulated, Wanted};
-use hysid_report::BandCoverage;
-use hysid_tables::Rows;
 
 /// Runs the command.
 pub fn run(arguments: &Evaluate) -> Result<Outcome> {

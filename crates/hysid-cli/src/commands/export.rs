@@ -10,6 +10,7 @@ use hysid_export::{
     Error, Export as Exported, FmiVersion, InverseOptions, MANIFEST, Options, Precision, Target, files_of,
 };
 use hysid_files::Folder;
+use hysid_report::date;
 use serde::Serialize;
 
 use crate::Outcome;
@@ -17,7 +18,6 @@ use crate::arguments::Export;
 use crate::commands::read_model;
 use crate::files;
 use crate::messages::{Usage, json_results, note};
-use hysid_report::date;
 
 /// Runs the command.
 pub fn run(arguments: &Export) -> Result<Outcome> {

@@ -18,6 +18,7 @@ use hysid::options::{FitSpec, ModelName};
 use hysid::termination::Termination;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
+use hysid_report::{Identified, initial_state};
 
 use crate::Outcome;
 use crate::arguments::{Fit, RateOption, flag};
@@ -27,7 +28,6 @@ use crate::files::{self, check_outputs};
 use crate::identification::{self, Work, identify, report_path};
 use crate::interrupt;
 use crate::messages::{Usage, json_results, note, results, warning};
-use hysid_report::{Identified, initial_state};
 
 /// Runs the command.
 pub fn run(arguments: &Fit) -> Result<Outcome> {

@@ -8,12 +8,12 @@ use hysid::specimens::{Specimen, with_noise};
 use hysid_document::count;
 use hysid_document::plain::indented;
 use hysid_files::{Destination, Kind};
+use hysid_records::csv_text;
 
 use crate::Outcome;
 use crate::arguments::Generate;
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note, raw_results, results};
-use hysid_records::csv_text;
 
 /// Runs the command.
 pub fn run(arguments: &Generate) -> Result<Outcome> {

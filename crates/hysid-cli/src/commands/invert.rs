@@ -11,6 +11,8 @@ use hysid::significant::Significant;
 use hysid_document::count;
 use hysid_files::{Destination, Kind};
 use hysid_records::Roles;
+use hysid_records::header_line;
+use hysid_tables::{Table, push_shortest};
 use serde::Serialize;
 
 use crate::Outcome;
@@ -22,8 +24,6 @@ use crate::files::{self, check_outputs};
 use crate::inversion::{self, Bounds, Inverted, Wanted};
 use crate::messages::{json_results, note_labelled, raw_results, results, warning};
 use crate::terminal::clipped;
-use hysid_records::header_line;
-use hysid_tables::{Table, push_shortest};
 
 /// Runs the command.
 pub fn run(arguments: &Invert) -> Result<Outcome> {

@@ -5,7 +5,9 @@ use std::path::Path;
 use anyhow::Result;
 use hysid::data::summary::Summary;
 use hysid_files::{Destination, Kind};
+use hysid_records::csv_text;
 use hysid_records::{Data, Looked, Roles, understanding};
+use hysid_report::data_warnings;
 use serde::Serialize;
 
 use crate::Outcome;
@@ -13,8 +15,6 @@ use crate::arguments::Look;
 use crate::data::{data_with, read_tables};
 use crate::files::{self, check_outputs};
 use crate::messages::{Usage, json_results, note, raw_results, results, warning};
-use hysid_records::csv_text;
-use hysid_report::data_warnings;
 
 /// Lines about the data as a whole that are shown below the tables.
 const OF_THE_DATA: [&str; 3] = ["samples", "guessed", "turning"];

@@ -9,6 +9,7 @@ use hysid::options::FitSpec;
 use hysid::options::auto::AutoOptions;
 use hysid::plan::{MOST_ROWS, Plan, PlanOptions, Protocol, ProtocolOptions, Wanted};
 use hysid_files::{Destination, Kind};
+use hysid_records::header_line;
 use hysid_records::{Data, Roles, understanding};
 
 use crate::arguments;
@@ -19,7 +20,6 @@ use crate::identification::{Work, identify, thread_pool};
 use crate::messages::{Usage, json_results, note_labelled, raw_results, results, warning};
 use crate::planning::{self, Planned};
 use crate::{Outcome, interrupt};
-use hysid_records::header_line;
 
 /// Starts of each candidate of the ensemble: it only has to show where models disagree.
 const STARTS: usize = 1;

@@ -7,6 +7,8 @@ use std::path::Path;
 use anyhow::{Result, ensure};
 use hysid_files::{Destination, Kind, NewFile};
 use hysid_records::Roles;
+use hysid_records::header_line;
+use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
 
 use crate::arguments::Simulate;
 use crate::commands::{check_band, read_model};
@@ -16,8 +18,6 @@ use crate::messages::{stdout_failed, warning};
 use crate::table_run::{self, Simulated, Wanted};
 use crate::terminal::clipped;
 use crate::{Outcome, interrupt};
-use hysid_records::header_line;
-use hysid_tables::{CellReader, ColumnReader, DecimalSign, Reading, Rows, push_shortest};
 
 /// Bytes that are written together. A table with an error in its first rows leaves nothing on stdout.
 const BUFFERED: usize = 1 << 20;

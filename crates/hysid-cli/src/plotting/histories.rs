@@ -6,13 +6,13 @@ use hysid::model::Prediction;
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Chart, Colour, Curve, unit};
+use hysid_report::histories::{Panel, difference, error_label};
+use hysid_report::tracks::times;
+use hysid_report::{MODEL_WIDTH, scored_rows, time_label};
 
 use super::Subject;
 use super::curves::{BOTH, alone};
 use crate::messages::{Usage, note};
-use hysid_report::histories::{Panel, difference, error_label};
-use hysid_report::tracks::times;
-use hysid_report::{MODEL_WIDTH, scored_rows, time_label};
 
 /// Most records that are drawn over time.
 const MOST_RECORDS: usize = 4;

@@ -8,12 +8,12 @@ use anyhow::{Context, Result};
 use hysid_document::{Page, Text, markdown, plain};
 use hysid_files::{Destination, GENERATOR};
 use hysid_paper::{Chapter, Content, Experiment, Observer, Settings};
+use hysid_report::{date, page_text};
 
 use super::storage::{self, Finished};
 use super::{Outputs, rendering};
 use crate::messages::{note, results};
 use crate::{Outcome, files, interrupt};
-use hysid_report::{date, page_text};
 
 /// Name of the files of all experiments together.
 const TOGETHER: &str = "reproduction";

@@ -97,6 +97,13 @@ impl Arrays {
         arrays.with("x-columns", names.join(",")).with("x-rows", rows.to_string())
     }
 
+    /// Arrays of one kind, each with a name of its own.
+    pub fn named(kind: &str, all: &[(String, Vec<f64>)]) -> Self {
+        let names: Vec<&String> = all.iter().map(|(name, _)| name).collect();
+        let columns: Vec<(&str, &Vec<f64>)> = all.iter().map(|(_, values)| (kind, values)).collect();
+        Self::of(&columns).with("x-names", encoded(&json!(names).to_string()))
+    }
+
     /// With one more header.
     pub fn with(mut self, name: &'static str, value: String) -> Self {
         self.headers.push((HeaderName::from_static(name), value));

@@ -49,18 +49,15 @@ pub async fn simulated(
     State(shared): State<Shared>,
     Path((model, file)): Path<(u64, u64)>,
 ) -> Answer<Arrays> {
-    computed(shared, move |studio| Ok(Arrays::of(&studio.run(model, file)?.columns()))).await
+    computed(shared, move |studio| Ok(Arrays::of(&judgement::columns(&studio.run(model, file)?.predicted))))
+        .await
 }
 
 /// The output of each member of an ensemble for a file.
 pub async fn members(State(shared): State<Shared>, Path((model, file)): Path<(u64, u64)>) -> Answer<Arrays> {
     computed(shared, move |studio| {
         let (run, model) = (studio.run(model, file)?, studio.model(model)?);
-        let members = judgement::members(&model, &run.data)?;
-        let names: Vec<&str> = members.iter().map(|(name, _)| name.as_str()).collect();
-        let columns: Vec<(&str, &[f64])> =
-            members.iter().map(|(_, output)| ("member", output.as_slice())).collect();
-        Ok(Arrays::of(&columns).with("x-names", encoded(&json!(names).to_string())))
+        Ok(Arrays::named("member", &judgement::members(&model, &run.data)?))
     })
     .await
 }
@@ -101,11 +98,7 @@ pub async fn run(
     computed(shared, move |studio| {
         let model = studio.model(id)?;
         let run = driven.path(&model, &body)?.run(&model)?;
-        let mut columns = vec![("simulated", &run.output)];
-        if !run.low.is_empty() {
-            columns.extend([("low", &run.low), ("high", &run.high)]);
-        }
-        Ok(Arrays::of(&columns))
+        Ok(Arrays::of(&judgement::columns(&[run])))
     })
     .await
 }
@@ -120,10 +113,7 @@ pub async fn run_neurons(
     computed(shared, move |studio| {
         let model = studio.model(id)?;
         let stops = neurons::along(&model, driven.network, driven.path(&model, &body)?.record()?)?;
-        let names: Vec<&str> = stops.iter().map(|(name, _)| name.as_str()).collect();
-        let columns: Vec<(&str, &[f64])> =
-            stops.iter().map(|(_, output)| ("stop", output.as_slice())).collect();
-        Ok(Arrays::of(&columns).with("x-names", encoded(&json!(names).to_string())))
+        Ok(Arrays::named("stop", &stops))
     })
     .await
 }

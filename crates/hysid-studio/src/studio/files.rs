@@ -16,9 +16,9 @@ use hysid_report::diagnosis::DataDiagnosis;
 use serde::Serialize;
 
 use super::Studio;
-use crate::folder::safe_name;
+use crate::folder::{cannot_read, safe_name};
 use crate::project::{ChosenColumns, ProjectFile, Use};
-use crate::view::read_named;
+use crate::view::read;
 
 /// Most files of a project.
 const MOST_FILES: usize = 200;
@@ -76,9 +76,7 @@ impl Studio {
     /// # Errors
     /// A file that cannot be read.
     pub fn take_path(&self, path: &Path) -> Result<()> {
-        let content = fs::read(path).map_err(|error| {
-            anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))
-        })?;
+        let content = fs::read(path).map_err(|error| cannot_read(path, &error))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let is_known = |file: &ProjectFile| {
             file.name == name && fs::read(self.folder.data(&file.name)).is_ok_and(|known| known == content)
@@ -164,7 +162,7 @@ impl Studio {
             let Some(first) = first.map(|file| file.name.clone()) else { return Ok(None) };
             let understanding = &project.understanding;
             let Some(chosen) = &understanding.columns else { return Ok(None) };
-            let table = read_named(&first, &self.folder, &understanding.reading.reading()?)?;
+            let table = read(&first, &self.folder, &understanding.reading.reading()?)?;
             let found = Roles::detect(&table, &understanding.choice())?;
             let roles = [("time", &chosen.time, &found.time), ("record", &chosen.record, &found.record)];
             let by_name = roles.iter().find_map(|(role, chosen, found)| {
@@ -188,29 +186,11 @@ impl Studio {
     /// # Errors
     /// No training file, or files that cannot be used.
     pub fn training_data(&self) -> Result<Arc<Data>> {
-        let (files, understanding) = {
+        let (project, view) = {
             let project = self.project();
-            let files: Vec<ProjectFile> = project.files_for(Use::Training).cloned().collect();
-            (files, project.understanding.clone())
+            (project.clone(), self.view())
         };
-        let view = self.view();
-        match files.as_slice() {
-            [] => bail!("there are no training data: drop a file, or choose one for training"),
-            [one] => match (&view.problem, view.file(one.id)?.problem.is_some()) {
-                (Some(problem), false) => bail!("{problem}"),
-                _ => view.data(one.id),
-            },
-            several => {
-                if let Some(problem) = &view.problem {
-                    bail!("{problem}");
-                }
-                let reading = understanding.reading.reading()?;
-                let read = |file: &ProjectFile| read_named(&file.name, &self.folder, &reading);
-                let tables = several.iter().map(read).collect::<Result<_>>()?;
-                let zero = understanding.reading.zero;
-                Ok(Arc::new(Data::of_tables(tables, &understanding.choice(), zero)?))
-            }
-        }
+        view.training(&project, &self.folder)
     }
 
     /// What may be wrong with the training data: what a fit warns of, and what the diagnosis finds.

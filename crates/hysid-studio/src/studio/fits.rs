@@ -36,7 +36,7 @@ impl Studio {
         let data = self.training_data()?;
         let spec = self.spec(&request, &data)?;
         // What can be refused is refused before anything is stored.
-        Beforehand::of(&data, &spec)?;
+        let beforehand = Beforehand::of(&data, &spec)?;
         let best = self.folder.best_so_far();
         let _ = fs::remove_file(&best);
         let begun = self.change(|project| {
@@ -51,7 +51,7 @@ impl Studio {
         let id = begun.id;
         let file = self.project().files_for(Use::Training).next().map_or(0, |file| file.id);
         let time_limit = begun.request.time_limit;
-        let work = Work { id, request: spec, data, file, time_limit, best };
+        let work = Work { id, request: spec, data, beforehand, file, time_limit, best };
         let (finishing, telling) = (Arc::clone(self), Arc::clone(self));
         let finish = Box::new(move |identified: Identified, data: &Data| {
             finishing.take_model(begun, &identified, data).map(|()| id)
@@ -105,13 +105,18 @@ impl Studio {
             seconds: identified.seconds,
             was_interrupted: false,
         };
+        self.keep(stored)?;
+        let _ = fs::remove_file(self.folder.best_so_far());
+        Ok(())
+    }
+
+    /// Stores a model, with which its fit is no longer unfinished.
+    fn keep(&self, stored: ProjectModel) -> Result<()> {
         self.change(|project| {
             project.unfinished = None;
             project.models.push(stored);
             Ok(())
-        })?;
-        let _ = fs::remove_file(self.folder.best_so_far());
-        Ok(())
+        })
     }
 
     fn write_report(
@@ -163,11 +168,7 @@ impl Studio {
                     seconds: 0.0,
                     was_interrupted: true,
                 };
-                self.change(|project| {
-                    project.unfinished = None;
-                    project.models.push(stored);
-                    Ok(())
-                })?;
+                self.keep(stored)?;
                 state.made = Some(id);
                 state.problem = Some(format!("{words} during this fit; the best model so far was kept"));
             }

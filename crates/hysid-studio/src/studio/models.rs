@@ -11,10 +11,11 @@ use hysid_records::{ColumnChoice, Data};
 use hysid_report::diagnosis::DiagnosedModel;
 
 use super::Studio;
+use crate::folder::cannot_read;
 use crate::judgement::Run;
 use crate::project::ProjectModel;
 use crate::take_away::Lines;
-use crate::view::read_named;
+use crate::view::read;
 
 /// Models that are kept in memory.
 const MOST_MODELS: usize = 200;
@@ -30,9 +31,7 @@ impl Studio {
             return Ok(Arc::clone(known));
         }
         let path = self.model_file(id)?;
-        let text = fs::read_to_string(&path).map_err(|error| {
-            anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error))
-        })?;
+        let text = fs::read_to_string(&path).map_err(|error| cannot_read(&path, &error))?;
         let model = Model::from_json(&text).map_err(|error| anyhow!("{}: {error}", path.display()))?;
         let model = Arc::new(model);
         let mut kept = kept();
@@ -69,8 +68,7 @@ impl Studio {
             anyhow!("this model has no report: the fit was interrupted, or the report could not be written")
         })?;
         let path = self.folder.models(&report);
-        fs::read_to_string(&path)
-            .map_err(|error| anyhow!("{}: cannot be read: {}", path.display(), hysid_files::reason(&error)))
+        fs::read_to_string(&path).map_err(|error| cannot_read(&path, &error))
     }
 
     /// Removes a model.
@@ -103,7 +101,7 @@ impl Studio {
                 (project.model(model)?.clone(), name, project.understanding.reading.clone())
             };
             let fitted = self.model(model)?;
-            let table = read_named(&name, &self.folder, &reading.reading()?)?;
+            let table = read(&name, &self.folder, &reading.reading()?)?;
             // The model knows the names of its columns, whatever is chosen now.
             let record = stored.begun.columns.record.filter(|name| table.column(name).is_some());
             let columns = ColumnChoice { record, ..ColumnChoice::default() };
