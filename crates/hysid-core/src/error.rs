@@ -63,6 +63,9 @@ pub enum Error {
     /// A model that cannot be fitted without the rate of its input.
     #[error("{0} needs the rate of the input: there are no time stamps to compute it from")]
     RateNeeded(&'static str),
+    /// A model that cannot be fitted without the time of each sample.
+    #[error("{0} needs the time of each row, and the data have no time stamps")]
+    TimeNeeded(&'static str),
     /// A sample that a model cannot take.
     #[error(transparent)]
     Sample(#[from] SampleError),

@@ -15,6 +15,8 @@
 //! | [`JilesAtherton`](jiles_atherton::JilesAtherton) | differential equation of the magnetisation | magnetisation |
 //! | [`Lugre`](lugre::Lugre) | friction of bristles that bend before they slip | deflection |
 //! | [`DuhemNn`](duhem_nn::DuhemNn) | recurrent network whose states move with the input and with time | states, plays |
+//! | [`HystereticOscillator`](hysteretic_oscillator::HystereticOscillator) | masses on springs, dampers and hysteretic elements | motion, states, stops |
+//! | [`HystereticStateSpace`](hysteretic_state_space::HystereticStateSpace) | a linear system with hysteretic elements | motion, states, stops |
 //!
 //! Each module gives the equations, the source and the properties of its law. The parameters have the field's
 //! symbols. The state is separate from the law. Laws are fitted to the same records as networks, and
@@ -24,6 +26,10 @@ pub mod bouc_wen;
 pub mod duhem_nn;
 pub mod facts;
 pub mod generalized_prandtl_ishlinskii;
+mod gram_of_rows;
+pub mod hysteretic_dynamics;
+pub mod hysteretic_oscillator;
+pub mod hysteretic_state_space;
 pub mod interval;
 pub mod jiles_atherton;
 pub mod lugre;
@@ -38,6 +44,7 @@ pub mod preisach;
 pub mod properties;
 pub mod rate_dependent_prandtl_ishlinskii;
 pub mod series;
+mod tanh_layer;
 #[cfg(test)]
 mod test_paths;
 pub mod thresholds;
@@ -395,6 +402,8 @@ macro_rules! for_each_law {
             jiles_atherton::JilesAtherton,
             lugre::Lugre,
             duhem_nn::DuhemNn,
+            hysteretic_oscillator::HystereticOscillator,
+            hysteretic_state_space::HystereticStateSpace,
         }
     };
 }
@@ -402,10 +411,14 @@ macro_rules! for_each_law {
 for_each_law!(any_of);
 
 impl ClassicalState {
-    /// From now on the arithmetic is that which every machine has: only one law uses another.
+    /// From now on the arithmetic is that which every machine has: only some laws use another.
     pub(crate) fn become_portable(&mut self) {
-        if let Self::DuhemNn(memory) = self {
-            memory.become_portable();
+        match self {
+            Self::DuhemNn(memory) => memory.become_portable(),
+            Self::HystereticOscillator(motion) | Self::HystereticStateSpace(motion) => {
+                motion.become_portable()
+            }
+            _ => {}
         }
     }
 }

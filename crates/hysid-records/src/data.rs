@@ -220,7 +220,9 @@ pub fn explained(file: &str, line: Option<u64>, error: hysid_core::Error, roles:
 fn of_options(error: hysid_core::Error) -> anyhow::Error {
     match error {
         hysid_core::Error::SeveralInputs { .. } => Usage(format!("{error} with --input")).into(),
-        hysid_core::Error::RateNeeded(_) => Usage(format!("{error} (name a time column with --time)")).into(),
+        hysid_core::Error::RateNeeded(_) | hysid_core::Error::TimeNeeded(_) => {
+            Usage(format!("{error} (name a time column with --time)")).into()
+        }
         hysid_core::Error::Option(_)
         | hysid_core::Error::Parts(_)
         | hysid_core::Error::UnknownName { .. }

@@ -9,6 +9,8 @@ pub struct Facts {
     pub summary: &'static str,
     /// Whether the rate of the input is in its equations.
     pub rate: Rate,
+    /// True if it needs the time between samples.
+    pub needs_time: bool,
     /// The origin of its input.
     pub origin: Origin,
     /// How its parameters are found.
@@ -36,6 +38,7 @@ impl Facts {
             name,
             summary,
             rate: Rate::Ignored,
+            needs_time: false,
             origin: Origin::OfData,
             identification: Identification::LeastSquares,
             options,

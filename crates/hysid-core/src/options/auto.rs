@@ -43,6 +43,9 @@ pub struct AutoOptions {
     pub hidden: Option<usize>,
     /// Plays, intervals of each axis of a Preisach plane, or random stops.
     pub operators: Option<usize>,
+    /// Modes of vibration of hysteretic oscillators and state space models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<usize>,
     /// Epochs of a search.
     pub epochs: Option<usize>,
     /// Whether the input is companded, `asinh(x / s)`.
@@ -78,6 +81,7 @@ impl Default for AutoOptions {
             stops: None,
             hidden: None,
             operators: None,
+            modes: None,
             epochs: None,
             companding: None,
             history: None,

@@ -47,6 +47,7 @@ pub struct NamedOptions {
     pub decay: Option<f64>,
     pub operators: Option<usize>,
     pub states: Option<usize>,
+    pub modes: Option<usize>,
     pub thresholds: Option<Vec<f64>>,
     pub sign: Option<Sign>,
     pub dead_zones: Option<usize>,
@@ -84,7 +85,8 @@ impl NamedOptions {
             let asked = match option {
                 "hidden" => self.hidden,
                 "operators" => self.operators,
-                _ => unreachable!("a law limits the number of its neurons or operators"),
+                "states" => self.states,
+                _ => unreachable!("a law limits the number of its neurons, operators or states"),
             };
             let Some(asked) = asked else { continue };
             let needed = match asked {
@@ -116,7 +118,7 @@ impl NamedOptions {
             (Some(_), mut alone) => {
                 match &mut alone {
                     FitSpec::Network(options) => options.starts = 1,
-                    FitSpec::Classical(options) if options.model == ClassicalModel::DuhemNn => {
+                    FitSpec::Classical(options) if options.model.is_random() => {
                         options.starts = Some(1);
                     }
                     FitSpec::Classical(_) | FitSpec::Auto(_) => {}
@@ -156,6 +158,7 @@ impl NamedOptions {
             stops: self.stops,
             hidden: self.hidden,
             operators: self.operators,
+            modes: self.modes,
             epochs: self.epochs,
             companding: self.companding.map(|share| share > 0.0),
             history: self.history,
@@ -208,6 +211,7 @@ impl NamedOptions {
             differential_form: self.differential_form.unwrap_or(defaults.differential_form),
             hidden: self.hidden,
             states: self.states,
+            modes: self.modes,
             deterioration: self.no_deterioration.map(|none| !none),
             rate,
             shaping: self.shaping(),

@@ -64,6 +64,11 @@ impl ClassicalModel {
         self.facts().rate == Rate::Needed
     }
 
+    /// True if the model always needs the time between samples.
+    pub fn needs_time(self) -> bool {
+        self.facts().needs_time
+    }
+
     /// True if it takes more than one input.
     pub fn takes_further_inputs(self) -> bool {
         self == Self::RandomStops
@@ -71,7 +76,10 @@ impl ClassicalModel {
 
     /// True if another seed gives another model of much the same error: medians of several are then better.
     pub fn is_random(self) -> bool {
-        matches!(self, Self::RandomStops | Self::DuhemNn)
+        matches!(
+            self,
+            Self::RandomStops | Self::DuhemNn | Self::HystereticOscillator | Self::HystereticStateSpace
+        )
     }
 
     /// True if its parameters are found by a search from several starts; otherwise by linear least squares.
@@ -112,9 +120,12 @@ pub struct ClassicalOptions {
     pub differential_form: bool,
     /// Tanh neurons of a neuro-Madelung model, of a Duhem neural network or beside random stops.
     pub hidden: Option<usize>,
-    /// States of a Duhem neural network; its own default if `None`.
+    /// States of a Duhem neural network or of a hysteretic element; its own default if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub states: Option<usize>,
+    /// Modes of vibration of a hysteretic oscillator or state space model; its own default if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<usize>,
     /// Whether random stops deteriorate; chosen by cross-validation if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deterioration: Option<bool>,
@@ -162,6 +173,7 @@ impl ClassicalOptions {
             differential_form: false,
             hidden: None,
             states: None,
+            modes: None,
             deterioration: None,
             rate: None,
             shaping: InputOptions::default(),

@@ -63,7 +63,7 @@ impl ModelName {
     /// Checks that the model can be fitted to the data.
     ///
     /// # Errors
-    /// Several inputs for a model that takes one, or no rate for a law that needs it.
+    /// Several inputs for a model that takes one, or no rate or time for a law that needs it.
     pub fn check_data(self, data: &Dataset, rate: Option<RateMethod>) -> Result<()> {
         let found = data.names().inputs.len();
         if found > 1 && !self.takes_further_inputs() {
@@ -72,6 +72,9 @@ impl ModelName {
         match self {
             Self::Classical(rival) if rival.needs_rate() && rate.is_none() => {
                 Err(Error::RateNeeded(rival.name()))
+            }
+            Self::Classical(rival) if rival.needs_time() && !data.has_time() => {
+                Err(Error::TimeNeeded(rival.name()))
             }
             _ => Ok(()),
         }

@@ -6,6 +6,7 @@ use serde_json::Value;
 use crate::data::initial_state::InitialState;
 use crate::error::{OptionError, Result};
 use crate::law::duhem_nn::MOST_STATES;
+use crate::law::hysteretic_dynamics::MOST_PARTS;
 use crate::network::Family;
 use crate::options::ModelName;
 use crate::options::auto::MOST_MEMBERS;
@@ -90,7 +91,7 @@ const PENALTY: Values = Values::Number(*PENALTIES.start(), *PENALTIES.end());
 const SHARE: Values = Values::ZeroOr(*SHARES.start(), *SHARES.end());
 
 /// Every option, in the order in which it is listed.
-pub const OPTIONS: [FitOption; 30] = [
+pub const OPTIONS: [FitOption; 31] = [
     FitOption {
         name: "model",
         group: Model,
@@ -119,9 +120,10 @@ pub const OPTIONS: [FitOption; 30] = [
     FitOption {
         name: "hidden",
         group: Model,
-        meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100) or of random-stops",
+        meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each \
+                  hysteretic element (at most 60)",
         values: NEURONS,
-        default: "10; neuro-madelung and duhem-nn 8, random-stops none",
+        default: "10; neuro-madelung, duhem-nn and hysteretic elements 8, random-stops none",
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
     },
     FitOption {
@@ -267,20 +269,29 @@ pub const OPTIONS: [FitOption; 30] = [
     FitOption {
         name: "operators",
         group: Classical,
-        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, or stops \
-                  of duhem-nn (at most 100, 0 for none)",
+        meaning: "Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of \
+                  duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none)",
         values: Values::Count(0, 1000),
         default: "10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for \
-                  random-stops, 6 for duhem-nn, otherwise 30",
+                  random-stops, 6 for duhem-nn, none for hysteretic elements, otherwise 30",
         used_by: of_auto,
     },
     FitOption {
         name: "states",
         group: Classical,
-        meaning: "States of duhem-nn, which move with the input and with time",
+        meaning: "States of duhem-nn, which move with the input and with time, or of each hysteretic element of \
+                  hysteretic-oscillator and hysteretic-state-space, which move along its path (at most 10)",
         values: Values::Count(1, MOST_STATES),
-        default: "3",
+        default: "3; 2 for hysteretic elements",
         used_by: of_none,
+    },
+    FitOption {
+        name: "modes",
+        group: Classical,
+        meaning: "Modes of vibration of hysteretic-oscillator and hysteretic-state-space",
+        values: Values::Count(1, MOST_PARTS),
+        default: "1; 2 for hysteretic-state-space",
+        used_by: of_auto,
     },
     FitOption {
         name: "thresholds",

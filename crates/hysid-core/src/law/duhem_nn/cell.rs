@@ -13,12 +13,10 @@
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
+use crate::law::tanh_layer::{layer, product};
 use crate::network::tanh::tanh;
 use crate::operator::{play, stop};
 use crate::simd::multiply_add;
-
-/// Neurons whose sums are formed together.
-pub(super) const LANES: usize = 8;
 
 /// The parameters of the cell; the symbols are those of the [module page](super).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -231,55 +229,4 @@ impl Cell {
     pub(super) fn output<S: Simd>(&self, memory: &Memory) -> f64 {
         product::<S>(&self.output, &memory.terms)
     }
-}
-
-/// `tanh(b + A inputs)`, from the weights of each input in turn; the first input is the constant.
-#[inline(always)]
-fn layer<S: Simd>(weights: &[f64], inputs: &[f64], neurons: &mut [f64]) {
-    let count = neurons.len();
-    let mut first = 0;
-    while first < count {
-        if count >= LANES {
-            // The last group overlaps the one before: its neurons are computed twice with the same result.
-            let group = first.min(count - LANES);
-            let mut sums = [0.0; LANES];
-            sums.copy_from_slice(&weights[group..group + LANES]);
-            for (k, &input) in inputs.iter().enumerate().skip(1) {
-                let column = &weights[k * count + group..][..LANES];
-                for l in 0..LANES {
-                    sums[l] = multiply_add::<S>(column[l], input, sums[l]);
-                }
-            }
-            for (neuron, sum) in neurons[group..group + LANES].iter_mut().zip(sums) {
-                *neuron = tanh::<S>(sum);
-            }
-            first += LANES;
-        } else {
-            let mut sum = weights[first];
-            for (k, &input) in inputs.iter().enumerate().skip(1) {
-                sum = multiply_add::<S>(weights[k * count + first], input, sum);
-            }
-            neurons[first] = tanh::<S>(sum);
-            first += 1;
-        }
-    }
-}
-
-/// Scalar product, in partial sums that become SIMD code.
-#[inline(always)]
-pub(super) fn product<S: Simd>(a: &[f64], b: &[f64]) -> f64 {
-    let (a, a_rest) = a.as_chunks::<LANES>();
-    let (b, b_rest) = b.as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.iter().zip(b) {
-        for l in 0..LANES {
-            sums[l] = multiply_add::<S>(a[l], b[l], sums[l]);
-        }
-    }
-    let mut rest = 0.0;
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        rest = multiply_add::<S>(*a, *b, rest);
-    }
-    let [p, q, r, s, t, u, v, w] = sums;
-    ((p + t) + (q + u)) + ((r + v) + (s + w)) + rest
 }

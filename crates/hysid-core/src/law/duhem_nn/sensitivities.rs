@@ -11,14 +11,13 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::cell::{Cell, Input, LANES, Memory, product};
+use super::cell::{Cell, Input, Memory};
 use super::parameters::Layout;
-use crate::linear_algebra::{Batch, Gram};
-use crate::simd::{self, multiply_add};
+use crate::law::gram_of_rows::{GramOfRows, TakeRows};
+use crate::law::tanh_layer::{LANES, add_multiples, product};
+use crate::linear_algebra::Gram;
+use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
-
-/// Rows that are gathered before they are added to a batch.
-const ROWS: usize = 8;
 
 /// A cell and the records that it is run over.
 #[derive(Debug, Clone, Copy)]
@@ -40,13 +39,7 @@ impl Run<'_> {
     /// wanted, the Jacobian. `None` once stopped.
     pub fn gram(self) -> Option<Gram> {
         let count = self.columns();
-        let rows = GramOfRows {
-            gram: Gram::new(count),
-            batch: Batch::new(count),
-            waiting: vec![[0.0; ROWS]; count],
-            count: 0,
-            pace: Pace::new(self.stop),
-        };
+        let rows = GramOfRows::new(count, self.stop);
         simd::run(Sweep { run: self, rows }).map(|rows| rows.gram)
     }
 
@@ -59,64 +52,6 @@ impl Run<'_> {
         let shape = self.cell.shape();
         let jacobian = if self.with_jacobian { Layout::new(shape).count() } else { 0 };
         shape.terms() + 1 + jacobian
-    }
-}
-
-/// Takes the columns of one row after the other.
-trait TakeRows {
-    fn take<S: Simd>(&mut self, simd: S, row: &[f64]);
-
-    /// After the last row.
-    fn end<S: Simd>(&mut self, simd: S);
-}
-
-impl TakeRows for Vec<Vec<f64>> {
-    #[inline(always)]
-    fn take<S: Simd>(&mut self, _: S, row: &[f64]) {
-        self.push(row.to_vec());
-    }
-
-    #[inline(always)]
-    fn end<S: Simd>(&mut self, _: S) {}
-}
-
-/// Sums rows in a Gram matrix.
-struct GramOfRows<'a> {
-    gram: Gram,
-    batch: Batch,
-    /// Some rows, by columns: a batch is filled in whole cache lines.
-    waiting: Vec<[f64; ROWS]>,
-    count: usize,
-    pace: Pace<'a>,
-}
-
-impl TakeRows for GramOfRows<'_> {
-    #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, row: &[f64]) {
-        for (column, &value) in self.waiting.iter_mut().zip(row) {
-            column[self.count] = value;
-        }
-        self.count += 1;
-        if self.count == ROWS {
-            self.flush(simd);
-        }
-    }
-
-    #[inline(always)]
-    fn end<S: Simd>(&mut self, simd: S) {
-        self.flush(simd);
-        self.gram.add(simd, &mut self.batch, &mut self.pace);
-    }
-}
-
-impl GramOfRows<'_> {
-    #[inline(always)]
-    fn flush<S: Simd>(&mut self, simd: S) {
-        if self.batch.free() < self.count {
-            self.gram.add(simd, &mut self.batch, &mut self.pace);
-        }
-        self.batch.append(self.waiting.iter(), self.count);
-        self.count = 0;
     }
 }
 
@@ -340,21 +275,5 @@ fn carry<S: Simd>(cell: &Cell, back: &[f64], carried: &mut [f64]) {
     let weights = &cell.hidden[cell.shape().first_state() * back.len()..];
     for (carried, column) in carried.iter_mut().zip(weights.chunks_exact(back.len())) {
         *carried = product::<S>(back, column);
-    }
-}
-
-/// Adds `Σ_l factor_l row_l`, with rows as long as `to`.
-#[inline(always)]
-fn add_multiples<S: Simd>(to: &mut [f64], factors: &[f64], rows: &[f64]) {
-    let width = to.len();
-    for (group, to) in to.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-        let mut sums = *to;
-        for (l, &factor) in factors.iter().enumerate() {
-            let row = &rows[l * width + LANES * group..][..LANES];
-            for k in 0..LANES {
-                sums[k] = multiply_add::<S>(factor, row[k], sums[k]);
-            }
-        }
-        *to = sums;
     }
 }

@@ -1,0 +1,297 @@
+//! Vibrating modes with hysteretic elements between them: what a hysteretic oscillator and a hysteretic state space
+//! model have in common.
+//!
+//! ```text
+//! q_i'' + 2 ζ_i ω_i q_i' + ω_i² q_i = ω_i² f_i,   f_i = b_i u - Σ_e g_ei r_e             theory.md (15.1)
+//! ζ_e = Σ_i (D_ei q_i + V_ei p_i) + U_e u,   ν_e = Σ_i D_ei p_i,   p_i = q_i'/ω_i        theory.md (15.2)
+//! y = y_0 + σ [d u + Σ_i (q_i + k_i p_i) + Σ_e m_e r_e]                                  theory.md (15.5)
+//! ```
+//!
+//! `u` is the input divided by its scale, `q_i` the displacement of a mode and `r_e` the force of an [`Element`],
+//! which depends on the path of `ζ_e`. The numbers of [`Mode`] and [`Element`] are these coefficients.
+//!
+//! A step follows the modes exactly under forces that go along straight lines, and finds the force `r_e` at its end
+//! from the equation in which `ζ_e` depends on it (theory.md (15.11)). A row of data is divided into equal steps no
+//! longer than [`Dynamics::longest_step`], between which the input follows its [`Hold`].
+//!
+//! **The output is bounded** for a bounded input, any parameters and any time steps (theory.md (15.12)): the forces
+//! of elements are bounded by their weights, the equation for `r_e` is never left with a value beyond that bound, and
+//! a mode that is followed exactly under a bounded force cannot leave `|q| ≤ F ∫|S|`, which is finite because `ω` and
+//! `ζ` are positive.
+
+mod element;
+mod hold;
+mod parameters;
+mod propagation;
+mod sensitivities;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, LARGEST_VALUE, Result};
+use crate::law::interval::Interval;
+use crate::law::{Dimension, Parameter, Sample};
+use crate::simd;
+
+pub use element::Element;
+pub use hold::Hold;
+pub use parameters::{Form, Layout};
+pub use sensitivities::{Drive, Run};
+pub use trial::Motion;
+
+/// Largest number of modes, of elements and of states of an element.
+pub const MOST_PARTS: usize = 10;
+
+/// Largest number of tanh neurons, and of stops, of an element.
+pub const MOST_NEURONS: usize = 60;
+
+/// Scaled inputs are limited to this magnitude.
+const LARGEST_INPUT: f64 = 1e6;
+
+/// Largest magnitude of a weight.
+pub const LARGEST_WEIGHT: f64 = 1e6;
+
+/// Bounds of the damping ratio. From 1 on a mode does not vibrate but creeps.
+pub const DAMPING_RATIOS: (f64, f64) = (1e-5, 1e3);
+
+/// Steps that a row of data is divided into at most; after a longer gap they are longer.
+pub(crate) const MOST_STEPS: usize = 64;
+
+/// Steps of a quasi-static change of the input, such as that of a lead-in.
+pub(crate) const STATIC_STEPS: usize = 16;
+
+/// Options of a fit of a model made of modes and elements.
+pub(crate) const FIT_OPTIONS: &[&str] = &["modes", "operators", "hidden", "states", "starts", "epochs"];
+
+/// Smallest and largest values of such options.
+pub(crate) const STATE_LIMITS: &[(&str, usize, usize)] =
+    &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 1, MOST_PARTS)];
+
+/// A mode of vibration.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mode {
+    /// `ω > 0`: natural angular frequency, in radians per unit of time.
+    pub frequency: f64,
+    /// `ζ > 0`: damping ratio.
+    pub damping: f64,
+    /// `b`: displacement at rest under a unit of scaled input.
+    pub gain: f64,
+    /// `k`: share of its velocity `p` in the output.
+    pub velocity_in_output: f64,
+}
+
+/// Numbers of the parts of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// Stops.
+    pub stops: usize,
+    /// States that move along the path of the displacement.
+    pub states: usize,
+    /// Tanh neurons.
+    pub neurons: usize,
+}
+
+impl Shape {
+    /// Number of inputs of the tanh layer, the constant included.
+    pub fn inputs(self) -> usize {
+        3 + self.stops + self.states
+    }
+
+    fn first_state(self) -> usize {
+        3 + self.stops
+    }
+}
+
+/// Modes and elements, in the user's units of input, output and time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Dynamics {
+    /// Divisor of the input, in its unit.
+    pub input_scale: f64,
+    /// `y_0`: output at rest without input, in its unit.
+    pub output_offset: f64,
+    /// `σ`: what a displacement of 1 is, in the unit of the output.
+    pub output_scale: f64,
+    /// `d`: share of the scaled input in the output.
+    pub direct: f64,
+    /// How the input goes from sample to sample.
+    pub hold: Hold,
+    /// Longest step of the integration, in the unit of time.
+    pub longest_step: f64,
+    /// True if a record begins at rest under its first input, false if at rest without input.
+    pub begins_under_input: bool,
+    /// The modes.
+    pub modes: Vec<Mode>,
+    /// The hysteretic elements.
+    pub elements: Vec<Element>,
+}
+
+/// One sample of a model.
+struct Row<'a> {
+    dynamics: &'a Dynamics,
+    motion: &'a mut Motion,
+    sample: Sample,
+}
+
+impl WithSimd for Row<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { dynamics, motion, sample } = self;
+        motion.row::<S>(dynamics, sample.x, sample.step);
+        motion.output::<S>(dynamics)
+    }
+}
+
+impl Dynamics {
+    /// At rest before the first sample.
+    pub(crate) fn virgin(&self) -> Motion {
+        Motion::virgin(self)
+    }
+
+    /// Goes to the next sample and returns the output there, in its unit.
+    pub(crate) fn step(&self, motion: &mut Motion, sample: Sample) -> f64 {
+        let is_portable = motion.is_portable;
+        let row = Row { dynamics: self, motion, sample };
+        let y = if is_portable { row.with_simd(pulp::Scalar::new()) } else { simd::run(row) };
+        self.output_offset + self.output_scale * y
+    }
+
+    /// The input in scaled units.
+    #[inline(always)]
+    fn scaled(&self, x: f64) -> f64 {
+        (x / self.input_scale).clamp(-LARGEST_INPUT, LARGEST_INPUT)
+    }
+
+    /// Number of equal steps that a row is divided into.
+    #[inline(always)]
+    fn steps_of(&self, row: f64) -> usize {
+        (row / self.longest_step - 1e-6).ceil().clamp(1.0, MOST_STEPS as f64) as usize
+    }
+
+    /// The parameters, with their symbols, in scaled units where they have no unit of their own.
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        let any = (-LARGEST_WEIGHT, LARGEST_WEIGHT);
+        let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
+        let per_time = Dimension { input: 0, output: 0, time: -1 };
+        let number =
+            |symbol: String, meaning, value| Parameter::new(symbol, meaning, value, any, Dimension::NONE);
+        let offset = (-LARGEST_VALUE, LARGEST_VALUE);
+        let mut all = vec![
+            Parameter::new("y0", "output at rest", self.output_offset, offset, Dimension::OUTPUT),
+            number("d".into(), "share of the input in the output", self.direct),
+        ];
+        for (i, mode) in (1..).zip(&self.modes) {
+            let frequency = Parameter::new(
+                format!("ω_{i}"),
+                "natural angular frequency of a mode",
+                mode.frequency,
+                positive,
+                per_time,
+            );
+            let damping = Parameter::new(
+                format!("ζ_{i}"),
+                "damping ratio of a mode",
+                mode.damping,
+                DAMPING_RATIOS,
+                Dimension::NONE,
+            );
+            all.extend([frequency, damping]);
+            all.push(number(format!("b_{i}"), "displacement of a mode under a unit input", mode.gain));
+            all.push(number(
+                format!("k_{i}"),
+                "share of its velocity in the output",
+                mode.velocity_in_output,
+            ));
+        }
+        for (e, element) in (1..).zip(&self.elements) {
+            let rows: [(&str, &'static str, &[f64]); 9] = [
+                ("D", "share of a mode in the displacement of an element", &element.of_displacements),
+                ("V", "share of its velocity in the displacement of an element", &element.of_velocities),
+                ("g", "displacement of a mode under a unit force of an element", &element.compliances),
+                ("A", "weight of a tanh neuron", &element.layer),
+                ("W↑", "weight of a target where the displacement rises", &element.rising),
+                ("W↓", "weight of a target where the displacement falls", &element.falling),
+                ("s", "state before the first sample", &element.initial),
+                ("v", "weight of the force of an element", &element.force),
+                ("U", "share of the input in the displacement of an element", &[element.of_input]),
+            ];
+            for (symbol, meaning, values) in rows {
+                let numbered = (1..).zip(values);
+                all.extend(numbered.map(|(k, &value)| number(format!("{symbol}_{e},{k}"), meaning, value)));
+            }
+            all.push(number(format!("m_{e}"), "share of a force in the output", element.in_output));
+            let of_path = [
+                ("ρ", "threshold of a stop", &element.thresholds),
+                ("c", "leak along the path", &element.path_leaks),
+            ];
+            for (symbol, meaning, values) in of_path {
+                let numbered = (1..).zip(values);
+                let positive = (f64::MIN_POSITIVE, LARGEST_WEIGHT);
+                all.extend(numbered.map(|(k, &value)| {
+                    Parameter::new(format!("{symbol}_{e},{k}"), meaning, value, positive, Dimension::NONE)
+                }));
+            }
+        }
+        all
+    }
+
+    /// Rejects parameters that are out of bounds, and parts that do not go together.
+    pub(crate) fn check(&self, law: &'static str) -> Result<()> {
+        let refuse = |what: &str| Err(Error::Parts(format!("{law}: {what}")));
+        let is_positive = |scale: f64| scale > 0.0 && scale <= LARGEST_VALUE;
+        if ![self.input_scale, self.output_scale, self.longest_step].into_iter().all(is_positive) {
+            return refuse("a scale or its longest step is not positive");
+        }
+        if !(1..=MOST_PARTS).contains(&self.modes.len()) || self.elements.len() > MOST_PARTS {
+            return refuse("there are too many modes or elements, or none");
+        }
+        let is_sound = |element: &Element| {
+            let shape = element.shape();
+            element.is_consistent(shape, self.modes.len())
+                && shape.states <= MOST_PARTS
+                && shape.neurons.max(shape.stops) <= MOST_NEURONS
+        };
+        if !self.elements.iter().all(is_sound) {
+            return refuse("the parts of an element have lengths that do not go together");
+        }
+        self.parameters().iter().try_for_each(|parameter| parameter.check(law))
+    }
+
+    /// An interval that contains every output for inputs within an interval (theory.md (15.12)).
+    pub(crate) fn output_bound(&self, x: Interval) -> Interval {
+        let u = self.scaled(x.0).abs().max(self.scaled(x.1).abs());
+        let between = self.hold.largest() * u;
+        let forces: Vec<f64> = self.elements.iter().map(|element| element.bounds().0).collect();
+        let mut bound = self.direct.abs() * u;
+        for (element, force) in self.elements.iter().zip(&forces) {
+            bound += element.in_output.abs() * force;
+        }
+        for (i, mode) in self.modes.iter().enumerate() {
+            let of_elements = self.elements.iter().zip(&forces);
+            let force = mode.gain.abs() * between
+                + of_elements.map(|(element, force)| element.compliances[i].abs() * force).sum::<f64>();
+            let (displacement, velocity) = largest_response(mode.damping);
+            bound += force * (displacement + mode.velocity_in_output.abs() * velocity);
+        }
+        Interval::about(self.output_offset, self.output_scale * bound)
+    }
+}
+
+/// `∫|S|` and `∫|S'|`: the largest displacement and velocity of a mode under a force of a magnitude up to 1.
+fn largest_response(damping: f64) -> (f64, f64) {
+    if damping >= 1.0 {
+        // S does not change its sign, rises once and falls once, to no more than 1/(2 ζ).
+        return (1.0, 1.0 / damping);
+    }
+    let w = (1.0 - damping * damping).sqrt();
+    let decay = (-std::f64::consts::PI * damping / w).exp();
+    // Peaks of S, each smaller than the one before by the same ratio.
+    let peak = (-damping / w * w.atan2(damping)).exp();
+    ((1.0 + decay) / (1.0 - decay), 2.0 * peak / (1.0 - decay))
+}

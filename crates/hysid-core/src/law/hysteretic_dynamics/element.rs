@@ -1,0 +1,233 @@
+//! A hysteretic element: a force that depends on the path of a displacement.
+//!
+//! ```text
+//! e_i   = max(-ρ_i, min(ρ_i, e_i,0 + ζ - ζ_0))                                 theory.md (15.6)
+//! h     = tanh(A [1, ζ, ν, e, s])                                              theory.md (15.7)
+//! T     = W↑ h  where ζ rises,  W↓ h  where it falls                           theory.md (15.8)
+//! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   x = c |ζ - ζ_0|                         theory.md (15.9)
+//! a = e^-x,   w_1 = 1 - (1 - a)/x,   w_0 = 1 - a - w_1
+//! r     = v [e, s, h]                                                          theory.md (15.10)
+//! ```
+//!
+//! `ζ` is the displacement of the element and `ν` its velocity, `e` stops, `s` states, `h` tanh neurons and `r` the
+//! force; index 0 is the beginning of the step. (15.9) integrates `ds/d|ζ| = c (T - s)` to second order: `T_1` is
+//! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
+//! to 1, so a state stays among its targets whatever the step.
+
+use pulp::Simd;
+use serde::{Deserialize, Serialize};
+
+use super::Shape;
+use crate::law::tanh_layer::{layer, product};
+use crate::network::tanh::tanh;
+use crate::simd::multiply_add;
+
+/// The parameters of an element; symbols as on the [module page](self) and in `dynamics`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Element {
+    /// How the displacement of the element follows from the displacement of each mode.
+    pub of_displacements: Vec<f64>,
+    /// How it follows from the velocity of each mode.
+    pub of_velocities: Vec<f64>,
+    /// How it follows from the input.
+    pub of_input: f64,
+    /// Displacement of each mode at rest under a unit force of the element.
+    pub compliances: Vec<f64>,
+    /// Share of the force in the output.
+    pub in_output: f64,
+    /// `ρ > 0`: thresholds of the stops.
+    pub thresholds: Vec<f64>,
+    /// `A`: for each input of the layer (1, `ζ`, `ν`, stops, states) its weight in every neuron.
+    pub layer: Vec<f64>,
+    /// `W↑`: a row of weights of the neurons for each state.
+    pub rising: Vec<f64>,
+    /// `W↓`, in the same form.
+    pub falling: Vec<f64>,
+    /// `c > 0` of each state: its leak along the path.
+    pub path_leaks: Vec<f64>,
+    /// States before the first sample.
+    pub initial: Vec<f64>,
+    /// `v`: weights of stops, states and neurons in the force.
+    pub force: Vec<f64>,
+}
+
+impl Element {
+    pub(super) fn is_consistent(&self, shape: Shape, modes: usize) -> bool {
+        let Shape { stops, states, neurons } = shape;
+        neurons > 0
+            && self.of_displacements.len() == modes
+            && self.of_velocities.len() == modes
+            && self.compliances.len() == modes
+            && self.thresholds.len() == stops
+            && self.layer.len() == shape.inputs() * neurons
+            && self.rising.len() == states * neurons
+            && self.falling.len() == states * neurons
+            && self.path_leaks.len() == states
+            && self.initial.len() == states
+            && self.force.len() == stops + states + neurons
+    }
+
+    pub(super) fn shape(&self) -> Shape {
+        let (stops, states) = (self.thresholds.len(), self.path_leaks.len());
+        Shape { stops, states, neurons: self.force.len().saturating_sub(stops + states) }
+    }
+
+    /// Bound of the magnitude of the force, and of each state: a state is an average of its past and its targets, and
+    /// a target is no larger than the sum of its weights.
+    pub(super) fn bounds(&self) -> (f64, Vec<f64>) {
+        let Shape { stops, states, neurons } = self.shape();
+        let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();
+        let of_state = |i: usize| {
+            let row = i * neurons..(i + 1) * neurons;
+            self.initial[i].abs().max(size(&self.rising[row.clone()])).max(size(&self.falling[row]))
+        };
+        let of_states: Vec<f64> = (0..states).map(of_state).collect();
+        let largest =
+            self.thresholds.iter().chain(&of_states).copied().chain(std::iter::repeat_n(1.0, neurons));
+        let force = self.force.iter().zip(largest).map(|(weight, bound)| weight.abs() * bound).sum();
+        debug_assert_eq!(self.force.len(), stops + states + neurons);
+        (force, of_states)
+    }
+}
+
+/// An element at a point of its path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    /// `1, ζ, ν, e, s`.
+    pub inputs: Vec<f64>,
+    pub neurons: Vec<f64>,
+    pub force: f64,
+}
+
+/// A way from one place to another, with what its derivatives need.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Way {
+    pub to: Place,
+    /// The inputs of the layer for `T_1`, and the neurons there.
+    pub inputs_ahead: Vec<f64>,
+    pub neurons_ahead: Vec<f64>,
+    pub targets: Vec<f64>,
+    pub targets_ahead: Vec<f64>,
+    /// `x`, `a`, `w_0` and `w_1` of each state.
+    pub weights: Vec<StateWeights>,
+    /// `ζ - ζ_0`.
+    pub moved: f64,
+    /// Of each stop that ends at its threshold its elongation, otherwise 0.
+    pub at_threshold: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct StateWeights {
+    pub travel: f64,
+    pub kept: f64,
+    pub first: f64,
+    pub last: f64,
+}
+
+/// Travel below which the mean decay is that of a straight line, to rounding.
+const LEAST_TRAVEL: f64 = 1e-8;
+
+impl StateWeights {
+    #[inline(always)]
+    fn of<S: Simd>(travel: f64) -> Self {
+        // 1 - e^-x = 2 t/(1 + t) with t = tanh(x/2), which has no cancellation.
+        let t = tanh::<S>(0.5 * travel);
+        let left = 2.0 * t / (1.0 + t);
+        let mean = if travel > LEAST_TRAVEL { left / travel } else { 1.0 - 0.5 * travel };
+        let kept = 1.0 - left;
+        Self { travel, kept, first: (mean - kept).max(0.0), last: 1.0 - mean }
+    }
+
+    /// Derivative of `first` and of `last` by the travel; that of `kept` is `-kept`.
+    #[inline(always)]
+    pub fn slopes(self) -> (f64, f64) {
+        let mean = 1.0 - self.last;
+        let slope =
+            if self.travel > 1e-4 { (self.kept - mean) / self.travel } else { self.travel / 3.0 - 0.5 };
+        (slope + self.kept, -slope)
+    }
+}
+
+impl Place {
+    /// Where an element is before the first sample, without its force.
+    pub fn virgin(element: &Element) -> Self {
+        let shape = element.shape();
+        let mut place =
+            Self { inputs: vec![0.0; shape.inputs()], neurons: vec![0.0; shape.neurons], force: 0.0 };
+        place.inputs[0] = 1.0;
+        place.inputs[shape.first_state()..].copy_from_slice(&element.initial);
+        place
+    }
+
+    /// Neurons and force from the inputs of the layer.
+    #[inline(always)]
+    pub fn finish<S: Simd>(&mut self, element: &Element) {
+        layer::<S>(&element.layer, &self.inputs, &mut self.neurons);
+        let (of_memory, of_neurons) = element.force.split_at(self.inputs.len() - 3);
+        self.force = product::<S>(of_memory, &self.inputs[3..]) + product::<S>(of_neurons, &self.neurons);
+    }
+
+    pub fn copy_from(&mut self, other: &Self) {
+        self.inputs.copy_from_slice(&other.inputs);
+        self.neurons.copy_from_slice(&other.neurons);
+        self.force = other.force;
+    }
+}
+
+impl Way {
+    pub fn new(element: &Element) -> Self {
+        let shape = element.shape();
+        let to = Place { inputs: vec![0.0; shape.inputs()], neurons: vec![0.0; shape.neurons], force: 0.0 };
+        Self {
+            inputs_ahead: to.inputs.clone(),
+            neurons_ahead: to.neurons.clone(),
+            targets: vec![0.0; shape.states],
+            targets_ahead: vec![0.0; shape.states],
+            weights: vec![StateWeights::default(); shape.states],
+            moved: 0.0,
+            at_threshold: vec![0.0; shape.stops],
+            to,
+        }
+    }
+
+    /// The weights of the targets in the direction of this way.
+    #[inline(always)]
+    pub fn targets_of<'e>(&self, element: &'e Element) -> &'e [f64] {
+        if self.moved < 0.0 { &element.falling } else { &element.rising }
+    }
+
+    /// The way to a displacement and velocity.
+    #[inline(always)]
+    pub fn go<S: Simd>(&mut self, element: &Element, from: &Place, displacement: f64, velocity: f64) {
+        let shape = element.shape();
+        let (stops, first_state) = (shape.stops, shape.first_state());
+        self.moved = displacement - from.inputs[1];
+        let rows = self.targets_of(element);
+        let path = self.moved.abs();
+        let inputs = &mut self.to.inputs;
+        (inputs[0], inputs[1], inputs[2]) = (1.0, displacement, velocity);
+        for i in 0..stops {
+            let (free, threshold) = (from.inputs[3 + i] + self.moved, element.thresholds[i]);
+            inputs[3 + i] = free.clamp(-threshold, threshold);
+            self.at_threshold[i] = if inputs[3 + i] == free { 0.0 } else { inputs[3 + i] };
+        }
+        self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
+        for (i, before) in from.inputs[first_state..].iter().enumerate() {
+            let weights = StateWeights::of::<S>(element.path_leaks[i] * path);
+            let target = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &from.neurons);
+            self.inputs_ahead[first_state + i] =
+                multiply_add::<S>(1.0 - weights.kept, target - before, *before);
+            (self.weights[i], self.targets[i]) = (weights, target);
+        }
+        layer::<S>(&element.layer, &self.inputs_ahead, &mut self.neurons_ahead);
+        for (i, before) in from.inputs[first_state..].iter().enumerate() {
+            let StateWeights { kept, first, last, .. } = self.weights[i];
+            let ahead = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &self.neurons_ahead);
+            self.targets_ahead[i] = ahead;
+            self.to.inputs[first_state + i] =
+                multiply_add::<S>(kept, *before, multiply_add::<S>(first, self.targets[i], last * ahead));
+        }
+        self.to.finish::<S>(element);
+    }
+}

@@ -1,0 +1,677 @@
+//! Exact derivatives of the output by every parameter, carried forward along a record, and their Gram matrix for
+//! least squares.
+//!
+//! A step is differentiated as a whole (theory.md (15.13)): first the motion without the forces at its end, then those
+//! forces, which depend on the displacements that they cause, by solving `(1 - ∂R/∂r) ∂r = ∂R`, then what follows
+//! from them. The local derivatives of an element by the ends of its way come from sweeps backwards through its layer,
+//! one for each state and one for the force.
+
+use pulp::{Simd, WithSimd};
+
+use super::element::{Element, Place, Way};
+use super::parameters::{DIRECT, ElementLayout, Layout, OFFSET};
+use super::propagation::PropagationSlopes;
+use super::trial::Motion;
+use super::{Dynamics, Shape};
+use crate::law::gram_of_rows::{GramOfRows, TakeRows};
+use crate::law::tanh_layer::{LANES, add_multiples, product};
+use crate::linear_algebra::Gram;
+use crate::simd;
+use crate::stop_check::{Pace, StopCheck};
+
+/// Smallest divisor of a force by which it depends on itself.
+const LEAST_PIVOT: f64 = 0.01;
+
+/// A record as it drives a model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drive {
+    /// The input, in its unit.
+    pub x: Vec<f64>,
+    /// Time since the row before, in the unit of time; infinite in a lead-in.
+    pub steps: Vec<f64>,
+    /// The output in scaled units; NaN where it is not compared.
+    pub targets: Vec<f64>,
+    /// Weight of each row; the square root of the number of rows that it stands for.
+    pub weights: Vec<f64>,
+}
+
+/// A model and the records that it is run over.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The model.
+    pub dynamics: &'a Dynamics,
+    /// The records.
+    pub drives: &'a [Drive],
+    /// Stops the computation early.
+    pub stop: StopCheck<'a>,
+}
+
+impl Run<'_> {
+    /// Half the sum of squares of the weighted errors, in scaled units; `None` once stopped.
+    pub fn half_square(self) -> Option<f64> {
+        let mut rows = HalfSquare(0.0);
+        self.sweep(None, &mut rows).then_some(rows.0)
+    }
+
+    /// The Gram matrix of the derivatives by the parameters of the layout and of the error, each row weighted; `None`
+    /// once stopped.
+    pub fn gram(self, layout: &Layout) -> Option<Gram> {
+        let mut rows = GramOfRows::new(layout.count() + 1, self.stop);
+        self.sweep(Some(layout), &mut rows).then_some(rows.gram)
+    }
+
+    /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
+    pub fn rows(self, layout: &Layout) -> Option<Vec<Vec<f64>>> {
+        let mut rows = Vec::new();
+        self.sweep(Some(layout), &mut rows).then_some(rows)
+    }
+
+    /// False once stopped.
+    fn sweep<T: TakeRows>(self, layout: Option<&Layout>, rows: &mut T) -> bool {
+        simd::run(Sweep { run: self, layout, rows })
+    }
+}
+
+/// Sums squares of the errors.
+struct HalfSquare(f64);
+
+impl TakeRows for HalfSquare {
+    #[inline(always)]
+    fn take<S: Simd>(&mut self, _: S, row: &[f64]) {
+        let error = row[row.len() - 1];
+        self.0 += 0.5 * error * error;
+    }
+
+    #[inline(always)]
+    fn end<S: Simd>(&mut self, _: S) {}
+}
+
+struct Sweep<'a, 'r, T> {
+    run: Run<'a>,
+    layout: Option<&'a Layout>,
+    rows: &'r mut T,
+}
+
+impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Run { dynamics, drives, stop } = self.run;
+        let mut pace = Pace::new(stop);
+        let mut sensitivities = self.layout.map(|layout| Sensitivities::new(dynamics, layout));
+        let columns = self.layout.map_or(0, Layout::count);
+        let per_step = 400 + 40 * columns;
+        let mut row = vec![0.0; columns + 1];
+        for drive in drives {
+            let mut motion = Motion::virgin(dynamics);
+            motion.start::<S>(dynamics);
+            if let Some(sensitivities) = &mut sensitivities {
+                sensitivities.begin::<S>(dynamics, &motion);
+            }
+            for k in 0..drive.x.len() {
+                let steps = motion.begin_row::<S>(dynamics, drive.x[k], drive.steps[k]);
+                for step in 1..=steps.count {
+                    if pace.is_over(per_step) {
+                        return false;
+                    }
+                    let input = motion.input_at(dynamics, step, steps);
+                    if let Some(sensitivities) = &mut sensitivities {
+                        sensitivities.remember(&motion);
+                    }
+                    motion.advance::<S>(dynamics, input, steps.length);
+                    if let Some(sensitivities) = &mut sensitivities {
+                        sensitivities.advance::<S>(dynamics, &motion);
+                    }
+                }
+                let (target, weight) = (drive.targets[k], drive.weights[k]);
+                if target.is_nan() {
+                    continue;
+                }
+                if let Some(sensitivities) = &mut sensitivities {
+                    sensitivities.of_output::<S>(dynamics, &motion, weight, &mut row[..columns]);
+                }
+                row[columns] = weight * (motion.output::<S>(dynamics) - target);
+                self.rows.take(simd, &row);
+            }
+        }
+        self.rows.end(simd);
+        !stop.is_asked()
+    }
+}
+
+/// Derivatives of the motion on their way along a record. A row has one number for each parameter, in whole groups.
+struct Sensitivities<'l> {
+    layout: &'l Layout,
+    width: usize,
+    /// `∂q` of each mode, then `∂p`.
+    modes: Vec<f64>,
+    /// The same without the forces at the end of the step.
+    alone: Vec<f64>,
+    /// `∂r` of each element.
+    forces: Vec<f64>,
+    /// What the forces are without their own influence, then the new `∂r`.
+    new_forces: Vec<f64>,
+    elements: Vec<OfElement>,
+    /// `∂ζ` and `∂ν` at the end of the step.
+    ends: Vec<f64>,
+    slopes: Vec<PropagationSlopes>,
+    step: f64,
+    /// `(1 - ∂R/∂r)` and its inverse, row by row.
+    matrix: Vec<f64>,
+    inverse: Vec<f64>,
+    of_output: Vec<f64>,
+}
+
+/// Derivatives of an element.
+struct OfElement {
+    /// Of its place: `∂ζ`, `∂ν`, `∂e` of each stop, `∂s` of each state.
+    place: Vec<f64>,
+    /// Of the states at the end of a way, without those of `ζ` and `ν` there.
+    states: Vec<f64>,
+    local: Vec<Local>,
+    of_force: Local,
+    /// Where the way began.
+    from: Option<Place>,
+    scratch: Scratch,
+}
+
+/// Derivatives of one number at the end of a way.
+#[derive(Clone)]
+struct Local {
+    /// By `ζ`, `ν`, stops and states at its beginning.
+    by_start: Vec<f64>,
+    /// By the stops and states at its end; of the force only.
+    by_memory: Vec<f64>,
+    by_displacement: f64,
+    by_velocity: f64,
+}
+
+/// Vectors of a sweep backwards.
+struct Scratch {
+    back: Vec<f64>,
+    back_ahead: Vec<f64>,
+    by_inputs: Vec<f64>,
+    on_targets: Vec<f64>,
+}
+
+impl OfElement {
+    fn new(shape: Shape, width: usize) -> Self {
+        let memory = shape.stops + shape.states;
+        let local = Local {
+            by_start: vec![0.0; 2 + memory],
+            by_memory: vec![0.0; memory],
+            by_displacement: 0.0,
+            by_velocity: 0.0,
+        };
+        Self {
+            place: vec![0.0; (2 + memory) * width],
+            states: vec![0.0; shape.states * width],
+            local: vec![local.clone(); shape.states],
+            of_force: local,
+            from: None,
+            scratch: Scratch {
+                back: vec![0.0; shape.neurons],
+                back_ahead: vec![0.0; shape.neurons],
+                by_inputs: vec![0.0; shape.inputs()],
+                on_targets: vec![0.0; shape.states],
+            },
+        }
+    }
+}
+
+impl<'l> Sensitivities<'l> {
+    fn new(dynamics: &Dynamics, layout: &'l Layout) -> Self {
+        let width = layout.count().next_multiple_of(LANES);
+        let (modes, elements) = (dynamics.modes.len(), dynamics.elements.len());
+        let rows = |count: usize| vec![0.0; count * width];
+        Self {
+            layout,
+            width,
+            modes: rows(2 * modes),
+            alone: rows(2 * modes),
+            forces: rows(elements),
+            new_forces: rows(elements),
+            elements: (0..elements).map(|_| OfElement::new(layout.shape, width)).collect(),
+            ends: rows(2 * elements),
+            slopes: vec![PropagationSlopes::new(1.0, 1.0, 1.0); modes],
+            step: f64::NAN,
+            matrix: vec![0.0; elements * elements],
+            inverse: vec![0.0; elements * elements],
+            of_output: rows(1),
+        }
+    }
+
+    /// Before the first sample of a record only initial states, and forces in them, depend on parameters.
+    #[inline(always)]
+    fn begin<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        let (width, shape) = (self.width, self.layout.shape);
+        self.modes.fill(0.0);
+        self.forces.fill(0.0);
+        for (e, element) in self.elements.iter_mut().enumerate() {
+            let layout = &self.layout.elements[e];
+            element.place.fill(0.0);
+            for (i, place) in layout.initial.clone().enumerate() {
+                element.place[(2 + shape.stops + i) * width + place] = 1.0;
+            }
+            let force = &mut self.forces[e * width..(e + 1) * width];
+            element.force::<S>(&dynamics.elements[e], layout, &motion.places[e], force);
+            add_multiples::<S>(force, &element.of_force.by_memory, &element.place[2 * width..]);
+        }
+    }
+
+    /// Keeps where a step begins.
+    #[inline(always)]
+    fn remember(&mut self, motion: &Motion) {
+        for (element, place) in self.elements.iter_mut().zip(&motion.places) {
+            match &mut element.from {
+                Some(from) => from.copy_from(place),
+                none => *none = Some(place.clone()),
+            }
+        }
+    }
+
+    /// To the end of the step that the motion has just made.
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        if motion.step != self.step {
+            self.step = motion.step;
+            for (slopes, mode) in self.slopes.iter_mut().zip(&dynamics.modes) {
+                *slopes = PropagationSlopes::new(mode.frequency, mode.damping, self.step);
+            }
+        }
+        self.modes_alone::<S>(dynamics, motion);
+        self.displacements_alone::<S>(dynamics, motion);
+        for e in 0..self.elements.len() {
+            self.element::<S>(dynamics, motion, e);
+        }
+        self.solve::<S>(dynamics);
+        self.finish::<S>(dynamics, motion);
+    }
+
+    /// `∂q` and `∂p` at the end of the step with the forces there held.
+    #[inline(always)]
+    fn modes_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        let (width, modes) = (self.width, dynamics.modes.len());
+        let mut factors = [0.0; super::MOST_PARTS];
+        for i in 0..modes {
+            let (mode, slopes, layout) = (&dynamics.modes[i], &self.slopes[i], &self.layout.modes[i]);
+            let state = [motion.displacements_before[i], motion.velocities_before[i]];
+            let force = |input: f64, forces: &[f64]| {
+                let of_elements = dynamics.elements.iter().zip(forces);
+                mode.gain * input - of_elements.map(|(element, r)| element.compliances[i] * r).sum::<f64>()
+            };
+            let first = force(motion.input_before, &motion.forces_before);
+            let last = force(motion.input, &motion.forces);
+            let parts = [
+                (
+                    0,
+                    slopes.of.displacement,
+                    slopes.by_ln_frequency.displacement,
+                    slopes.by_ln_damping.displacement,
+                ),
+                (modes, slopes.of.velocity, slopes.by_ln_frequency.velocity, slopes.by_ln_damping.velocity),
+            ];
+            for (offset, by, by_ln_frequency, by_ln_damping) in parts {
+                let row = &mut self.alone[(offset + i) * width..][..width];
+                row.fill(0.0);
+                let along = |[a, b, c, d]: [f64; 4]| a * state[0] + b * state[1] + c * first + d * last;
+                row[layout.ln_frequency] = along(by_ln_frequency);
+                row[layout.ln_damping] = along(by_ln_damping);
+                row[layout.gain] = by[2] * motion.input_before + by[3] * motion.input;
+                for (e, element) in self.layout.elements.iter().enumerate() {
+                    if let Some(place) = element.compliances.clone().nth(i) {
+                        row[place] = -by[2] * motion.forces_before[e] - by[3] * motion.forces[e];
+                    }
+                    factors[e] = -by[2] * dynamics.elements[e].compliances[i];
+                }
+                add_multiple::<S>(row, by[0], &self.modes[i * width..][..width]);
+                add_multiple::<S>(row, by[1], &self.modes[(modes + i) * width..][..width]);
+                add_multiples::<S>(row, &factors[..self.elements.len()], &self.forces);
+            }
+        }
+    }
+
+    /// `∂ζ` and `∂ν` at the end of the step, from those modes.
+    #[inline(always)]
+    fn displacements_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        let (width, modes) = (self.width, dynamics.modes.len());
+        for (e, element) in dynamics.elements.iter().enumerate() {
+            let layout = &self.layout.elements[e];
+            let (displacement, velocity) = self.ends[2 * e * width..][..2 * width].split_at_mut(width);
+            displacement.fill(0.0);
+            velocity.fill(0.0);
+            for (i, place) in layout.of_displacements.clone().enumerate() {
+                displacement[place] = motion.displacements[i];
+                velocity[place] = motion.velocities[i];
+            }
+            for (i, place) in layout.of_velocities.clone().enumerate() {
+                displacement[place] = motion.velocities[i];
+            }
+            if let Some(place) = layout.of_input.clone().next() {
+                displacement[place] = motion.input;
+            }
+            let (q, p) = self.alone.split_at(modes * width);
+            add_multiples::<S>(displacement, &element.of_displacements, q);
+            add_multiples::<S>(displacement, &element.of_velocities, p);
+            add_multiples::<S>(velocity, &element.of_displacements, p);
+        }
+    }
+
+    /// States and force of an element without `∂ζ` and `∂ν` at the end of the step, and their derivatives by these.
+    #[inline(always)]
+    fn element<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion, e: usize) {
+        let (width, shape) = (self.width, self.layout.shape);
+        let (element, layout, way) = (&dynamics.elements[e], &self.layout.elements[e], &motion.ways[e]);
+        let own = &mut self.elements[e];
+        for k in 0..shape.states {
+            let row = &mut own.states[k * width..(k + 1) * width];
+            let from = own.from.as_ref().expect("the beginning of a step is remembered");
+            let ends = Ends { element, layout, shape, from, way };
+            ends.of_state::<S>(k, &mut own.scratch, &mut own.local[k], row);
+            add_multiples::<S>(row, &own.local[k].by_start, &own.place);
+        }
+        let row = &mut self.new_forces[e * width..(e + 1) * width];
+        own.force::<S>(element, layout, &way.to, row);
+        own.force_through_stops(layout, way, row);
+        for (k, local) in own.local.iter().enumerate() {
+            let by = own.of_force.by_memory[shape.stops + k];
+            own.of_force.by_displacement += by * local.by_displacement;
+            own.of_force.by_velocity += by * local.by_velocity;
+        }
+        add_multiples::<S>(row, &own.of_force.by_memory[shape.stops..], &own.states);
+        add_multiples::<S>(row, &own.of_force.by_start, &own.place);
+        add_multiple::<S>(row, own.of_force.by_displacement, &self.ends[2 * e * width..][..width]);
+        add_multiple::<S>(row, own.of_force.by_velocity, &self.ends[(2 * e + 1) * width..][..width]);
+    }
+
+    /// `∂ζ/∂r` and `∂ν/∂r` at the end of a step: of element `e` by the force of element `f`.
+    fn influence(&self, dynamics: &Dynamics, e: usize, f: usize) -> (f64, f64) {
+        let (of, by) = (&dynamics.elements[e], &dynamics.elements[f]);
+        let (mut displacement, mut velocity) = (0.0, 0.0);
+        for (i, slopes) in self.slopes.iter().enumerate() {
+            let (alpha, beta) = (slopes.of.displacement[3], slopes.of.velocity[3]);
+            displacement -= (of.of_displacements[i] * alpha + of.of_velocities[i] * beta) * by.compliances[i];
+            velocity -= of.of_displacements[i] * beta * by.compliances[i];
+        }
+        (displacement, velocity)
+    }
+
+    /// `∂r` from `(1 - ∂R/∂r) ∂r = ∂R`.
+    #[inline(always)]
+    fn solve<S: Simd>(&mut self, dynamics: &Dynamics) {
+        let (width, count) = (self.width, self.elements.len());
+        for e in 0..count {
+            for f in 0..count {
+                let (displacement, velocity) = self.influence(dynamics, e, f);
+                let Local { by_displacement, by_velocity, .. } = self.elements[e].of_force;
+                let own = by_displacement * displacement + by_velocity * velocity;
+                self.matrix[e * count + f] = if e == f { 1.0 } else { 0.0 } - own;
+            }
+        }
+        invert(&mut self.matrix, &mut self.inverse, count);
+        for e in 0..count {
+            let row = &mut self.forces[e * width..(e + 1) * width];
+            row.fill(0.0);
+            add_multiples::<S>(row, &self.inverse[e * count..(e + 1) * count], &self.new_forces);
+        }
+    }
+
+    /// Everything else at the end of the step, from `∂r` there.
+    #[inline(always)]
+    fn finish<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        let (width, modes) = (self.width, dynamics.modes.len());
+        let count = self.elements.len();
+        let mut factors = [0.0; super::MOST_PARTS];
+        for e in 0..count {
+            let (mut of_displacement, mut of_velocity) = ([0.0; super::MOST_PARTS], [0.0; super::MOST_PARTS]);
+            for f in 0..count {
+                (of_displacement[f], of_velocity[f]) = self.influence(dynamics, e, f);
+            }
+            let (displacement, velocity) = self.ends[2 * e * width..][..2 * width].split_at_mut(width);
+            add_multiples::<S>(displacement, &of_displacement[..count], &self.forces);
+            add_multiples::<S>(velocity, &of_velocity[..count], &self.forces);
+            self.elements[e].end::<S>(&self.layout.elements[e], &motion.ways[e], displacement, velocity);
+        }
+        std::mem::swap(&mut self.modes, &mut self.alone);
+        for i in 0..modes {
+            for (offset, weight) in
+                [(0, self.slopes[i].of.displacement[3]), (modes, self.slopes[i].of.velocity[3])]
+            {
+                for (factor, element) in factors.iter_mut().zip(&dynamics.elements) {
+                    *factor = -weight * element.compliances[i];
+                }
+                let row = &mut self.modes[(offset + i) * width..][..width];
+                add_multiples::<S>(row, &factors[..count], &self.forces);
+            }
+        }
+    }
+
+    /// The derivative of the output, weighted.
+    #[inline(always)]
+    fn of_output<S: Simd>(
+        &mut self,
+        dynamics: &Dynamics,
+        motion: &Motion,
+        weight: f64,
+        jacobian: &mut [f64],
+    ) {
+        let (width, modes) = (self.width, dynamics.modes.len());
+        let row = &mut self.of_output;
+        row.fill(0.0);
+        row[OFFSET] = 1.0;
+        row[DIRECT] = motion.newest_input();
+        let (q, p) = self.modes.split_at(modes * width);
+        for (i, mode) in dynamics.modes.iter().enumerate() {
+            if let Some(place) = self.layout.modes[i].velocity_in_output.clone().next() {
+                row[place] = motion.velocities[i];
+            }
+            add_multiple::<S>(row, 1.0, &q[i * width..][..width]);
+            add_multiple::<S>(row, mode.velocity_in_output, &p[i * width..][..width]);
+        }
+        for (e, element) in dynamics.elements.iter().enumerate() {
+            if let Some(place) = self.layout.elements[e].in_output.clone().next() {
+                row[place] = motion.forces[e];
+            }
+            add_multiple::<S>(row, element.in_output, &self.forces[e * width..][..width]);
+        }
+        for (to, value) in jacobian.iter_mut().zip(row) {
+            *to = weight * *value;
+        }
+    }
+}
+
+impl OfElement {
+    /// Of the force at a place: by `ζ`, `ν` and memory there, and in `row` by its own parameters.
+    #[inline(always)]
+    fn force<S: Simd>(&mut self, element: &Element, layout: &ElementLayout, place: &Place, row: &mut [f64]) {
+        let Scratch { back, by_inputs, .. } = &mut self.scratch;
+        let memory = place.inputs.len() - 3;
+        let (of_memory, of_neurons) = element.force.split_at(memory);
+        for ((back, weight), h) in back.iter_mut().zip(of_neurons).zip(&place.neurons) {
+            *back = weight * (1.0 - h * h);
+        }
+        through_layer::<S>(element, back, by_inputs);
+        let local = &mut self.of_force;
+        local.by_start.fill(0.0);
+        (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
+        for ((by, own), through) in local.by_memory.iter_mut().zip(of_memory).zip(&by_inputs[3..]) {
+            *by = own + through;
+        }
+        row.fill(0.0);
+        let (own_memory, own_neurons) = row[layout.force.clone()].split_at_mut(memory);
+        own_memory.copy_from_slice(&place.inputs[3..]);
+        own_neurons.copy_from_slice(&place.neurons);
+        add_of_layer(&place.inputs, back, &mut row[layout.layer.clone()]);
+    }
+
+    /// Of the force by the stops, which follow from the ends of the way or their thresholds.
+    #[inline(always)]
+    fn force_through_stops(&mut self, layout: &ElementLayout, way: &Way, row: &mut [f64]) {
+        for (i, at_threshold) in way.at_threshold.iter().enumerate() {
+            let by = self.of_force.by_memory[i];
+            self.of_force.through_stop(i, by, *at_threshold, &mut row[layout.ln_thresholds.clone()]);
+        }
+    }
+
+    /// To the end of the way, from `∂ζ` and `∂ν` there.
+    #[inline(always)]
+    fn end<S: Simd>(&mut self, layout: &ElementLayout, way: &Way, displacement: &[f64], velocity: &[f64]) {
+        let width = displacement.len();
+        let (ends, memory) = self.place.split_at_mut(2 * width);
+        let (stops, states) = memory.split_at_mut(way.at_threshold.len() * width);
+        let before = &ends[..width];
+        for i in 0..way.at_threshold.len() {
+            let row = &mut stops[i * width..(i + 1) * width];
+            if way.at_threshold[i] != 0.0 {
+                row.fill(0.0);
+                row[layout.ln_thresholds.start + i] = way.at_threshold[i];
+            } else {
+                add_multiple::<S>(row, 1.0, displacement);
+                add_multiple::<S>(row, -1.0, before);
+            }
+        }
+        states.copy_from_slice(&self.states);
+        for (k, local) in self.local.iter().enumerate() {
+            let row = &mut states[k * width..(k + 1) * width];
+            add_multiple::<S>(row, local.by_displacement, displacement);
+            add_multiple::<S>(row, local.by_velocity, velocity);
+        }
+        ends[..width].copy_from_slice(displacement);
+        ends[width..].copy_from_slice(velocity);
+    }
+}
+
+impl Local {
+    /// Adds what depends on a stop at the end of a way by the factor `by`.
+    #[inline(always)]
+    fn through_stop(&mut self, stop: usize, by: f64, at_threshold: f64, by_thresholds: &mut [f64]) {
+        if at_threshold != 0.0 {
+            by_thresholds[stop] += by * at_threshold;
+        } else {
+            self.by_displacement += by;
+            self.by_start[0] -= by;
+            self.by_start[2 + stop] += by;
+        }
+    }
+}
+
+/// A way of an element and its ends.
+struct Ends<'a> {
+    element: &'a Element,
+    layout: &'a ElementLayout,
+    shape: Shape,
+    from: &'a Place,
+    way: &'a Way,
+}
+
+impl Ends<'_> {
+    /// Derivatives of state `k` at the end of the way by its ends, and in `row` by the parameters of the element.
+    #[inline(always)]
+    fn of_state<S: Simd>(&self, k: usize, scratch: &mut Scratch, local: &mut Local, row: &mut [f64]) {
+        let Self { element, layout, shape, from, way } = *self;
+        let Scratch { back, back_ahead, by_inputs, on_targets } = scratch;
+        let (neurons, first_state) = (shape.neurons, shape.first_state());
+        let rows = way.targets_of(element);
+        let of_targets = if way.moved < 0.0 { layout.falling.start } else { layout.rising.start };
+        let last = way.weights[k].last;
+        local.by_start.fill(0.0);
+        row.fill(0.0);
+
+        // T_1, taken with the states ahead.
+        for ((back, weight), h) in back_ahead.iter_mut().zip(&rows[k * neurons..]).zip(&way.neurons_ahead) {
+            *back = last * weight * (1.0 - h * h);
+        }
+        through_layer::<S>(element, back_ahead, by_inputs);
+        for (to, h) in row[of_targets + k * neurons..].iter_mut().zip(&way.neurons_ahead) {
+            *to += last * h;
+        }
+        add_of_layer(&way.inputs_ahead, back_ahead, &mut row[layout.layer.clone()]);
+        (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
+        for (i, at_threshold) in way.at_threshold.iter().enumerate() {
+            local.through_stop(i, by_inputs[3 + i], *at_threshold, &mut row[layout.ln_thresholds.clone()]);
+        }
+
+        // The states ahead, and the weights of the targets, follow from the travel.
+        let mut by_path = 0.0;
+        for (j, weights) in way.weights.iter().enumerate() {
+            let (before, ahead) = (from.inputs[first_state + j], by_inputs[first_state + j]);
+            let mut by_travel = weights.kept * (way.targets[j] - before) * ahead;
+            local.by_start[2 + shape.stops + j] = weights.kept * ahead;
+            on_targets[j] = (1.0 - weights.kept) * ahead;
+            if j == k {
+                let (of_first, of_last) = weights.slopes();
+                by_travel +=
+                    of_first * way.targets[k] + of_last * way.targets_ahead[k] - weights.kept * before;
+                local.by_start[2 + shape.stops + j] += weights.kept;
+                on_targets[j] += weights.first;
+            }
+            row[layout.ln_path_leaks.start + j] = by_travel * weights.travel;
+            by_path += by_travel * element.path_leaks[j];
+        }
+        let by_moved = if way.moved < 0.0 { -by_path } else { by_path };
+        local.by_displacement += by_moved;
+        local.by_start[0] -= by_moved;
+
+        // T_0, taken at the beginning.
+        back.fill(0.0);
+        for (j, on_target) in on_targets.iter().enumerate() {
+            let own = rows[j * neurons..].iter().zip(&from.neurons);
+            let places = row[of_targets + j * neurons..].iter_mut();
+            for ((back, to), (weight, h)) in back.iter_mut().zip(places).zip(own) {
+                *back += on_target * weight * (1.0 - h * h);
+                *to += on_target * h;
+            }
+        }
+        through_layer::<S>(element, back, by_inputs);
+        for (by, through) in local.by_start.iter_mut().zip(&by_inputs[1..]) {
+            *by += through;
+        }
+        add_of_layer(&from.inputs, back, &mut row[layout.layer.clone()]);
+    }
+}
+
+/// Derivatives by the inputs of the layer, from those by the arguments of its neurons.
+#[inline(always)]
+fn through_layer<S: Simd>(element: &Element, back: &[f64], by_inputs: &mut [f64]) {
+    for (by, column) in by_inputs.iter_mut().zip(element.layer.chunks_exact(back.len())) {
+        *by = product::<S>(back, column);
+    }
+}
+
+/// Adds the derivatives by the weights of the layer, from those by the arguments of its neurons.
+#[inline(always)]
+fn add_of_layer(inputs: &[f64], back: &[f64], row: &mut [f64]) {
+    for (row, input) in row.chunks_exact_mut(back.len()).zip(inputs) {
+        for (to, back) in row.iter_mut().zip(back) {
+            *to += input * back;
+        }
+    }
+}
+
+/// Adds `factor` times a row.
+#[inline(always)]
+fn add_multiple<S: Simd>(to: &mut [f64], factor: f64, row: &[f64]) {
+    add_multiples::<S>(to, &[factor], row);
+}
+
+/// The inverse of a matrix of few rows by elimination, with pivots that are not small.
+fn invert(matrix: &mut [f64], inverse: &mut [f64], count: usize) {
+    inverse.fill(0.0);
+    (0..count).for_each(|i| inverse[i * count + i] = 1.0);
+    for i in 0..count {
+        let pivot = matrix[i * count + i];
+        let pivot = if pivot.abs() < LEAST_PIVOT { LEAST_PIVOT.copysign(pivot) } else { pivot };
+        for k in 0..count {
+            matrix[i * count + k] /= pivot;
+            inverse[i * count + k] /= pivot;
+        }
+        for j in (0..count).filter(|j| *j != i) {
+            let factor = matrix[j * count + i];
+            for k in 0..count {
+                matrix[j * count + k] -= factor * matrix[i * count + k];
+                inverse[j * count + k] -= factor * inverse[i * count + k];
+            }
+        }
+    }
+}

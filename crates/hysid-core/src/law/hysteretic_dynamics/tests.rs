@@ -1,0 +1,308 @@
+//! Motion against exact laws and itself; derivatives against differences.
+
+use super::*;
+use crate::random::mix;
+use crate::stop_check::StopCheck;
+
+/// Numbers between -1 and 1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn new(seed: u64) -> Self {
+        Self(mix(seed))
+    }
+
+    fn next(&mut self) -> f64 {
+        self.0 = mix(self.0);
+        2.0 * (self.0 >> 11) as f64 / (1u64 << 53) as f64 - 1.0
+    }
+
+    fn many(&mut self, count: usize, size: f64) -> Vec<f64> {
+        (0..count).map(|_| size * self.next()).collect()
+    }
+}
+
+fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Element {
+    let Shape { stops, states, neurons } = shape;
+    Element {
+        of_displacements: numbers.many(modes, 1.0),
+        of_velocities: numbers.many(modes, 0.5),
+        of_input: numbers.next(),
+        compliances: numbers.many(modes, 0.3),
+        in_output: numbers.next(),
+        thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * t.exp()).collect(),
+        layer: numbers.many(shape.inputs() * neurons, size),
+        rising: numbers.many(states * neurons, size),
+        falling: numbers.many(states * neurons, size),
+        path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * c.exp()).collect(),
+        initial: numbers.many(states, 0.5),
+        force: numbers.many(stops + states + neurons, size),
+    }
+}
+
+/// A model with random coefficients, whose modes have frequencies of 1, 2, ... radians per unit of time.
+fn model(seed: u64, modes: usize, elements: usize, shape: Shape, size: f64) -> Dynamics {
+    let mut numbers = Numbers::new(seed);
+    let mode = |i: usize, numbers: &mut Numbers| Mode {
+        frequency: 1.0 + i as f64,
+        damping: 0.05 * numbers.next().exp(),
+        gain: 1.0 + 0.5 * numbers.next(),
+        velocity_in_output: 0.5 * numbers.next(),
+    };
+    Dynamics {
+        input_scale: 2.0,
+        output_offset: 0.5,
+        output_scale: 3.0,
+        direct: 0.2,
+        hold: Hold::Cubic,
+        longest_step: 0.08,
+        begins_under_input: false,
+        modes: (0..modes).map(|i| mode(i, &mut numbers)).collect(),
+        elements: (0..elements).map(|_| element(&mut numbers, shape, modes, size)).collect(),
+    }
+}
+
+fn drive(seed: u64, rows: usize, step: f64) -> Drive {
+    let mut numbers = Numbers::new(seed);
+    let phases = numbers.many(5, std::f64::consts::PI);
+    let tones =
+        |t: f64| (1..).zip(&phases).map(|(k, phase)| (0.37 * f64::from(k) * t + phase).sin()).sum::<f64>();
+    Drive {
+        x: (0..rows).map(|k| tones(k as f64 * step)).collect(),
+        steps: (0..rows).map(|k| if k == 0 { 0.0 } else { step }).collect(),
+        targets: numbers.many(rows, 1.0),
+        weights: (0..rows).map(|k| 1.0 + (k % 3) as f64).collect(),
+    }
+}
+
+fn samples(drive: &Drive) -> Vec<Sample> {
+    let rows = drive.x.iter().zip(&drive.steps);
+    rows.map(|(&x, &step)| Sample { x, rate: 0.0, step }).collect()
+}
+
+fn outputs(dynamics: &Dynamics, samples: &[Sample]) -> Vec<f64> {
+    let mut motion = dynamics.virgin();
+    samples.iter().map(|&sample| dynamics.step(&mut motion, sample)).collect()
+}
+
+const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9 };
+
+#[test]
+fn derivatives_equal_differences() {
+    for (form, modes, elements, shape, begins_under_input, hold) in [
+        (Form::Oscillator, 1, 1, SHAPE, false, Hold::Cubic),
+        (Form::Oscillator, 2, 2, SHAPE, true, Hold::Linear),
+        (Form::StateSpace, 2, 2, SHAPE, false, Hold::Constant),
+        (Form::StateSpace, 3, 1, Shape { stops: 0, states: 3, neurons: 4 }, true, Hold::Cubic),
+        (Form::Oscillator, 2, 0, SHAPE, false, Hold::Cubic),
+    ] {
+        let layout = Layout::new(form, modes, elements, shape);
+        let mut template = model(7, modes, elements, shape, 0.7);
+        (template.begins_under_input, template.hold) = (begins_under_input, hold);
+        let drives = [drive(3, 40, 0.11), drive(5, 25, 0.2)];
+        let parameters = layout.parameters(&template);
+        let errors = |parameters: &[f64]| -> Vec<f64> {
+            let dynamics = layout.dynamics(parameters, &template);
+            let run = Run { dynamics: &dynamics, drives: &drives, stop: StopCheck::never() };
+            run.rows(&layout).unwrap().iter().map(|row| row[layout.count()]).collect()
+        };
+        let dynamics = layout.dynamics(&parameters, &template);
+        let run = Run { dynamics: &dynamics, drives: &drives, stop: StopCheck::never() };
+        let rows = run.rows(&layout).unwrap();
+        for place in 0..layout.count() {
+            let by = 1e-6;
+            let at = |by: f64| {
+                let mut moved = parameters.clone();
+                moved[place] += by;
+                errors(&moved)
+            };
+            let (up, down) = (at(by), at(-by));
+            for (k, row) in rows.iter().enumerate() {
+                let difference = (up[k] - down[k]) / (2.0 * by);
+                assert!(
+                    (row[place] - difference).abs() < 2e-6 * (1.0 + difference.abs()),
+                    "{form:?} {modes} {elements}: parameter {place}, row {k}: {} {difference}",
+                    row[place]
+                );
+            }
+        }
+        let gram = run.gram(&layout).unwrap();
+        let square: f64 = rows.iter().map(|row| row[layout.count()] * row[layout.count()]).sum();
+        assert!((gram.at(layout.count(), layout.count()) / square - 1.0).abs() < 1e-12);
+        assert!((2.0 * run.half_square().unwrap() / square - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn outputs_are_bounded_whatever_the_parameters_and_the_steps() {
+    for seed in 0..60 {
+        let size = [0.5, 3.0, 30.0][seed as usize % 3];
+        let mut dynamics = model(seed, 1 + seed as usize % 3, 1 + seed as usize % 2, SHAPE, size);
+        dynamics.begins_under_input = seed % 2 == 0;
+        dynamics.hold = Hold::ALL[seed as usize % 3];
+        dynamics.modes[0].damping = [1e-4, 0.3, 1.0, 7.0][seed as usize % 4];
+        let bound = dynamics.output_bound(Interval(-5.0, 5.0));
+        let mut numbers = Numbers::new(seed);
+        let mut motion = dynamics.virgin();
+        for _ in 0..400 {
+            let step = (8.0 * numbers.next()).exp();
+            let sample = Sample { x: 5.0 * numbers.next().signum(), rate: 0.0, step };
+            let y = dynamics.step(&mut motion, sample);
+            assert!(y >= bound.0 && y <= bound.1, "{seed}: {y} is beyond {bound:?}");
+        }
+    }
+}
+
+/// With one element there is a force that follows from itself, and it is found even where steps are far too long.
+#[test]
+fn the_force_of_a_single_element_is_always_found() {
+    for seed in 0..40 {
+        let dynamics = model(seed, 2, 1, SHAPE, 5.0);
+        let mut numbers = Numbers::new(seed);
+        let mut motion = dynamics.virgin();
+        for k in 0..200 {
+            let step = if k % 20 == 0 { f64::INFINITY } else { (6.0 * numbers.next()).exp() };
+            dynamics.step(&mut motion, Sample { x: 3.0 * numbers.next(), rate: 0.0, step });
+            let (largest, found) = (dynamics.elements[0].bounds().0, &motion);
+            let mismatch = found.places[0].force - found.forces[0];
+            assert!(mismatch.abs() <= 1e-8 * largest, "{seed} {k}: {mismatch} of {largest}");
+        }
+    }
+}
+
+#[test]
+fn shorter_steps_converge_to_second_order() {
+    let mut dynamics = model(11, 2, 2, SHAPE, 0.7);
+    dynamics.hold = Hold::Linear;
+    // Without stops, whose kinks lie within steps.
+    dynamics.elements.iter_mut().for_each(|element| element.thresholds.fill(1e3));
+    let drive = drive(1, 200, 0.4);
+    let at = |longest_step: f64| outputs(&Dynamics { longest_step, ..dynamics.clone() }, &samples(&drive));
+    let fine = at(0.4 / 64.0);
+    let error = |longest_step: f64| {
+        let squares = at(longest_step).iter().zip(&fine).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+        (squares / fine.len() as f64).sqrt()
+    };
+    let (coarse, half, quarter) = (error(0.2), error(0.1), error(0.05));
+    assert!(coarse / half > 3.0 && half / quarter > 3.0, "{coarse} {half} {quarter}");
+}
+
+/// A stop of large threshold is a spring: the mode under it is a mode of another frequency.
+#[test]
+fn an_element_that_is_a_spring_shifts_the_frequency() {
+    let mut dynamics = model(2, 1, 1, Shape { stops: 1, states: 0, neurons: 1 }, 0.0);
+    let (stiffness, mode) = (3.0, Mode { frequency: 1.0, damping: 0.05, gain: 1.0, velocity_in_output: 0.0 });
+    dynamics.modes = vec![mode];
+    dynamics.direct = 0.0;
+    dynamics.longest_step = 0.002;
+    let element = &mut dynamics.elements[0];
+    (element.of_displacements, element.of_velocities, element.of_input) = (vec![1.0], vec![0.0], 0.0);
+    (element.compliances, element.in_output) = (vec![1.0], 0.0);
+    (element.thresholds, element.force) = (vec![1e6], vec![stiffness, 0.0]);
+    let root = f64::sqrt(1.0 + stiffness);
+    let stiffer = Dynamics {
+        modes: vec![Mode { frequency: root, damping: 0.05 / root, gain: 1.0 / (root * root), ..mode }],
+        elements: Vec::new(),
+        ..dynamics.clone()
+    };
+    let samples = samples(&drive(9, 300, 0.1));
+    for (a, b) in outputs(&dynamics, &samples).iter().zip(outputs(&stiffer, &samples)) {
+        assert!((a - b).abs() < 5e-5, "{a} {b}");
+    }
+}
+
+/// `u y'` is what the stops dissipate and the spring and mass store: with stops alone the energy that goes in over a
+/// record that returns to rest is not negative.
+#[test]
+fn stops_dissipate() {
+    let mut dynamics = model(4, 1, 1, Shape { stops: 3, states: 0, neurons: 1 }, 0.0);
+    dynamics.modes = vec![Mode { frequency: 1.0, damping: 0.01, gain: 1.0, velocity_in_output: 0.0 }];
+    (dynamics.direct, dynamics.longest_step) = (0.0, 0.01);
+    let element = &mut dynamics.elements[0];
+    (element.of_displacements, element.of_velocities, element.of_input) = (vec![1.0], vec![0.0], 0.0);
+    (element.compliances, element.in_output, element.force) = (vec![1.0], 0.0, vec![0.5, 0.5, 0.5, 0.0]);
+    let mut motion = dynamics.virgin();
+    let (mut work, mut before) = (0.0, 0.0);
+    let mut lowest = f64::INFINITY;
+    for k in 0..4000 {
+        let t = f64::from(k) * 0.05;
+        let x = if k < 3000 { 2.0 * (0.9 * t).sin() * (0.05 * t).sin() } else { 0.0 };
+        let sample = Sample { x, rate: 0.0, step: if k == 0 { 0.0 } else { 0.05 } };
+        dynamics.step(&mut motion, sample);
+        work += x / dynamics.input_scale * (motion.displacements[0] - before);
+        before = motion.displacements[0];
+        lowest = work.min(lowest);
+    }
+    assert!(lowest > -0.02 && work > 1.0, "{lowest} {work}");
+}
+
+#[test]
+fn a_record_begins_at_rest() {
+    let mut dynamics = model(6, 2, 1, SHAPE, 0.5);
+    dynamics.begins_under_input = true;
+    let rest = |step: f64| Sample { x: 1.3, rate: 0.0, step };
+    let still = outputs(&dynamics, &[rest(0.0), rest(0.1), rest(0.1), rest(5.0)]);
+    assert!(still.iter().all(|y| (y - still[0]).abs() < 1e-6), "{still:?}");
+    dynamics.begins_under_input = false;
+    dynamics.elements.clear();
+    let moving = outputs(&dynamics, &[rest(0.0), rest(0.1)]);
+    let direct =
+        dynamics.output_offset + dynamics.output_scale * dynamics.direct * 1.3 / dynamics.input_scale;
+    assert!((moving[0] - direct).abs() < 1e-12 && moving[1] != moving[0], "{moving:?} {direct}");
+}
+
+#[test]
+fn what_does_not_fit_together_is_refused() {
+    let sound = model(1, 2, 1, SHAPE, 0.5);
+    assert!(sound.check("test").is_ok());
+    let broken: [(&str, &dyn Fn(&mut Dynamics)); 7] = [
+        ("not positive", &|d| d.longest_step = 0.0),
+        ("or none", &|d| d.modes.clear()),
+        ("go together", &|d| d.elements[0].force.truncate(3)),
+        ("go together", &|d| d.elements[0].compliances.clear()),
+        ("ζ_1", &|d| d.modes[0].damping = -0.1),
+        ("ω_2", &|d| d.modes[1].frequency = f64::NAN),
+        ("c_1,1", &|d| d.elements[0].path_leaks[0] = 0.0),
+    ];
+    for (words, change) in broken {
+        let mut changed = sound.clone();
+        change(&mut changed);
+        let error = changed.check("test").unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn arithmetic_without_fused_products_agrees_to_rounding() {
+    let dynamics = model(8, 2, 2, SHAPE, 0.5);
+    let samples = samples(&drive(2, 100, 0.1));
+    let mut portable = dynamics.virgin();
+    portable.become_portable();
+    for (y, sample) in outputs(&dynamics, &samples).iter().zip(&samples) {
+        assert!((dynamics.step(&mut portable, *sample) - y).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_largest_response_is_the_integral_of_the_impulse_response() {
+    for damping in [0.01, 0.3, 0.9, 1.0, 2.0] {
+        let (h, mut displacement, mut velocity) = (1e-3, 0.0, 0.0);
+        let step = propagation::Propagation::new(1.0, damping, h);
+        let mut state = [0.0, 1.0];
+        for _ in 0..2_000_000 {
+            displacement += h * f64::abs(state[0]);
+            velocity += h * f64::abs(state[1]);
+            let [q, p] = state;
+            state = [
+                step.displacement[0] * q + step.displacement[1] * p,
+                step.velocity[0] * q + step.velocity[1] * p,
+            ];
+            if q.abs() + p.abs() < 1e-12 {
+                break;
+            }
+        }
+        let (bound, of_velocity) = largest_response(damping);
+        assert!((displacement / bound - 1.0).abs() < 2e-3, "{damping}: {displacement} {bound}");
+        assert!(velocity < 1.002 * of_velocity && velocity > 0.7 * of_velocity, "{damping}: {velocity}");
+    }
+}

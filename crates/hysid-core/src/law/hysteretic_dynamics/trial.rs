@@ -1,0 +1,303 @@
+//! A free run: trial steps of modes and elements until the forces at the end of a step fit the displacements there,
+//! and what is committed then.
+
+use pulp::Simd;
+
+use super::element::{Place, Way};
+use super::hold::{Hold, Recent};
+use super::propagation::Propagation;
+use super::{Dynamics, STATIC_STEPS};
+use crate::simd::multiply_add;
+
+/// Trials of a step at most.
+const MOST_TRIALS: usize = 40;
+
+/// Trials after which the force of a single element is enclosed, because the quick way has not found it.
+const TRIALS_IN_HASTE: usize = 6;
+
+/// Difference of two trials, relative to the largest force, below which rounding hides the slope.
+const LEAST_DIFFERENCE: f64 = 1e-9;
+
+/// Bounds of the slope `∂R/∂r` that is used: at 1 the force would not be determined.
+const LARGEST_SLOPE: f64 = 1e3;
+const STEEPEST_SLOPE: f64 = 0.9;
+
+/// Mismatch of a force that counts as none, relative to its size.
+const TOLERANCE: f64 = 1e-12;
+
+/// The state of modes and elements, with the intermediate results of the last step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Displacement `q` and velocity `p` of each mode.
+    pub(super) displacements: Vec<f64>,
+    pub(super) velocities: Vec<f64>,
+    /// The same before the last step.
+    pub(super) displacements_before: Vec<f64>,
+    pub(super) velocities_before: Vec<f64>,
+    /// What the modes do in a step without the forces at its end.
+    displacements_alone: Vec<f64>,
+    velocities_alone: Vec<f64>,
+    pub(super) places: Vec<Place>,
+    /// The way of each element in the last step.
+    pub(super) ways: Vec<Way>,
+    /// Forces of the elements at the beginning and at the end of the last step, as the modes feel them.
+    pub(super) forces_before: Vec<f64>,
+    pub(super) forces: Vec<f64>,
+    /// Bounds of the forces.
+    largest: Vec<f64>,
+    /// `∂R/∂r` of each element, from the newest trials that told it.
+    slopes: Vec<f64>,
+    /// The last force that was assumed, and the one that followed.
+    tried: Vec<(f64, f64)>,
+    /// Scaled input at the beginning and at the end of the last step.
+    pub(super) input_before: f64,
+    pub(super) input: f64,
+    pub(super) recent: Recent,
+    /// Length of the steps that `propagations` are of.
+    pub(super) step: f64,
+    propagations: Vec<Propagation>,
+    has_begun: bool,
+    /// True for the arithmetic that every machine has.
+    pub(super) is_portable: bool,
+}
+
+/// The equal steps of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RowSteps {
+    pub count: usize,
+    /// In the unit of time; infinite for a quasi-static change.
+    pub length: f64,
+}
+
+impl Motion {
+    /// At rest without input, before the first sample.
+    pub(super) fn virgin(dynamics: &Dynamics) -> Self {
+        let (modes, elements) = (dynamics.modes.len(), &dynamics.elements);
+        let places: Vec<Place> = elements.iter().map(Place::virgin).collect();
+        Self {
+            displacements: vec![0.0; modes],
+            velocities: vec![0.0; modes],
+            displacements_before: vec![0.0; modes],
+            velocities_before: vec![0.0; modes],
+            displacements_alone: vec![0.0; modes],
+            velocities_alone: vec![0.0; modes],
+            ways: elements.iter().map(Way::new).collect(),
+            forces_before: vec![0.0; elements.len()],
+            forces: vec![0.0; elements.len()],
+            largest: elements.iter().map(|element| element.bounds().0).collect(),
+            slopes: vec![0.0; elements.len()],
+            tried: vec![(0.0, 0.0); elements.len()],
+            places,
+            input_before: 0.0,
+            input: 0.0,
+            recent: Recent::default(),
+            step: f64::NAN,
+            propagations: vec![Propagation::new(1.0, 1.0, 0.0); modes],
+            has_begun: false,
+            is_portable: false,
+        }
+    }
+
+    pub(crate) fn become_portable(&mut self) {
+        self.is_portable = true;
+    }
+
+    /// The forces of virgin elements, before the first sample.
+    #[inline(always)]
+    pub(super) fn start<S: Simd>(&mut self, dynamics: &Dynamics) {
+        for (e, (place, element)) in self.places.iter_mut().zip(&dynamics.elements).enumerate() {
+            place.finish::<S>(element);
+            (self.forces[e], self.forces_before[e]) = (place.force, place.force);
+        }
+    }
+
+    /// Takes the next sample of the input, and returns into which steps its row is divided.
+    #[inline(always)]
+    pub(super) fn begin_row<S: Simd>(&mut self, dynamics: &Dynamics, x: f64, row: f64) -> RowSteps {
+        let u = dynamics.scaled(x);
+        let is_first = !self.has_begun;
+        if is_first {
+            self.has_begun = true;
+            self.start::<S>(dynamics);
+        }
+        let is_static = row == f64::INFINITY || is_first && dynamics.begins_under_input;
+        if is_static {
+            self.recent.add(u, f64::INFINITY);
+            return RowSteps { count: STATIC_STEPS, length: f64::INFINITY };
+        }
+        // Before the first sample the motion is at rest, and while no time passes nothing moves.
+        if is_first || row.is_nan() || row <= 0.0 {
+            if is_first {
+                self.recent = Recent::at_rest(u);
+            }
+            self.recent.values[0] = u;
+            self.input = u;
+            return RowSteps { count: 0, length: 0.0 };
+        }
+        self.recent.add(u, row);
+        if dynamics.hold == Hold::Constant {
+            self.input = self.recent.values[1];
+        }
+        let count = dynamics.steps_of(row);
+        RowSteps { count, length: row / count as f64 }
+    }
+
+    /// The scaled input at the end of a step of a row.
+    #[inline(always)]
+    pub(super) fn input_at(&self, dynamics: &Dynamics, step: usize, steps: RowSteps) -> f64 {
+        let hold = if steps.length == f64::INFINITY { Hold::Linear } else { dynamics.hold };
+        hold.at(step as f64 / steps.count as f64, &self.recent)
+    }
+
+    /// Goes to the next sample of the input.
+    #[inline(always)]
+    pub(super) fn row<S: Simd>(&mut self, dynamics: &Dynamics, x: f64, row: f64) {
+        let steps = self.begin_row::<S>(dynamics, x, row);
+        for k in 1..=steps.count {
+            let input = self.input_at(dynamics, k, steps);
+            self.advance::<S>(dynamics, input, steps.length);
+        }
+    }
+
+    /// The newest sample of the scaled input.
+    #[inline(always)]
+    pub(super) fn newest_input(&self) -> f64 {
+        self.recent.values[0]
+    }
+
+    /// The scaled output where the motion is.
+    #[inline(always)]
+    pub(super) fn output<S: Simd>(&self, dynamics: &Dynamics) -> f64 {
+        let mut y = dynamics.direct * self.newest_input();
+        for (i, mode) in dynamics.modes.iter().enumerate() {
+            y += multiply_add::<S>(mode.velocity_in_output, self.velocities[i], self.displacements[i]);
+        }
+        for (element, force) in dynamics.elements.iter().zip(&self.forces) {
+            y = multiply_add::<S>(element.in_output, *force, y);
+        }
+        y
+    }
+
+    /// One step of a row, to the scaled input at its end.
+    #[inline(always)]
+    pub(super) fn advance<S: Simd>(&mut self, dynamics: &Dynamics, input: f64, step: f64) {
+        if step != self.step {
+            self.step = step;
+            for (propagation, mode) in self.propagations.iter_mut().zip(&dynamics.modes) {
+                *propagation = Propagation::new(mode.frequency, mode.damping, step);
+            }
+        }
+        (self.input_before, self.input) = (self.input, input);
+        self.move_alone::<S>(dynamics);
+        self.find_forces::<S>(dynamics);
+        for (place, way) in self.places.iter_mut().zip(&self.ways) {
+            place.copy_from(&way.to);
+        }
+    }
+
+    /// The modes without the forces at the end of the step.
+    #[inline(always)]
+    fn move_alone<S: Simd>(&mut self, dynamics: &Dynamics) {
+        self.displacements_before.copy_from_slice(&self.displacements);
+        self.velocities_before.copy_from_slice(&self.velocities);
+        for (i, (mode, by)) in dynamics.modes.iter().zip(&self.propagations).enumerate() {
+            let (q, p) = (self.displacements[i], self.velocities[i]);
+            let mut force = mode.gain * self.input_before;
+            for (element, r) in dynamics.elements.iter().zip(&self.forces) {
+                force = multiply_add::<S>(-element.compliances[i], *r, force);
+            }
+            let ahead = mode.gain * self.input;
+            let moved = |[a, b, c, d]: [f64; 4]| {
+                multiply_add::<S>(a, q, multiply_add::<S>(b, p, multiply_add::<S>(c, force, d * ahead)))
+            };
+            self.displacements_alone[i] = moved(by.displacement);
+            self.velocities_alone[i] = moved(by.velocity);
+        }
+    }
+
+    /// The modes under the forces at the end of the step.
+    #[inline(always)]
+    fn move_modes<S: Simd>(&mut self, dynamics: &Dynamics) {
+        for (i, by) in self.propagations.iter().enumerate() {
+            let mut force = 0.0;
+            for (element, r) in dynamics.elements.iter().zip(&self.forces) {
+                force = multiply_add::<S>(-element.compliances[i], *r, force);
+            }
+            self.displacements[i] = multiply_add::<S>(by.displacement[3], force, self.displacements_alone[i]);
+            self.velocities[i] = multiply_add::<S>(by.velocity[3], force, self.velocities_alone[i]);
+        }
+    }
+
+    /// The way of an element to where the modes are.
+    #[inline(always)]
+    fn try_way<S: Simd>(&mut self, dynamics: &Dynamics, index: usize) {
+        let element = &dynamics.elements[index];
+        let (mut displacement, mut velocity) = (element.of_input * self.input, 0.0);
+        for (i, (q, p)) in self.displacements.iter().zip(&self.velocities).enumerate() {
+            displacement = multiply_add::<S>(element.of_displacements[i], *q, displacement);
+            displacement = multiply_add::<S>(element.of_velocities[i], *p, displacement);
+            velocity = multiply_add::<S>(element.of_displacements[i], *p, velocity);
+        }
+        self.ways[index].go::<S>(element, &self.places[index], displacement, velocity);
+    }
+
+    /// Finds forces `r` with `R(r) = r`, where `R` follows from the displacements under `r` (theory.md (15.11)).
+    ///
+    /// Each force is moved by its mismatch over `1 - ∂R/∂r`, with the slope between the last two trials. A single
+    /// force is enclosed as well, because `R(r) - r` changes its sign between its bounds.
+    #[inline(always)]
+    fn find_forces<S: Simd>(&mut self, dynamics: &Dynamics) {
+        let count = dynamics.elements.len();
+        for e in 0..count {
+            let (before, here) = (self.forces_before[e], self.forces[e]);
+            self.forces_before[e] = here;
+            self.forces[e] = (2.0 * here - before).clamp(-self.largest[e], self.largest[e]);
+        }
+        let mut enclosed =
+            (-self.largest.first().copied().unwrap_or(0.0), self.largest.first().copied().unwrap_or(0.0));
+        for trial in 1..=MOST_TRIALS {
+            self.move_modes::<S>(dynamics);
+            (0..count).for_each(|e| self.try_way::<S>(dynamics, e));
+            let is_found = |e: usize| self.mismatch(e).abs() <= TOLERANCE * self.largest[e];
+            if trial == MOST_TRIALS || (0..count).all(is_found) {
+                return;
+            }
+            for e in 0..count {
+                let mismatch = self.mismatch(e);
+                let next = self.next_force(e, trial > 1);
+                self.forces[e] = next;
+                if count == 1 {
+                    let assumed = self.tried[0].0;
+                    if mismatch > 0.0 {
+                        enclosed.0 = assumed;
+                    } else {
+                        enclosed.1 = assumed;
+                    }
+                    let is_inside = next > enclosed.0 && next < enclosed.1;
+                    if !is_inside || trial > TRIALS_IN_HASTE && trial % 2 == 0 {
+                        self.forces[0] = 0.5 * (enclosed.0 + enclosed.1);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Difference of the force that follows from the one that is assumed.
+    #[inline(always)]
+    fn mismatch(&self, e: usize) -> f64 {
+        self.ways[e].to.force - self.forces[e]
+    }
+
+    /// The force to assume next.
+    #[inline(always)]
+    fn next_force(&mut self, e: usize, was_tried: bool) -> f64 {
+        let (assumed, follows, largest) = (self.forces[e], self.ways[e].to.force, self.largest[e]);
+        let (assumed_before, followed_before) = self.tried[e];
+        let by = assumed - assumed_before;
+        if was_tried && by.abs() > LEAST_DIFFERENCE * largest {
+            self.slopes[e] = ((follows - followed_before) / by).clamp(-LARGEST_SLOPE, STEEPEST_SLOPE);
+        }
+        self.tried[e] = (assumed, follows);
+        (assumed + (follows - assumed) / (1.0 - self.slopes[e])).clamp(-largest, largest)
+    }
+}

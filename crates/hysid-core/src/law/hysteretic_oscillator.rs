@@ -1,0 +1,75 @@
+//! Hysteretic oscillator: a mass on a spring, a damper and a hysteretic element, or several such modes.
+//!
+//! ```text
+//! m y'' + c y' + k y + r = u                                                theory.md (15.0)
+//! ```
+//!
+//! The input `u` is a force, a base acceleration or a voltage; the output `y` is the displacement of the mass. In modal
+//! form these are the equations of [`hysteretic_dynamics`](super::hysteretic_dynamics), which says how they are
+//! integrated and why the output is bounded. With one mode the restoring force `r` depends on the path of that mode's
+//! displacement; with several each element is between masses that the identification finds.
+//!
+//! The mass itself does not follow from the data if only `u` and `y` are known in their own units: `b/ω²` does, which
+//! is `1/k` of the mode, so that `m = 1/(b ω²)` for a force in newtons and a displacement in metres.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::law::facts::Facts;
+use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Motion, STATE_LIMITS};
+use crate::law::interval::Interval;
+use crate::law::{Law, Parameter, Sample};
+use crate::property::Property;
+
+/// A hysteretic oscillator in the user's units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct HystereticOscillator(pub Dynamics);
+
+impl Law for HystereticOscillator {
+    type State = Motion;
+
+    const FACTS: Facts = Facts {
+        needs_time: true,
+        limits: STATE_LIMITS,
+        ..Facts::searched(
+            "hysteretic-oscillator",
+            "masses on springs and dampers with hysteretic elements, for data with a resonance",
+            FIT_OPTIONS,
+            1.5,
+        )
+    };
+
+    fn virgin(&self) -> Motion {
+        self.0.virgin()
+    }
+
+    fn step(&self, motion: &mut Motion, sample: Sample) -> f64 {
+        self.0.step(motion, sample)
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        self.0.parameters()
+    }
+
+    fn validated(self) -> Result<Self> {
+        self.0.check("hysteretic oscillator")?;
+        Ok(self)
+    }
+
+    fn needs_steps(&self) -> bool {
+        true
+    }
+
+    fn is_step_free(&self) -> bool {
+        false
+    }
+
+    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
+        Vec::new()
+    }
+
+    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
+        self.0.output_bound(x)
+    }
+}

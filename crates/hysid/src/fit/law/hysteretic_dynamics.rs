@@ -1,0 +1,267 @@
+//! Identification of modes with hysteretic elements: a linear system first, then everything together on the error of
+//! the free run, by Levenberg-Marquardt with exact derivatives through time.
+//!
+//! ```text
+//! F(θ) = ½ Σ_k n_k (y_k - ŷ_k)²/N + ½ κ |θ|²                                  theory.md (15.15)
+//! ```
+//!
+//! `ŷ_k` is the output of the free run at row `k`, scaled; `n_k` is the number of periods that the row is the mean of,
+//! and `N` their sum. The penalty acts on the weights of the elements only. It falls in stages, and first the error
+//! over the beginning of the records is minimised, so that the elements learn small things before large ones.
+
+mod linear_start;
+mod records;
+mod task;
+
+use std::cmp::Ordering;
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+use serde_json::json;
+
+use crate::data::FEWEST_ROWS;
+use crate::data::record::Dataset;
+use crate::error::{Error, OptionError, Result};
+use crate::fit::law::search::{Effort, Identified, LawSoFar, SearchObserver, SearchProgress};
+use crate::law::Classical;
+use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, Layout, MOST_NEURONS, MOST_PARTS, Shape};
+use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
+use crate::optimise::multi_start::{MultiStart, Plan, Start};
+use crate::optimise::random::{generator, normal};
+use crate::options::classical::ClassicalOptions;
+use crate::options::table::check;
+use crate::stop_check::StopCheck;
+use crate::termination::Termination;
+use records::Records;
+use task::{Task, Value};
+
+/// Default number of starts of the search.
+pub(crate) const STARTS: usize = 2;
+
+/// Default number of iterations of each start.
+const EPOCHS: usize = 110;
+
+/// Default numbers of tanh neurons and states of an element.
+const HIDDEN: usize = 8;
+const STATES: usize = 2;
+
+/// Default number of modes of a state space model; an oscillator has one.
+const MODES_OF_STATE_SPACE: usize = 2;
+
+/// After so many epochs half of the starts are given up, and again after as many more.
+const EPOCHS_TO_PROVE_ITSELF: usize = 30;
+
+/// Stages: the epoch after which each ends, of [`EPOCHS`]; its penalty κ; and whether it sees only the beginning of the
+/// records. After the last the penalty follows from the error.
+const STAGES: [(usize, f64, bool); 4] =
+    [(12, 1e-4, true), (24, 1e-5, true), (36, 1e-6, true), (50, 1e-7, false)];
+
+/// Epochs after which the penalty follows the error again.
+const EPOCHS_OF_PENALTY: usize = 20;
+
+/// Size that weights are expected to have: with the penalty `ε²/(9 N)` a weight of 3 costs as much as one standard
+/// error.
+const EXPECTED_SQUARE: f64 = 9.0;
+
+/// First leaks along the path, in standard deviations of the displacement.
+const FIRST_LEAKS: (f64, f64) = (0.4, 4.0);
+
+/// First thresholds of stops, in the same unit.
+const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Asked {
+    form: Form,
+    modes: usize,
+    elements: usize,
+    shape: Shape,
+}
+
+impl Asked {
+    /// # Errors
+    /// Numbers that no model can have.
+    pub fn of(form: Form, options: &ClassicalOptions) -> Result<Self> {
+        let of_form = if form == Form::Oscillator { 1 } else { MODES_OF_STATE_SPACE };
+        let modes = options.modes.unwrap_or(of_form);
+        let shape = Shape {
+            stops: options.operators.unwrap_or(0),
+            states: options.states.unwrap_or(STATES),
+            neurons: options.hidden.unwrap_or(HIDDEN),
+        };
+        check([("modes", json!(modes)), ("states", json!(shape.states))])?;
+        let counts = [
+            ("hidden", shape.neurons, 1, MOST_NEURONS),
+            ("operators", shape.stops, 0, MOST_NEURONS),
+            ("states", shape.states, 1, MOST_PARTS),
+        ];
+        match counts.into_iter().find(|(_, count, least, most)| !(*least..=*most).contains(count)) {
+            Some((option, count, least, most)) => {
+                Err(OptionError::value(option, count, format!("choose {least} to {most}")).into())
+            }
+            None => Ok(Self { form, modes, elements: modes, shape }),
+        }
+    }
+
+    /// The layout of its parameters.
+    pub fn layout(&self) -> Layout {
+        Layout::new(self.form, self.modes, self.elements, self.shape)
+    }
+}
+
+/// Identifies modes and elements; `make` makes a law of them.
+pub(super) fn identify(
+    data: &Dataset,
+    asked: &Asked,
+    options: &ClassicalOptions,
+    make: &(dyn Fn(Dynamics) -> Classical + Sync),
+    observer: &mut SearchObserver<'_>,
+    stop: StopCheck<'_>,
+) -> Result<Identified<Dynamics>> {
+    data.check_identifiable(FEWEST_ROWS)?;
+    let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
+    let records = Records::of(data)?;
+    let linear = linear_start::find(&records, asked, stop).ok_or(Error::Stopped)?;
+    let layout = asked.layout();
+    let beginnings = |start| with_elements(&linear, asked, options.seed, start);
+    let template = beginnings(0);
+    let early = records.beginning();
+    let task = |drives| Task::new(&layout, &template, drives, stop);
+    let (early, whole) = (task(&early), task(&records.drives));
+
+    let begin = |start: usize| Walk::new(&early, layout.parameters(&beginnings(start)));
+    let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
+    walks.sort();
+    if walks.best().value().objective == f64::INFINITY {
+        return Err(Error::Stopped);
+    }
+    let mut tell = |round: usize, walks: &MultiStart<Walk>| {
+        let best = walks.best();
+        let law = || Some(make(layout.dynamics(best.search.parameters(), &template)));
+        let told = observer(SearchProgress {
+            round,
+            rounds: effort.epochs,
+            evaluations: walks.evaluations(),
+            train_nrmse_percent: best.value().nrmse_percent(),
+            law: LawSoFar(Some(&law)),
+        });
+        if stop.is_asked() { ControlFlow::Break(()) } else { told }
+    };
+    let plan =
+        Plan { rounds: effort.epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
+    let advance = |walk: &mut Walk, round: usize| walk.advance(round, effort.epochs, &early, &whole);
+    let termination = walks.run(plan, advance, |walks, round| tell(round, walks));
+    let best = walks.best();
+    let law = layout.dynamics(best.search.parameters(), &template);
+    let mean_square = whole.mean_square(best.search.parameters()).unwrap_or(best.value().mean_square);
+    Ok(Identified {
+        law,
+        train_nrmse_percent: 100.0 * mean_square.sqrt(),
+        evaluations: walks.evaluations(),
+        termination,
+        searched: Vec::new(),
+    })
+}
+
+/// A linear system with hysteretic elements whose forces are small, different for each start.
+fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> Dynamics {
+    let mut generator = generator(seed, start);
+    let mut random =
+        |count: usize, size: f64| -> Vec<f64> { (0..count).map(|_| size * normal(&mut generator)).collect() };
+    let Asked { form, modes, elements, shape } = *asked;
+    let Shape { stops, states, neurons } = shape;
+    let mut element = |e: usize| {
+        let mut of_displacements = if modes == 1 { vec![1.0] } else { random(modes, 0.4) };
+        of_displacements[e % modes] = 1.0;
+        let of_velocities = if form == Form::StateSpace { random(modes, 0.1) } else { vec![0.0; modes] };
+        Element {
+            compliances: of_displacements.clone(),
+            of_displacements,
+            of_velocities,
+            of_input: 0.0,
+            in_output: 0.0,
+            thresholds: (0..stops).map(|i| spaced(FIRST_THRESHOLDS, i, stops)).collect(),
+            layer: random(shape.inputs() * neurons, 1.2 / (shape.inputs() as f64).sqrt()),
+            rising: random(states * neurons, 0.1),
+            falling: random(states * neurons, 0.1),
+            path_leaks: (0..states).map(|i| spaced(FIRST_LEAKS, i, states)).collect(),
+            initial: vec![0.0; states],
+            force: random(stops + states + neurons, 0.05),
+        }
+    };
+    Dynamics { elements: (0..elements).map(&mut element).collect(), ..linear.clone() }
+}
+
+/// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
+fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
+    let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
+    low * (high / low).powf(share)
+}
+
+/// A start on its way.
+struct Walk {
+    search: LevenbergMarquardt<Value>,
+    stage: usize,
+    /// True in the last stage, which alone may end the search.
+    is_in_last: bool,
+    ended: Option<Termination>,
+    /// Evaluations of earlier stages.
+    earlier: usize,
+}
+
+impl Walk {
+    fn new(task: &Task<'_>, parameters: Vec<f64>) -> Self {
+        let search = LevenbergMarquardt::new(&task.with_penalty(STAGES[0].1), parameters);
+        Self { search, stage: 0, is_in_last: false, ended: None, earlier: 0 }
+    }
+
+    fn value(&self) -> &Value {
+        self.search.known_value().expect("a walk begins at a known value")
+    }
+
+    /// One epoch of so many, in the stage that it belongs to.
+    fn advance(&mut self, epoch: usize, epochs: usize, early: &Task<'_>, whole: &Task<'_>) {
+        let stage = stage(epoch, epochs);
+        self.is_in_last = stage == self::stage(epochs, epochs);
+        let is_early = STAGES.get(stage).is_some_and(|stage| stage.2);
+        let task = if is_early { early } else { whole };
+        let penalty = |mean_square: f64| match STAGES.get(stage) {
+            Some(&(_, penalty, _)) => penalty,
+            None => mean_square / (EXPECTED_SQUARE * task.rows),
+        };
+        if stage != self.stage {
+            self.earlier += self.search.evaluations();
+            let parameters = self.search.parameters().to_vec();
+            let known = self.value().mean_square;
+            self.search = LevenbergMarquardt::new(&task.with_penalty(penalty(known)), parameters);
+            (self.stage, self.ended) = (stage, None);
+        }
+        if self.ended.is_none() {
+            let penalty = self.value().penalty;
+            self.ended = self.search.advance(&task.with_penalty(penalty));
+        }
+    }
+}
+
+/// The stage of an epoch; fewer epochs than [`EPOCHS`] pass through all stages more quickly.
+fn stage(epoch: usize, epochs: usize) -> usize {
+    let scaled = if epochs < EPOCHS { epoch * EPOCHS / epochs } else { epoch };
+    match STAGES.iter().position(|(end, ..)| scaled <= *end) {
+        Some(stage) => stage,
+        None => STAGES.len() + (scaled - STAGES[STAGES.len() - 1].0) / EPOCHS_OF_PENALTY,
+    }
+}
+
+impl Start for Walk {
+    fn order(&self, other: &Self) -> Ordering {
+        self.value().objective.total_cmp(&other.value().objective)
+    }
+
+    fn evaluations(&self) -> usize {
+        self.earlier + self.search.evaluations()
+    }
+
+    fn ended(&self) -> Option<Termination> {
+        self.ended.filter(|_| self.is_in_last)
+    }
+}
