@@ -674,7 +674,7 @@ pub struct Generate {
     /// Standard deviation of Gaussian noise on the output, in percent of that of the output
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = noise)]
     pub noise: f64,
-    /// Seed of the noise; training and test data get different noise
+    /// Seed of the noise and of random excitations; training and test data get different ones
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     pub seed: u64,
     /// Describe all specimens

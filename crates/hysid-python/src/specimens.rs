@@ -9,14 +9,22 @@ use crate::data::Dataset;
 use crate::failure::refused;
 
 /// Name, example of the paper, summary, what is published, what is designed, training and test data.
-type Description = [&'static str; 7];
+type Description = (
+    &'static str,
+    Option<&'static str>,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+);
 
 /// All specimens.
 #[pyfunction]
 pub fn specimens() -> Vec<Description> {
     let described = |specimen: &&Specimen| {
         let Specimen { name, example, summary, published, designed, training, testing, .. } = specimen;
-        [*name, example, summary, published, designed, training, testing]
+        (*name, *example, *summary, *published, *designed, *training, *testing)
     };
     Specimen::all().iter().map(described).collect()
 }
@@ -28,6 +36,7 @@ pub fn specimen(name: &str, test: bool, noise: f64, seed: u64) -> PyResult<Datas
         let names: Vec<&str> = Specimen::all().iter().map(|specimen| specimen.name).collect();
         return Err(refused(format!("specimen `{name}` is unknown: choose one of {}", names.join(", "))));
     };
-    let (data, seed) = if test { (specimen.test(), !seed) } else { (specimen.train(), seed) };
+    let (data, seed) =
+        if test { (specimen.test_with_seed(seed), !seed) } else { (specimen.train_with_seed(seed), seed) };
     Ok(Dataset { set: Arc::new(with_noise(&data, noise, seed).map_err(refused)?) })
 }

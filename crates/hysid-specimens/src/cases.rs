@@ -7,7 +7,6 @@
 //! values are *designed*; the sources of the laws are given with them.
 
 mod devices;
-mod draw;
 mod driven;
 mod magnets;
 mod one_loop;
@@ -20,8 +19,8 @@ mod timed;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
+use super::draw::Draw;
 use super::noise::with_noise;
-use draw::Draw;
 pub use driven::{DrivenSpecimen, driven_specimen};
 pub use one_loop::one_loop;
 use plans::PLANS;

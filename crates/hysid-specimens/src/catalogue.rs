@@ -1,13 +1,17 @@
-//! The catalogue of specimens: those of the paper's examples.
+//! The catalogue of specimens: those of the paper's examples, then further ones.
 
 use crate::specimen::Specimen;
 use crate::{
-    concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator, rate_dependent_actuator,
-    reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator, terfenol_rod, two_wire_actuator,
+    bouc_wen_oscillator, concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator,
+    rate_dependent_actuator, reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator,
+    terfenol_rod, two_wire_actuator,
 };
 
-/// All specimens, in the order of the paper's examples.
-static ALL: [&Specimen; 12] = [
+/// Number of specimens of the paper's examples.
+const OF_THE_PAPER: usize = 12;
+
+/// All specimens: those of the paper's examples, in their order, then the structures with inertia.
+static ALL: [&Specimen; OF_THE_PAPER + 1] = [
     &ferromagnet::SPECIMEN,
     &reinforced_concrete_joint::SPECIMEN,
     &reinforced_concrete_joint::CYCLES,
@@ -20,12 +24,18 @@ static ALL: [&Specimen; 12] = [
     &rate_dependent_actuator::SPECIMEN,
     &rate_dependent_actuator::TONES,
     &magnetostrictive_actuator::SPECIMEN,
+    &bouc_wen_oscillator::SPECIMEN,
 ];
 
 impl Specimen {
-    /// All specimens, in the order of the paper's examples.
+    /// All specimens: those [of the paper's examples](Specimen::of_the_paper), then further ones.
     pub fn all() -> &'static [&'static Specimen] {
         &ALL
+    }
+
+    /// The specimens that replace measured ones of the paper, in the order of its examples.
+    pub fn of_the_paper() -> &'static [&'static Specimen] {
+        &ALL[..OF_THE_PAPER]
     }
 
     /// The specimen of this name; `None` if there is none.

@@ -205,7 +205,7 @@ impl Concrete {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "concrete",
-    example: "example 5",
+    example: Some("example 5"),
     summary: "concrete in cyclic compression: it softens, keeps permanent strain and loses stress with every cycle",
     published: "Popovics' envelope and Karsan and Jirsa's permanent strain (as in Concrete04 of OpenSees); the shape of \
                 unloading and the stress lost after Mander, Priestley and Park",
@@ -216,8 +216,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the strain goes on to 20 other turning points between 2 and 4.4 mm/m; the training part comes first, with \
               blank outputs, so that damage is carried over",
     columns: Columns { time: Some("t_s"), input: "strain_mm_per_m", output: "stress_MPa" },
-    train: || Ok(vec![parts()?.0]),
-    test: || Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![parts()?.0]),
+    test: |_| Ok(vec![parts()?.1]),
 };
 
 /// Turning points of the strain in mm/m to begin training with.

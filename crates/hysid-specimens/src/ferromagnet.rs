@@ -221,7 +221,7 @@ impl Ferromagnet {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "ferromagnet",
-    example: "example 1",
+    example: Some("example 1"),
     summary: "electrical steel sheet M330-50A: field and flux density, a Preisach model with minor loops",
     published: "the Everett function and its parameters for M330-50A (Modelica Standard Library, \
                 HysteresisEverettParameter, in the copies of Wolfram System Modeler)",
@@ -230,8 +230,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                all over the range",
     testing: "a demagnetised sheet on another path: other amplitudes and other minor loops within the same range",
     columns: Columns { time: None, input: "H_A_per_m", output: "B_T" },
-    train: || Ok(vec![magnetised("growing and minor loops", &trained(), TRAINED_ROWS)?]),
-    test: || Ok(vec![magnetised("other loops", &TEST, ROWS)?]),
+    train: |_| Ok(vec![magnetised("growing and minor loops", &trained(), TRAINED_ROWS)?]),
+    test: |_| Ok(vec![magnetised("other loops", &TEST, ROWS)?]),
 };
 
 /// Rows of each record, about.

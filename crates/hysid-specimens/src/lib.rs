@@ -7,15 +7,19 @@
 //!
 //! `theory.md (6.1)` on these pages is the number of an equation in `docs/theory.md` of the repository.
 
+pub mod bouc_wen_oscillator;
 pub mod cases;
 mod catalogue;
 pub mod concrete;
 mod cyclic_plasticity;
+mod decimation;
+mod draw;
 mod elastomer;
 pub mod ferromagnet;
 pub mod generalized_play;
 mod magnetorheological_damper;
 pub mod magnetostrictive_actuator;
+mod multisine;
 mod noise;
 mod path;
 mod peak_oriented;
@@ -30,6 +34,7 @@ pub mod terfenol_rod;
 mod tones;
 pub mod two_wire_actuator;
 
+pub use bouc_wen_oscillator::BoucWenOscillator;
 pub use concrete::{Concrete, ConcreteParameters};
 pub use ferromagnet::{Everett, Ferromagnet};
 pub use generalized_play::GeneralizedPlays;

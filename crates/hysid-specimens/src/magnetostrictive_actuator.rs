@@ -123,7 +123,7 @@ pub fn run(time: &[f64], current: &[f64]) -> Vec<f64> {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "magnetostrictive-actuator",
-    example: "example 7",
+    example: Some("example 7"),
     summary: "magnetostrictive actuator from 10 to 300 Hz: hysteresis, a lag, and a resonance at 1.5 kHz",
     published: "that hysteresis is coupled with a lag and a resonance (Tan and Baras), and the current of 0.1 A ± 0.8 A \
                 at eight frequencies from 10 to 300 Hz (the paper)",
@@ -132,8 +132,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                counts",
     testing: "sines at 50 and 200 Hz, likewise",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
-    train: || [10.0, 25.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
-    test: || [50.0, 200.0].into_iter().map(sine).collect(),
+    train: |_| [10.0, 25.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
+    test: |_| [50.0, 200.0].into_iter().map(sine).collect(),
 };
 
 /// Mean of the current in A.

@@ -97,7 +97,7 @@ pub fn periodic_response(voltage: &[f64], period: f64) -> Vec<f64> {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "piezo-actuator",
-    example: "example 6",
+    example: Some("example 6"),
     summary: "piezo actuator from 0.5 to 300 Hz: elliptic loops that shrink and open with frequency",
     published: "the elliptic law (Gu and Zhu), and that 50 and 200 Hz are not trained on (the paper)",
     designed: "all values, and the frequencies to train on",
@@ -105,8 +105,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                then one that counts",
     testing: "sines of 50 and 200 Hz, likewise",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
-    train: || [0.5, 1.0, 5.0, 10.0, 25.0, 75.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
-    test: || [50.0, 200.0].into_iter().map(sine).collect(),
+    train: |_| [0.5, 1.0, 5.0, 10.0, 25.0, 75.0, 100.0, 150.0, 250.0, 300.0].into_iter().map(sine).collect(),
+    test: |_| [50.0, 200.0].into_iter().map(sine).collect(),
 };
 
 /// Rows of a period.

@@ -85,7 +85,7 @@ pub(super) static SPECIMEN: Specimen = ACTUATOR;
 
 const ACTUATOR: Specimen = Specimen {
     name: "rate-dependent-actuator",
-    example: "example 6",
+    example: Some("example 6"),
     summary: "actuator whose loops widen with speed: a Prandtl-Ishlinskii law with thresholds that grow with the rate",
     published: "the rate-dependent Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su)",
     designed: "all values and all inputs",
@@ -93,8 +93,8 @@ const ACTUATOR: Specimen = Specimen {
                blank outputs, from the virgin state, then two that count",
     testing: "sines of 10 V at 25 and at 75 Hz, likewise, and, unlike all in training, a sum of tones at 5, 30 and 60 Hz",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "displacement_um" },
-    train: || FREQUENCIES.into_iter().map(|frequency| sine(frequency, PERIODS)).collect(),
-    test: || Ok(vec![sine(25.0, PERIODS)?, sine(75.0, PERIODS)?, three_tones()?]),
+    train: |_| FREQUENCIES.into_iter().map(|frequency| sine(frequency, PERIODS)).collect(),
+    test: |_| Ok(vec![sine(25.0, PERIODS)?, sine(75.0, PERIODS)?, three_tones()?]),
 };
 
 /// The same actuator, with sums of tones among its training data.
@@ -106,7 +106,7 @@ pub(super) static TONES: Specimen = Specimen {
     summary: "the same rate-dependent actuator, trained on sums of tones too",
     training: "the ten sines of rate-dependent-actuator, of which one period counts, and eight sums of three tones \
                between 5 and 80 Hz that reach 10 V at most, 0.12 s each, from the virgin state",
-    train: || {
+    train: |_| {
         let sines = FREQUENCIES.into_iter().map(|frequency| sine(frequency, 2));
         sines.chain(MIXTURES.iter().enumerate().map(mixture)).collect()
     },

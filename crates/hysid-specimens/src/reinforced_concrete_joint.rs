@@ -254,7 +254,7 @@ pub(super) static SPECIMEN: Specimen = JOINT;
 
 const JOINT: Specimen = Specimen {
     name: "reinforced-concrete-joint",
-    example: "example 2",
+    example: Some("example 2"),
     summary: "beam-column joint in a slow cyclic test: strength and stiffness decline, loops pinch",
     published: "the Bouc-Wen-Baber-Noori equations and the parameters β, γ, n, ν, A, η, p (demonstration set of \
                 BWBN_TMCMC, after Foliente 1995)",
@@ -265,8 +265,8 @@ const JOINT: Specimen = Specimen {
     testing: "the whole history with blank outputs in the first 70 %, so that damage and memory are carried over; \
               the rest is scored, and goes to larger drift than any in training",
     columns: Columns { time: Some("t_s"), input: "displacement_mm", output: "force_kN" },
-    train: || Ok(vec![halves()?.0]),
-    test: || Ok(vec![halves()?.1]),
+    train: |_| Ok(vec![halves()?.0]),
+    test: |_| Ok(vec![halves()?.1]),
 };
 
 /// The same test, of which whole cycles are unseen.
@@ -276,8 +276,8 @@ pub(super) static CYCLES: Specimen = Specimen {
     training: "drift of 0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4 and 5 %, three cycles each, a row a second: the first two \
                cycles at each drift; the third has blank outputs",
     testing: "the same history with outputs in the third cycle at each drift alone",
-    train: || Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 < CYCLES_EACH)?]),
-    test: || Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 == CYCLES_EACH)?]),
+    train: |_| Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 < CYCLES_EACH)?]),
+    test: |_| Ok(vec![cycles(|cycle| cycle % CYCLES_EACH + 1 == CYCLES_EACH)?]),
     ..JOINT
 };
 

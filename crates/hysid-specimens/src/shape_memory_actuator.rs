@@ -38,7 +38,7 @@ pub fn law() -> GeneralizedPlays {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "shape-memory-actuator",
-    example: "example 4",
+    example: Some("example 4"),
     summary: "shape-memory-alloy actuator of a morphing wing: steep, wide loops that saturate at both ends",
     published: "the generalized Prandtl-Ishlinskii law and all its values, identified on measurements (PI_11P.m, \
                 Basaeri et al. 2019), and the range 0 to 2.4 V",
@@ -48,8 +48,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the voltage goes on to other peaks and other minor loops in the same range; the training part comes \
               first, with blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "voltage_V", output: "output" },
-    train: || Ok(vec![parts()?.0]),
-    test: || Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![parts()?.0]),
+    test: |_| Ok(vec![parts()?.1]),
 };
 
 /// Turning points of the voltage in V to begin training with.

@@ -19,8 +19,8 @@ use hysid_core::error::Result;
 pub struct Specimen {
     /// Name on the command line.
     pub name: &'static str,
-    /// The example of the paper that it replaces.
-    pub example: &'static str,
+    /// The example of the paper whose measured specimen it replaces; `None` for a further specimen.
+    pub example: Option<&'static str>,
     /// Description in one line.
     pub summary: &'static str,
     /// Published laws and values, with their sources.
@@ -32,8 +32,10 @@ pub struct Specimen {
     /// Generation of the test data.
     pub testing: &'static str,
     pub(super) columns: Columns,
-    pub(super) train: fn() -> Result<Vec<Record>>,
-    pub(super) test: fn() -> Result<Vec<Record>>,
+    /// The training records of a seed. The seed draws what is random in the protocol.
+    pub(super) train: fn(u64) -> Result<Vec<Record>>,
+    /// The test records of a seed.
+    pub(super) test: fn(u64) -> Result<Vec<Record>>,
 }
 
 /// Names of a specimen's columns, with their units.
@@ -55,14 +57,27 @@ impl Specimen {
         }
     }
 
-    /// The training records, without noise.
+    /// The training records of seed 1. Only a published benchmark whose training data contain noise has noise here;
+    /// [`with_noise`](crate::with_noise) adds more.
     pub fn train(&self) -> Dataset {
-        self.dataset((self.train)())
+        self.train_with_seed(1)
     }
 
-    /// The test records, without noise.
+    /// The test records of seed 1, without noise.
     pub fn test(&self) -> Dataset {
-        self.dataset((self.test)())
+        self.test_with_seed(1)
+    }
+
+    /// The training records whose random excitation has this seed. Without random excitation all seeds give the same
+    /// records.
+    pub fn train_with_seed(&self, seed: u64) -> Dataset {
+        self.dataset((self.train)(seed))
+    }
+
+    /// The test records whose random excitation has this seed. Their excitation differs from that of the training
+    /// records of the same seed.
+    pub fn test_with_seed(&self, seed: u64) -> Dataset {
+        self.dataset((self.test)(seed))
     }
 
     fn dataset(&self, records: Result<Vec<Record>>) -> Dataset {

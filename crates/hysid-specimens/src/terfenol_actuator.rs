@@ -28,7 +28,7 @@ pub fn law() -> GeneralizedPlays {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "terfenol-actuator",
-    example: "example 3",
+    example: Some("example 3"),
     summary: "magnetostrictive actuator at low speed: saturating, asymmetric loops of current and displacement",
     published: "the generalized Prandtl-Ishlinskii law (Al Janaideh, Rakheja, Su) and the range of the current, -0.7 \
                 to 1.2 A (the paper)",
@@ -38,8 +38,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
-    train: || Ok(vec![parts()?.0]),
-    test: || Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![parts()?.0]),
+    test: |_| Ok(vec![parts()?.1]),
 };
 
 /// Turning points of the current in A to begin training with; the first seven swings have the paper's extremes.

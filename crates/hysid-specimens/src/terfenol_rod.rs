@@ -38,7 +38,7 @@ pub fn run(current: &[f64]) -> Vec<f64> {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "terfenol-rod",
-    example: "example 3",
+    example: Some("example 3"),
     summary: "magnetostrictive rod under a bias: the displacement goes with the square of a Preisach model",
     published: "the square of a Preisach model (Tan and Baras), the Everett function of Vacoflux 17 (Modelica Standard \
                 Library), the range of the current (the paper)",
@@ -46,6 +46,6 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     training: "as for terfenol-actuator",
     testing: "as for terfenol-actuator",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "displacement_um" },
-    train: || Ok(vec![terfenol_actuator::driven(run)?.0]),
-    test: || Ok(vec![terfenol_actuator::driven(run)?.1]),
+    train: |_| Ok(vec![terfenol_actuator::driven(run)?.0]),
+    test: |_| Ok(vec![terfenol_actuator::driven(run)?.1]),
 };

@@ -55,7 +55,7 @@ pub fn run(current: &[f64]) -> Vec<f64> {
 
 pub(super) static SPECIMEN: Specimen = Specimen {
     name: "two-wire-actuator",
-    example: "example 4",
+    example: Some("example 4"),
     summary: "two shape-memory wires that pull against each other: a loop on either side, one weaker than the other",
     published: "two wires heated by currents of either sign between -1 and 1 A (Gorbet, as the paper tells)",
     designed: "the law of the wires, a borrowed Everett function, and all factors; the turning points of the current",
@@ -63,8 +63,8 @@ pub(super) static SPECIMEN: Specimen = Specimen {
     testing: "the current goes on to other turning points in the same range; the training part comes first, with \
               blank outputs, so that the memory is carried over",
     columns: Columns { time: Some("t_s"), input: "current_A", output: "angle_deg" },
-    train: || Ok(vec![parts()?.0]),
-    test: || Ok(vec![parts()?.1]),
+    train: |_| Ok(vec![parts()?.0]),
+    test: |_| Ok(vec![parts()?.1]),
 };
 
 /// Turning points of the current in A to begin training with.

@@ -42,8 +42,8 @@ fn generate(specimen: &Specimen, arguments: &Generate) -> Result<()> {
     let set = |path: Option<&'_ Path>, what, data: Dataset, seed| -> Result<Option<Set>> {
         path.map(|path| Set::new(path, what, with_noise(&data, noise, seed)?, arguments)).transpose()
     };
-    let train = set(train, "training", specimen.train(), seed)?;
-    let test = set(test, "test", specimen.test(), !seed)?;
+    let train = set(train, "training", specimen.train_with_seed(seed), seed)?;
+    let test = set(test, "test", specimen.test_with_seed(seed), !seed)?;
     let file = |set: &'_ Option<Set>| set.as_ref().and_then(|set| set.destination.clone());
     let [train_file, test_file] = [&train, &test].map(file);
     check_outputs(&train_file.iter().chain(&test_file).collect::<Vec<_>>(), &[])?;
@@ -120,7 +120,8 @@ fn description(specimen: &Specimen) -> String {
         ("training", specimen.training),
         ("test", specimen.testing),
     ];
-    let mut text = format!("{} ({} of the paper)\n", specimen.name, specimen.example);
+    let example = specimen.example.map(|example| format!(" ({example} of the paper)")).unwrap_or_default();
+    let mut text = format!("{}{example}\n", specimen.name);
     for (what, words) in lines {
         let indent = if what.is_empty() { 2 } else { 13 };
         let words = indented(words, indent);
@@ -133,7 +134,7 @@ fn description(specimen: &Specimen) -> String {
 #[derive(serde::Serialize)]
 struct Described {
     name: &'static str,
-    example: &'static str,
+    example: Option<&'static str>,
     summary: &'static str,
     published: &'static str,
     designed: &'static str,

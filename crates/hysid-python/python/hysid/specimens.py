@@ -59,8 +59,8 @@ class Specimen:
     ----------
     name : str
         Its name.
-    example : str
-        The example of the paper that it replaces.
+    example : str or None
+        The example of the paper whose measured specimen it replaces; None for a further specimen.
     summary : str
         Description in one line.
     published, designed : str
@@ -70,7 +70,7 @@ class Specimen:
     """
 
     name: str
-    example: str
+    example: str | None
     summary: str
     published: str
     designed: str
@@ -85,7 +85,7 @@ class Specimen:
         noise : float
             Standard deviation of Gaussian noise on the output, in percent of that of the output.
         seed : int
-            Seed of the noise; training and test data get different noise.
+            Seed of the noise and of random excitations; training and test data get different ones.
 
         Returns
         -------
@@ -113,7 +113,7 @@ class Specimen:
 
 
 def specimens() -> list[Specimen]:
-    """List all specimens, in the order of the paper's examples.
+    """List all specimens: those of the paper's examples, in their order, then further ones.
 
     Returns
     -------

@@ -14,8 +14,8 @@ use hysid_core::law::modified_prandtl_ishlinskii::{DeadZoneParts, DeadZones, Mod
 use hysid_core::law::prandtl_ishlinskii::PrandtlIshlinskii;
 use hysid_core::operator::Relaxation;
 
-use super::draw::Draw;
 use super::subject::Subject;
+use crate::draw::Draw;
 
 /// A shape-memory actuator by generalized plays: the published law with its values perturbed. Steepness and
 /// shift of an envelope have one factor, so that it stays where it is.

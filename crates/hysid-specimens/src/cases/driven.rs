@@ -1,8 +1,8 @@
 //! Specimens of the cases that are driven along any input, to compare experiments.
 
-use super::draw::Draw;
 use super::plans::PLANS;
 use super::subject::Subject;
+use crate::draw::Draw;
 use hysid_core::data::record::{ColumnNames, Record};
 use hysid_core::error::Result;
 use hysid_core::law::Sample;

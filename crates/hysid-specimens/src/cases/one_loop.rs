@@ -4,10 +4,10 @@ use crate::path;
 use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 
-use super::draw::Draw;
 use super::plans::{PLANS, Plan};
 use super::subject::Subject;
 use super::{Case, noisy};
+use crate::draw::Draw;
 
 /// A generator of its own, apart from that of the other cases.
 const FIRST_DRAW: usize = 1000;

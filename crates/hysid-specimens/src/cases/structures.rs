@@ -9,8 +9,8 @@ use hysid_core::law::bouc_wen::BoucWen;
 use hysid_core::law::masing::{Masing, MasingParts};
 use hysid_core::operator::{DeterioratingStop, Operator};
 
-use super::draw::Draw;
 use super::subject::Subject;
+use crate::draw::Draw;
 
 /// A member after Baber and Noori with its values perturbed, driven to `ductility` displacement scales.
 fn bouc_wen_baber_noori(draw: &mut Draw, mean: BoucWenBaberNoori, ductility: f64) -> Subject {

@@ -8,8 +8,8 @@ use hysid_core::error::Result;
 use hysid_core::law::Sample;
 
 use super::Parts;
-use super::draw::Draw;
 use super::subject::Subject;
+use crate::draw::Draw;
 
 /// Steps of the simulation from row to row.
 const STEPS_PER_ROW: usize = 10;

@@ -127,8 +127,8 @@ impl Studio {
         let specimen = Specimen::named(name).ok_or_else(|| anyhow!("there is no specimen \"{name}\""))?;
         // As of `hysid generate`: test data have a noise of their own.
         let sets = [
-            (format!("{name}-train.csv"), specimen.train(), seed, Use::Training),
-            (format!("{name}-test.csv"), specimen.test(), !seed, Use::Unseen),
+            (format!("{name}-train.csv"), specimen.train_with_seed(seed), seed, Use::Training),
+            (format!("{name}-test.csv"), specimen.test_with_seed(seed), !seed, Use::Unseen),
         ];
         let take = |(name, data, seed, usage): (String, Dataset, u64, Use)| {
             let text = csv_text(&with_noise(&data, noise_percent, seed)?)?;

@@ -1,4 +1,4 @@
-//! What chance adds to a plan.
+//! What chance adds to a plan or to an excitation.
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -11,15 +11,15 @@ const SPREAD: f64 = 0.2;
 /// Normal numbers beyond are cut, so that no parameter leaves its meaning.
 const LARGEST_NORMAL: f64 = 2.5;
 
-/// The random numbers of a case.
+/// The random numbers of a case, or of a record.
 pub(super) struct Draw(Xoshiro256PlusPlus);
 
 impl Draw {
-    /// Those of the case with this number: independent of how many others there are.
+    /// Those of the case or record with this number: independent of how many others there are.
     pub fn new(seed: u64, index: usize) -> Self {
         let mut of_seed = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let of_case = of_seed.random::<u64>().wrapping_add(index as u64);
-        Self(Xoshiro256PlusPlus::seed_from_u64(of_case))
+        let of_index = of_seed.random::<u64>().wrapping_add(index as u64);
+        Self(Xoshiro256PlusPlus::seed_from_u64(of_index))
     }
 
     /// Evenly between two values.
@@ -37,9 +37,14 @@ impl Draw {
         self.0.random_range(low..=high)
     }
 
+    /// `N(0, 1)`
+    pub fn normal(&mut self) -> f64 {
+        normal(&mut self.0)
+    }
+
     /// `e^{spread N(0, 1)}`
     pub fn factor(&mut self, spread: f64) -> f64 {
-        (spread * normal(&mut self.0).clamp(-LARGEST_NORMAL, LARGEST_NORMAL)).exp()
+        (spread * self.normal().clamp(-LARGEST_NORMAL, LARGEST_NORMAL)).exp()
     }
 
     /// A parameter: the value times `e^{0.2 N(0, 1)}`.
