@@ -29,7 +29,7 @@ pub struct Drive {
     pub x: Vec<f64>,
     /// Time since the row before, in the unit of time; infinite in a lead-in.
     pub steps: Vec<f64>,
-    /// The output in scaled units; NaN where it is not compared.
+    /// The output divided by its scale; NaN where it is not compared.
     pub targets: Vec<f64>,
     /// Weight of each row; the square root of the number of rows that it stands for.
     pub weights: Vec<f64>,
@@ -99,6 +99,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Run { dynamics, drives, stop } = self.run;
         let mut pace = Pace::new(stop);
+        let offset = dynamics.output_offset / dynamics.output_scale;
         let mut sensitivities = self.layout.map(|layout| Sensitivities::new(dynamics, layout));
         let columns = self.layout.map_or(0, Layout::count);
         let per_step = 400 + 40 * columns;
@@ -131,7 +132,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
                 if let Some(sensitivities) = &mut sensitivities {
                     sensitivities.of_output::<S>(dynamics, &motion, weight, &mut row[..columns]);
                 }
-                row[columns] = weight * (motion.output::<S>(dynamics) - target);
+                row[columns] = weight * (offset + motion.output::<S>(dynamics) - target);
                 self.rows.take(simd, &row);
             }
         }

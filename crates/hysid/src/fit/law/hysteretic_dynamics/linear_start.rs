@@ -32,8 +32,13 @@ const EPOCHS: usize = 25;
 /// Steps in a period of the fastest mode that vibrates.
 const STEPS_PER_PERIOD: f64 = 60.0;
 
-/// An input is smooth if the cubic through its neighbours predicts it better than a straight line by this factor.
-const SMOOTH: f64 = 0.5;
+/// An input is smooth if the variance of its fourth difference is less than this share of what it is for a random
+/// sequence, `1 + 16 + 36 + 16 + 1` times the variance.
+const SMOOTH: f64 = 0.02;
+const OF_RANDOM_SEQUENCE: f64 = 70.0;
+
+/// Rows at most that tell how a motion began.
+const MOST_FIRST_ROWS: f64 = 1000.0;
 
 /// A small penalty that keeps coefficients without influence at 0.
 const RIDGE: f64 = 1e-10;
@@ -68,29 +73,37 @@ pub(super) fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Opt
     }
     let mut best: Option<(Dynamics, f64)> = None;
     for &hold in holds {
-        for begins_under_input in [false, true] {
-            let found = improved(Dynamics { hold, begins_under_input, ..system.clone() }, asked, &few, stop)?;
-            if best.as_ref().is_none_or(|best| found.1 < best.1) {
-                best = Some(found);
-            }
+        let found = improved(Dynamics { hold, ..system.clone() }, asked, &few, stop)?;
+        if best.as_ref().is_none_or(|best| found.1 < best.1) {
+            best = Some(found);
         }
     }
-    improved(best?.0, asked, &records.drives, stop).map(|found| found.0)
+    let at_rest = best?.0;
+    let under_input = Dynamics { begins_under_input: true, ..at_rest.clone() };
+    let first = records.first_rows(first_rows(&at_rest, records.step));
+    let square = |dynamics: &Dynamics| Run { dynamics, drives: &first, stop }.half_square();
+    let begins = if square(&under_input)? < square(&at_rest)? { under_input } else { at_rest };
+    improved(begins, asked, &records.drives, stop).map(|found| found.0)
 }
 
-/// True if a cubic through the neighbours of a sample predicts it much better than a straight line does.
+/// Rows of a quarter of a period, in which a motion is still as it began.
+fn first_rows(system: &Dynamics, step: f64) -> usize {
+    let fastest = system.modes.iter().map(|mode| mode.frequency).fold(0.0, f64::max);
+    let quarter = 0.25 * std::f64::consts::TAU / (fastest * step);
+    quarter.clamp(2.0, MOST_FIRST_ROWS).ceil() as usize
+}
+
+/// True if the input has next to nothing of the highest frequencies that its samples could have: the variance of its
+/// fourth difference, compared with that of a random sequence.
 fn is_smooth(drives: &[Drive]) -> bool {
-    let (mut cubic, mut straight) = (0.0, 0.0);
+    let (mut difference, mut square) = (0.0, 0.0);
     for drive in drives {
-        for k in 3..drive.x.len().saturating_sub(3) {
-            let x = |offset: usize| drive.x[k + offset - 3];
-            let near = 0.5 * (x(2) + x(4));
-            let far = 0.5 * (x(0) + x(6));
-            straight += (near - x(3)).powi(2);
-            cubic += (near + (near - far) / 8.0 - x(3)).powi(2);
-        }
+        let mean = drive.x.iter().sum::<f64>() / drive.x.len() as f64;
+        square += drive.x.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+        let fourth = |x: &[f64]| x[0] - 4.0 * x[1] + 6.0 * x[2] - 4.0 * x[3] + x[4];
+        difference += drive.x.windows(5).map(|x| fourth(x).powi(2)).sum::<f64>();
     }
-    cubic < SMOOTH * SMOOTH * straight
+    difference < SMOOTH * OF_RANDOM_SEQUENCE * square
 }
 
 /// The mode that lowers the error most beside those that there are.

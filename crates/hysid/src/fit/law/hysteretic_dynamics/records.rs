@@ -48,7 +48,7 @@ impl Records {
         let drives: Vec<Drive> = series
             .iter()
             .map(|series| {
-                let whole = scaled(series, output_mean, output_scale);
+                let whole = scaled(series, output_scale);
                 let averaged = averaged(&whole, EQUAL * largest).unwrap_or(whole);
                 if share < 1.0 { begun(&averaged, share) } else { averaged }
             })
@@ -65,6 +65,11 @@ impl Records {
         self.first(EARLY.max(FEWEST_EARLY as f64 / rows as f64))
     }
 
+    /// So many rows of each record.
+    pub fn first_rows(&self, rows: usize) -> Vec<Drive> {
+        self.drives.iter().map(|drive| begun(drive, rows as f64 / drive.x.len() as f64)).collect()
+    }
+
     /// A share of each record, from its beginning.
     pub fn first(&self, share: f64) -> Vec<Drive> {
         let share = share.min(1.0);
@@ -74,11 +79,11 @@ impl Records {
     }
 }
 
-fn scaled(series: &Series, mean: f64, deviation: f64) -> Drive {
+fn scaled(series: &Series, deviation: f64) -> Drive {
     Drive {
         x: series.samples.iter().map(|sample| sample.x).collect(),
         steps: series.samples.iter().map(|sample| sample.step).collect(),
-        targets: series.output.iter().map(|y| (y - mean) / deviation).collect(),
+        targets: series.output.iter().map(|y| y / deviation).collect(),
         weights: vec![1.0; series.output.len()],
     }
 }
