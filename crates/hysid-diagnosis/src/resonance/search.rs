@@ -12,8 +12,8 @@ const FEWEST_CYCLES: f64 = 2.0;
 const MOST_CYCLES: f64 = 0.3;
 
 /// Frequencies of the grid, each so much higher than the one before, and their damping ratios.
-const FACTOR: f64 = 1.06;
-const DAMPING_RATIOS: [f64; 4] = [0.02, 0.07, 0.2, 0.6];
+const FACTOR: f64 = 1.1;
+const DAMPING_RATIOS: [f64; 3] = [0.03, 0.12, 0.5];
 
 /// Damping ratios between which the best is looked for.
 const LEAST_DAMPING: f64 = 5e-4;

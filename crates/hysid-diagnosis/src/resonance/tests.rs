@@ -210,3 +210,14 @@ fn large_and_small_values_are_compared_without_panic() {
         }
     }
 }
+
+#[test]
+fn generated_cases_are_no_resonance() {
+    let mut compared = 0;
+    for case in hysid_specimens::cases::generated(36, 3).unwrap() {
+        let Some(found) = Resonance::of(&case.train) else { continue };
+        assert!(found.ratio > 0.8 && !found.is_found(), "{}: {found:?}", case.name);
+        compared += 1;
+    }
+    assert!(compared >= 10, "{compared}");
+}
