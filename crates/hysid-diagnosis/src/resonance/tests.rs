@@ -10,8 +10,8 @@ use crate::{DataIssue, DataIssueKind, Diagnosis, DiagnosisOptions};
 const STEPS: usize = 20;
 const RATE: f64 = 750.0;
 
-/// A sum of sines of 5 to 150 Hz, one each Hertz, of phases without order: a force of 50 N root mean square at the row, a
-/// whole number of halves of a step of the integration.
+/// A sum of sines of 5 to 150 Hz, one each Hertz, of phases without order: a force of 50 N root mean square, in
+/// halves of a step of the integration.
 struct Multisine(Vec<f64>);
 
 impl Multisine {
@@ -29,8 +29,8 @@ impl Multisine {
     }
 }
 
-/// A mass of 2 kg with a damper in Ns/m under the force, from rest. What else holds it is a force of `(y, r)`, with `r'` from
-/// `(y', r)`. Columns of time, force and displacement.
+/// A mass of 2 kg with a damper in Ns/m under the force, from rest. What else holds it is a force of `(y, r)`, with
+/// `r'` from `(y', r)`. Columns of time, force and displacement.
 fn oscillator(
     rows: usize,
     damper: f64,
