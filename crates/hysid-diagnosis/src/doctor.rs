@@ -11,6 +11,7 @@ mod hum;
 mod lag;
 mod marks;
 mod repetition;
+mod resonance;
 mod sampling;
 mod spikes;
 mod start;
@@ -55,6 +56,8 @@ pub enum DataIssueKind {
     HeldSamples,
     /// The output swings with a period of its own.
     Hum,
+    /// The output swings as that of a mass on a spring.
+    Resonance,
     /// A column has few different values.
     CoarseResolution,
     /// Time steps change within a record.
@@ -134,6 +137,7 @@ pub(crate) fn examine(
         artifacts::added(survey, drift::complaints(survey, cycles), explanations, DataIssueKind::Drift),
         creep::complaints(survey),
         hum::complaints(survey),
+        resonance::complaints(survey).into_iter().collect(),
         clipping::complaints(survey),
         repetition::complaints(survey),
         sampling::complaints(survey),

@@ -33,6 +33,7 @@ mod odd_symmetry;
 mod orientation;
 mod rate_dependence;
 pub mod residuals;
+pub mod resonance;
 pub mod reversal_curves;
 mod saturation;
 pub mod serial;

@@ -1,0 +1,33 @@
+//! Resonance: the output swings as a mass on a spring does, and a law without inertia cannot, theory.md (10.28).
+
+use super::{DataIssue, DataIssueKind, Severity, Units};
+use crate::branch::BranchSet;
+use crate::resonance::Resonance;
+use hysid_core::significant::Significant;
+
+/// Records that are shown.
+const SHOWN: usize = 3;
+
+pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
+    let found = Resonance::of(survey.data).filter(Resonance::is_found)?;
+    let seconds = Units::of(survey).time.as_deref() == Some("s");
+    let statement = format!(
+        "this looks like a resonance at {:.3} {} (damping {:.2} %): a linear oscillator leaves {:.2} of what the best \
+         memoryless and stop-operator fit leaves; fit a model with inertia (--model hysteretic-oscillator)",
+        Significant(found.oscillator.natural_frequency),
+        if seconds { "Hz" } else { "cycles per unit of time" },
+        Significant(100.0 * found.oscillator.damping_ratio),
+        found.ratio
+    );
+    Some(DataIssue {
+        record: None,
+        value: Some(found.oscillator.natural_frequency),
+        unit: seconds.then(|| "Hz".into()),
+        ..DataIssue::of_rows(
+            DataIssueKind::Resonance,
+            Severity::Warning,
+            statement,
+            found.rows.into_iter().take(SHOWN).collect(),
+        )
+    })
+}
