@@ -207,11 +207,8 @@ impl Motion {
                 force = multiply_add::<S>(-element.compliances[i], *r, force);
             }
             let ahead = mode.gain * self.input;
-            let moved = |[a, b, c, d]: [f64; 4]| {
-                multiply_add::<S>(a, q, multiply_add::<S>(b, p, multiply_add::<S>(c, force, d * ahead)))
-            };
-            self.displacements_alone[i] = moved(by.displacement);
-            self.velocities_alone[i] = moved(by.velocity);
+            self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]);
+            self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]);
         }
     }
 
@@ -257,7 +254,9 @@ impl Motion {
             (-self.largest.first().copied().unwrap_or(0.0), self.largest.first().copied().unwrap_or(0.0));
         for trial in 1..=MOST_TRIALS {
             self.move_modes::<S>(dynamics);
-            (0..count).for_each(|e| self.try_way::<S>(dynamics, e));
+            for e in 0..count {
+                self.try_way::<S>(dynamics, e);
+            }
             let is_found = |e: usize| self.mismatch(e).abs() <= TOLERANCE * self.largest[e];
             if trial == MOST_TRIALS || (0..count).all(is_found) {
                 return;
@@ -300,4 +299,10 @@ impl Motion {
         self.tried[e] = (assumed, follows);
         (assumed + (follows - assumed) / (1.0 - self.slopes[e])).clamp(-largest, largest)
     }
+}
+
+/// Scalar product of four factors.
+#[inline(always)]
+fn sum<S: Simd>([a, b, c, d]: [f64; 4], [q, p, first, last]: [f64; 4]) -> f64 {
+    multiply_add::<S>(a, q, multiply_add::<S>(b, p, multiply_add::<S>(c, first, d * last)))
 }
