@@ -185,7 +185,7 @@ mod tests {
         let up = |u: f64| alpha * stroke / (beta + gamma) * (1.0 - (-(beta + gamma) * u).exp());
         let (turn, a) = (60.0, alpha * stroke / (beta - gamma));
         let down = |u: f64| (up(turn) + a) * (-(beta - gamma) * (turn - u)).exp() - a;
-        let voltage = (0..=120).map(|k| f64::from(60 - (60 - k as i32).abs()));
+        let voltage = (0..=120).map(|k| f64::from(60 - (60_i32 - k).abs()));
         let mut seen = 0;
         for (k, (u, motion)) in voltage.clone().zip(stage.motion(voltage, TIME_STEP, 40)).enumerate() {
             let expected = if k <= 60 { up(u) } else { down(u) };
