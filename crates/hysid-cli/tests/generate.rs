@@ -4,7 +4,7 @@ mod workbench;
 
 use workbench::{Ran, Workbench, error_line};
 
-const SPECIMENS: [&str; 13] = [
+const SPECIMENS: [&str; 16] = [
     "ferromagnet",
     "reinforced-concrete-joint",
     "reinforced-concrete-joint-cycles",
@@ -18,6 +18,9 @@ const SPECIMENS: [&str; 13] = [
     "rate-dependent-actuator-tones",
     "magnetostrictive-actuator",
     "bouc-wen-oscillator",
+    "shear-building",
+    "piezo-stage",
+    "duffing-oscillator",
 ];
 
 fn succeeds(bench: &Workbench, arguments: &str) -> Ran {

@@ -179,7 +179,7 @@ pub(super) static SPECIMEN: Specimen = Specimen {
                noise of 8e-6 m rms on the displacement, as in the benchmark",
     testing: "without noise: another multisine in its steady state, two periods, the first with blank outputs; and a \
               sine of 40 N swept from 20 to 50 Hz in 180 s, from rest",
-    columns: Columns { time: Some("t_s"), input: "force_N", output: "displacement_m" },
+    columns: Columns { time: Some("t_s"), input: "excitation_force_N", output: "displacement_m" },
     train: training,
     test: tests,
 };

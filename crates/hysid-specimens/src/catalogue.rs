@@ -2,16 +2,16 @@
 
 use crate::specimen::Specimen;
 use crate::{
-    bouc_wen_oscillator, concrete, ferromagnet, magnetostrictive_actuator, piezo_actuator,
-    rate_dependent_actuator, reinforced_concrete_joint, shape_memory_actuator, terfenol_actuator,
-    terfenol_rod, two_wire_actuator,
+    bouc_wen_oscillator, concrete, duffing_oscillator, ferromagnet, magnetostrictive_actuator,
+    piezo_actuator, piezo_stage, rate_dependent_actuator, reinforced_concrete_joint, shape_memory_actuator,
+    shear_building, terfenol_actuator, terfenol_rod, two_wire_actuator,
 };
 
 /// Number of specimens of the paper's examples.
 const OF_THE_PAPER: usize = 12;
 
 /// All specimens: those of the paper's examples, in their order, then the structures with inertia.
-static ALL: [&Specimen; OF_THE_PAPER + 1] = [
+static ALL: [&Specimen; OF_THE_PAPER + 4] = [
     &ferromagnet::SPECIMEN,
     &reinforced_concrete_joint::SPECIMEN,
     &reinforced_concrete_joint::CYCLES,
@@ -25,6 +25,9 @@ static ALL: [&Specimen; OF_THE_PAPER + 1] = [
     &rate_dependent_actuator::TONES,
     &magnetostrictive_actuator::SPECIMEN,
     &bouc_wen_oscillator::SPECIMEN,
+    &shear_building::SPECIMEN,
+    &piezo_stage::SPECIMEN,
+    &duffing_oscillator::SPECIMEN,
 ];
 
 impl Specimen {

@@ -86,6 +86,8 @@ pub enum Part {
     Drives(Domain),
     /// An output: force, stress, flux density, polarization.
     Follows(Domain),
+    /// An input of any branch of physics, because its name says so: the excitation of an oscillator.
+    Excites,
     /// A further input, and no output: temperature, humidity.
     Accompanies,
 }
@@ -132,7 +134,7 @@ impl Part {
     fn domain(self) -> Option<Domain> {
         match self {
             Self::Drives(domain) | Self::Follows(domain) => Some(domain),
-            Self::Accompanies => None,
+            Self::Excites | Self::Accompanies => None,
         }
     }
 }
@@ -208,7 +210,15 @@ mod tests {
         assert_eq!(Part::of("Spannung"), None);
         assert_eq!(Part::of("Spannung [MPa]"), Some(Part::Follows(Domain::Mechanics)));
         assert_eq!(Part::of("Spannung [V]"), Some(Part::Drives(Domain::Electricity)));
-        for (input, output) in [("u_V", "y_um"), ("x", "y"), ("H_fit_V", "B_V_us")] {
+        for (input, output) in [
+            ("u_V", "y_um"),
+            ("x", "y"),
+            ("H_fit_V", "B_V_us"),
+            ("excitation_force_N", "displacement_m"),
+            ("Anregung [N]", "Weg [mm]"),
+            ("加振力(N)", "変位(mm)"),
+            ("excitation [V]", "current [A]"),
+        ] {
             assert!(!swapped(input, output), "{input} {output}");
         }
     }

@@ -33,7 +33,7 @@ impl Field {
                 Self::Structure
             }
             (Some(Part::Drives(one)), Some(Part::Follows(other))) if one == other => Self::Magnet,
-            (Some(Part::Drives(Domain::Mechanics) | Part::Follows(_)), _) => Self::General,
+            (Some(Part::Drives(Domain::Mechanics) | Part::Follows(_) | Part::Excites), _) => Self::General,
             (_, Some(Part::Drives(Domain::Mechanics))) => Self::Actuator,
             _ => Self::General,
         }

@@ -36,6 +36,10 @@ const WORDS: &[(Part, &str)] = &[
      "temperature temp temperatur température temperatura температура humidity feuchte 温度 湿度"),
 ];
 
+/// Lower-case words for an excitation. With one of them a force is an input.
+const EXCITATION: [&str; 8] =
+    ["excitation", "anregung", "excitación", "excitacion", "возбуждение", "激励", "加振", "励振"];
+
 /// The role of a quantity by the words of its name; `None` if they tell none, or several.
 pub(super) fn part(quantity: &str) -> Option<Part> {
     let lower = quantity.to_lowercase();
@@ -46,6 +50,9 @@ pub(super) fn part(quantity: &str) -> Option<Part> {
         true => words.contains(&word),
         false => lower.contains(word),
     };
+    if EXCITATION.into_iter().any(is_named) {
+        return Some(Part::Excites);
+    }
     let mut found =
         WORDS.iter().filter(|(_, words)| words.split_whitespace().any(is_named)).map(|(part, _)| *part);
     let first = found.next()?;
