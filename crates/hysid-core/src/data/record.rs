@@ -366,6 +366,22 @@ impl Dataset {
         thinned
     }
 
+    /// The beginnings of the records, with at most `most` rows together; every row keeps its output. A record of fewer
+    /// than two rows there is left out, unless all would be.
+    ///
+    /// # Errors
+    /// None for records of two rows or more.
+    pub fn beginnings(&self, most: usize) -> Result<Dataset> {
+        let share = most as f64 / self.rows().max(1) as f64;
+        if share >= 1.0 {
+            return Ok(self.clone());
+        }
+        let begun = |record: &Record| record.rows_up_to((share * record.len() as f64).ceil() as usize);
+        let mut records: Vec<Record> = self.records.iter().map(begun).collect();
+        records.retain(|record| record.len() >= 2 && record.scored() > 0);
+        if records.is_empty() { Ok(self.clone()) } else { Self::new(self.names.clone(), records) }
+    }
+
     /// The same data with the outputs of the first `rows` rows of each record blanked.
     pub fn warmed_up(mut self, rows: usize) -> Dataset {
         for record in &mut self.records {

@@ -34,7 +34,7 @@ impl Law for HystereticOscillator {
         limits: STATE_LIMITS,
         ..Facts::searched(
             "hysteretic-oscillator",
-            "masses on springs and dampers with hysteretic elements, for data with a resonance",
+            "masses on springs and dampers with hysteretic elements, for data with a resonance; needs time",
             FIT_OPTIONS,
             1.5,
         )

@@ -32,7 +32,7 @@ impl Law for HystereticStateSpace {
         limits: STATE_LIMITS,
         ..Facts::searched(
             "hysteretic-state-space",
-            "linear state space model with hysteretic elements, for data with a resonance",
+            "linear state space model with hysteretic elements, for data with a resonance; needs time",
             FIT_OPTIONS,
             1.5,
         )

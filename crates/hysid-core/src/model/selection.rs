@@ -99,9 +99,14 @@ fn counted(count: usize, kind: &str) -> String {
         "classical" => "classical model",
         "random stops" => "random-stops network",
         "recurrent" => "recurrent network",
+        "dynamic" => "model with inertia",
         other => other,
     };
-    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+    match (count, kind) {
+        (1, _) => format!("1 {one}"),
+        (_, "dynamic") => format!("{count} models with inertia"),
+        _ => format!("{count} {one}s"),
+    }
 }
 
 /// `a, b and c`.

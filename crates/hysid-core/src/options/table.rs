@@ -202,7 +202,7 @@ pub const OPTIONS: [FitOption; 31] = [
         values: Values::Count(1, MOST_STARTS),
         default: "2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for \
                   rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
-                  generalized-prandtl-ishlinskii",
+                  generalized-prandtl-ishlinskii, 2 for models with inertia",
         used_by: |_, _| true,
     },
     FitOption {
@@ -212,7 +212,7 @@ pub const OPTIONS: [FitOption; 31] = [
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
         values: Values::Count(0, MOST_EPOCHS),
         default: "400; 2000 for hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for \
-                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn",
+                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 110 for models with inertia",
         used_by: |_, _| true,
     },
     FitOption {

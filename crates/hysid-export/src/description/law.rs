@@ -30,6 +30,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &
         Classical::GeneralizedPrandtlIshlinskii(law) => {
             generalized_prandtl_ishlinskii::step(builder, name, law, sample)
         }
+        Classical::HystereticOscillator(_) | Classical::HystereticStateSpace(_) => todo!(),
         Classical::JilesAtherton(law) => jiles_atherton::step(builder, name, law, sample),
         Classical::Lugre(law) => lugre::step(builder, name, law, sample),
         Classical::Masing(law) => masing::step(builder, name, law, sample),

@@ -1,7 +1,8 @@
 //! The model `auto`: candidates are cross-validated, and the best are combined.
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
-//! 2. *Candidates*: networks, recurrent networks, random stops and all classical laws, with and without rate,
+//! 2. *Candidates*: for data that look like a resonance models with inertia, a network and a recurrent network, which
+//!    are judged on the beginnings of the records and fitted to all of them; otherwise networks, recurrent networks, random stops and all classical laws, with and without rate,
 //!    deterioration, relaxation and companding. Laws with searched parameters are first fitted to few rows, and
 //!    dropped if their errors are far above the best. The other candidates and the remaining laws are fitted to the
 //!    first folds, the best of each kind also to the other folds, and those with a weight once more from a second
@@ -70,6 +71,10 @@ const MOST_FOLDS: usize = 5;
 /// Rows with an output that candidates are fitted to and judged on, at most; the memory runs through all.
 const MOST_ROWS: usize = 4000;
 
+/// Rows that candidates with inertia are judged on, at most: the beginnings of the records, because their motion depends
+/// on every row. Their members are fitted to all rows.
+const ROWS_WITH_INERTIA: usize = 6000;
+
 /// Fits expected before anything is known.
 const FITS_EXPECTED: usize = 200;
 
@@ -99,24 +104,29 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
         return Err(Error::NoCandidate);
     };
     let data = &*as_chosen(data, options)?;
-    let few = data.thinned(MOST_ROWS);
+    let has_inertia = candidates.iter().any(Candidate::is_dynamic);
+    let few = if has_inertia { data.beginnings(ROWS_WITH_INERTIA)? } else { data.thinned(MOST_ROWS) };
     let folds = folds_to_choose_by(&few, MOST_FOLDS);
     let work = Work::new(observer, FITS_EXPECTED);
 
     // Should the observer stop everything soon, this is what there is.
-    let alone = work.first_fit(first, &few)?;
-    let beginning = Beginning::of(&quick(options), &few, folds, options, &work);
+    let alone = work.first_fit(first, if has_inertia { data } else { &few })?;
+    let beginning = match has_inertia {
+        true => Beginning::virgin(&few, folds, options),
+        false => Beginning::of(&quick(options), &few, folds, options, &work),
+    };
     let data = &*beginning.of_all(data)?;
     let Beginning { data: few, folds, warm_up, is_changed, found } = beginning;
     let candidates: Vec<Candidate> = candidates.iter().map(|one| one.warmed_up(warm_up.rows)).collect();
     let held_out: Vec<HeldOut> = folds.into_iter().map(HeldOut::of).collect();
     let is_first = warm_up.rows == 0 && !is_changed && !work.is_stopped();
     let first_member = is_first.then(|| alone.clone());
+    let fitted_to = if has_inertia { data } else { &few };
     if held_out.is_empty() {
-        return without_folds(data, &few, options, &candidates[0], alone, &work);
+        return without_folds(data, fitted_to, options, &candidates[0], alone, &work);
     }
     let (work, evidence) = (&work, Evidence::of(data));
-    let bench = Bench { data: &few, folds: &held_out, work };
+    let bench = Bench { data: fitted_to, folds: &held_out, work };
     let mut stages = Stages { bench, options, evidence, trials: Vec::new(), dropped: Vec::new() };
     stages.run(candidates, first_member);
     let Stages { trials, dropped, .. } = stages;

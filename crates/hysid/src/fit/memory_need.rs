@@ -7,6 +7,7 @@
 use crate::data::record::Dataset;
 use crate::error::{Error, Result};
 use crate::fit::auto;
+use crate::fit::law::hysteretic_dynamics::{self, Asked};
 use crate::fit::law::{
     duhem_nn, generalized_prandtl_ishlinskii, masing, modified_prandtl_ishlinskii, neuro_madelung,
     prandtl_ishlinskii, preisach,
@@ -15,6 +16,7 @@ use crate::fit::network::curvature::has_few_rows;
 use crate::fit::network::fitting::room;
 use crate::fit::network::random_stops::{HIDDEN, RandomStopsOptions};
 use crate::law::duhem_nn::Layout;
+use crate::law::hysteretic_dynamics::Form;
 use crate::linear_algebra::dilated_space::DilatedSpace;
 use crate::network::Architecture;
 use crate::options::FitSpec;
@@ -220,6 +222,27 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
                 all,
                 [
                     (busy * derivatives, taken_by, "choose fewer hidden, states or operators"),
+                    (copies, format!("{rows} rows"), FEWER_ROWS),
+                ],
+            )
+        }
+        ClassicalModel::HystereticOscillator | ClassicalModel::HystereticStateSpace => {
+            let form = match options.model {
+                ClassicalModel::HystereticOscillator => Form::Oscillator,
+                _ => Form::StateSpace,
+            };
+            // Numbers that no model can have are refused by the fit itself.
+            let parameters = Asked::of(form, options).map_or(0, |asked| asked.layout().count());
+            let (p, starts) =
+                (parameters as f64, options.starts.unwrap_or(hysteretic_dynamics::STARTS) as f64);
+            let busy = threads.min(starts);
+            // As for a Duhem network; a row of derivatives for each number that moves beside them.
+            let derivatives = 1.5 * p * p + 300.0 * p;
+            let taken_by = format!("derivatives by {parameters} searched parameters");
+            largest_of(
+                busy * derivatives + starts * 6.0 * p + 2.0 * copies,
+                [
+                    (busy * derivatives, taken_by, "choose fewer hidden, states, modes or operators"),
                     (copies, format!("{rows} rows"), FEWER_ROWS),
                 ],
             )

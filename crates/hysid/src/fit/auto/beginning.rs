@@ -83,6 +83,12 @@ impl Beginning {
         }
     }
 
+    /// Records that begin in the virgin state, or after a warm-up that the user decided.
+    pub fn virgin(data: &Dataset, folds: Vec<Fold>, options: &AutoOptions) -> Self {
+        let warm_up = WarmUp::decided(options.warm_up.unwrap_or(0));
+        Self { data: data.clone(), folds, warm_up, is_changed: false, found: None }
+    }
+
     /// The data with the lead-ins of these records, which are some of their rows.
     ///
     /// # Errors

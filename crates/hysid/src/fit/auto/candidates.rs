@@ -1,13 +1,15 @@
 //! The candidates: networks, recurrent networks, random stops and classical models, each with the input
-//! transforms that may suit it. The list depends on the columns of the data (time, further inputs) and on the options, never on the
-//! values.
+//! transforms that may suit it. The list depends on the columns of the data (time, further inputs), on the options, and
+//! on whether the data look like a resonance; otherwise never on the values.
 
 use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
+use crate::diagnosis::resonance::Resonance;
 use crate::fit::initial_state::QUICK;
 use crate::law::duhem_nn::MOST_NEURONS;
+use crate::law::hysteretic_dynamics::MOST_NEURONS as MOST_NEURONS_OF_ELEMENT;
 use crate::network::{Family, Sizes};
 use crate::options::auto::AutoOptions;
 use crate::options::classical::{ClassicalModel, ClassicalOptions};
@@ -28,10 +30,13 @@ pub(super) enum Kind {
     Classical,
     /// Recurrent networks.
     Recurrent,
+    /// Models with inertia.
+    Dynamic,
 }
 
 impl Kind {
-    pub const ALL: [Kind; 4] = [Kind::Classical, Kind::Networks, Kind::RandomStops, Kind::Recurrent];
+    pub const ALL: [Kind; 5] =
+        [Kind::Classical, Kind::Networks, Kind::RandomStops, Kind::Recurrent, Kind::Dynamic];
 
     /// That of a specification.
     fn of(request: &FitSpec) -> Self {
@@ -40,6 +45,7 @@ impl Kind {
             FitSpec::Classical(options) => match options.model {
                 ClassicalModel::RandomStops => Kind::RandomStops,
                 ClassicalModel::DuhemNn => Kind::Recurrent,
+                model if model.needs_time() => Kind::Dynamic,
                 _ => Kind::Classical,
             },
             FitSpec::Auto(_) => Kind::Classical,
@@ -52,6 +58,7 @@ impl Kind {
             Kind::RandomStops => "random stops",
             Kind::Classical => "classical",
             Kind::Recurrent => "recurrent",
+            Kind::Dynamic => "dynamic",
         }
     }
 }
@@ -79,6 +86,10 @@ const EPOCHS: usize = 25;
 
 /// Epochs of a recurrent network.
 const EPOCHS_OF_RECURRENT: usize = 40;
+
+/// Starts and epochs of a model with inertia.
+const STARTS_OF_DYNAMIC: usize = 2;
+const EPOCHS_OF_DYNAMIC: usize = 80;
 
 /// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
 /// above.
@@ -152,6 +163,11 @@ impl Candidate {
         OTHER_PENALTIES[..count].iter().copied().map(with).collect()
     }
 
+    /// True for a model with inertia, which is fitted to rows without gaps.
+    pub fn is_dynamic(&self) -> bool {
+        self.kind == Kind::Dynamic
+    }
+
     /// True for a law whose parameters are searched from several starts in one fit.
     pub fn is_searched(&self) -> bool {
         !self.is_random()
@@ -217,6 +233,12 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
 
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    if Resonance::of(data).is_some_and(|resonance| resonance.is_found()) {
+        let all = candidates_with_inertia(data, options);
+        if !all.is_empty() {
+            return all;
+        }
+    }
     let mut networks = networks(options).into_iter().map(FitSpec::Network);
     let mut random = random_stops(options).into_iter().map(FitSpec::Classical);
     let mut linear = linear_laws(options).into_iter().map(FitSpec::Classical);
@@ -306,6 +328,32 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
         ..ClassicalOptions::of(ClassicalModel::RandomStops)
     };
     all.into_iter().map(of).collect()
+}
+
+/// Models with inertia, and a network and a recurrent network in case that they do as well.
+fn candidates_with_inertia(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
+    let of = |(model, modes): (ClassicalModel, usize)| ClassicalOptions {
+        modes: Some(options.modes.unwrap_or(modes)),
+        hidden: options.hidden.map(|hidden| hidden.min(MOST_NEURONS_OF_ELEMENT)),
+        operators: options.operators.map(|stops| stops.min(MOST_NEURONS_OF_ELEMENT)),
+        starts: Some(STARTS_OF_DYNAMIC),
+        epochs: Some(options.epochs.unwrap_or(EPOCHS_OF_DYNAMIC)),
+        seed: options.seed,
+        ..ClassicalOptions::of(model)
+    };
+    let dynamic = [
+        (ClassicalModel::HystereticOscillator, 1),
+        (ClassicalModel::HystereticStateSpace, 1),
+        (ClassicalModel::HystereticStateSpace, 2),
+    ];
+    let mut models: Vec<ClassicalOptions> = dynamic.map(of).into();
+    models.dedup();
+    let recurrent = recurrent(data, options).into_iter().take(1);
+    let others = models.into_iter().chain(recurrent).map(FitSpec::Classical);
+    let all = others.chain(networks(options).into_iter().take(1).map(FitSpec::Network));
+    let mut all: Vec<Candidate> = all.map(|request| Candidate::alone(&request)).collect();
+    all.retain(|candidate| is_allowed(candidate, data, options));
+    if all.iter().any(Candidate::is_dynamic) { all } else { Vec::new() }
 }
 
 /// Recurrent networks, for data with time stamps and a rate.

@@ -99,7 +99,11 @@ impl Asked {
             Some((option, count, least, most)) => {
                 Err(OptionError::value(option, count, format!("choose {least} to {most}")).into())
             }
-            None => Ok(Self { form, modes, elements: modes, shape }),
+            None => {
+                // An element of a state space model may be driven by all of its modes.
+                let elements = if form == Form::Oscillator { modes } else { 1 };
+                Ok(Self { form, modes, elements, shape })
+            }
         }
     }
 

@@ -1,0 +1,187 @@
+//! Hysteretic oscillators and state space models on data whose law is known, and the promises of every fit.
+
+use std::ops::ControlFlow;
+
+use hysid::Fit;
+use hysid::data::record::{ColumnNames, Dataset, Record};
+use hysid::error::Error;
+use hysid::fit::law::Identify;
+use hysid::fit::law::search::{Identified, SearchProgress};
+use hysid::law::hysteretic_oscillator::HystereticOscillator;
+use hysid::law::hysteretic_state_space::HystereticStateSpace;
+use hysid::law::series::{Series, run};
+use hysid::law::{Law, Sample};
+use hysid::options::ModelName;
+use hysid::options::classical::{ClassicalModel, ClassicalOptions};
+use hysid::specimens::BoucWenOscillator;
+use hysid::stop_check::StopCheck;
+
+/// Rows a second, and steps of the integration in a row.
+const RATE: f64 = 750.0;
+const STEPS: usize = 8;
+
+/// A number between 0 and 1 that `k` decides: the fractional parts of multiples of the golden ratio.
+fn number(k: u64) -> f64 {
+    (k as f64 * 0.618_033_988_749_895).fract()
+}
+
+fn go_on(_: SearchProgress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A force of tones with random phases, in N, at time `t` in s.
+fn force(seed: u64, t: f64) -> f64 {
+    let phase = |k: u64| std::f64::consts::TAU * number(seed * 37 + k * k);
+    (1..=12).map(|k| 20.0 * (std::f64::consts::TAU * 5.3 * k as f64 * t + phase(k)).sin()).sum()
+}
+
+/// A record of the oscillator of the benchmark, or of one without its hysteretic element.
+fn record(seed: u64, rows: usize, is_linear: bool) -> Record {
+    let step = 1.0 / (RATE * STEPS as f64);
+    let mut oscillator = BoucWenOscillator::benchmark();
+    if is_linear {
+        oscillator.alpha = 0.0;
+    }
+    let forces: Vec<f64> = (0..rows * STEPS).map(|k| force(seed, k as f64 * step)).collect();
+    let motion: Vec<f64> =
+        oscillator.motion(forces.iter().copied(), step).map(|at| at.displacement).collect();
+    let at_rows = |values: &[f64]| values.iter().copied().step_by(STEPS).collect::<Vec<f64>>();
+    let time = (0..rows).map(|k| k as f64 / RATE).collect();
+    Record::new("r", vec![at_rows(&forces)], at_rows(&motion)).unwrap().with_time(time).unwrap()
+}
+
+fn data(records: Vec<Record>) -> Dataset {
+    let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
+    Dataset::new(names, records).unwrap()
+}
+
+fn options(model: ClassicalModel) -> ClassicalOptions {
+    ClassicalOptions { starts: Some(2), epochs: Some(80), hidden: Some(6), ..ClassicalOptions::of(model) }
+}
+
+/// Error of a law on data, as a share of the standard deviation of their output.
+fn error<L: Law>(law: &L, data: &Dataset) -> f64 {
+    let series = Series::all(data, None).unwrap();
+    let (mut square, mut of_output) = (0.0, 0.0);
+    for Series { samples, output } in &series {
+        let mean = output.iter().sum::<f64>() / output.len() as f64;
+        for (y, measured) in run(law, samples).iter().zip(output) {
+            square += (y - measured) * (y - measured);
+            of_output += (measured - mean) * (measured - mean);
+        }
+    }
+    f64::sqrt(square / of_output)
+}
+
+#[test]
+fn the_bouc_wen_oscillator_is_identified_and_simulated_on_unseen_forces() {
+    let (seen, unseen) = (data(vec![record(1, 1600, false)]), data(vec![record(2, 1000, false)]));
+    let found =
+        HystereticOscillator::fit(&seen, &options(ClassicalModel::HystereticOscillator), &mut go_on).unwrap();
+    let of_oscillator = error(&found.law, &unseen);
+    assert!(of_oscillator < 0.03, "{of_oscillator}");
+    let found =
+        HystereticStateSpace::fit(&seen, &options(ClassicalModel::HystereticStateSpace), &mut go_on).unwrap();
+    let of_state_space = error(&found.law, &unseen);
+    assert!(of_state_space < 0.06, "{of_state_space}");
+}
+
+#[test]
+fn the_parameters_of_a_linear_oscillator_are_found() {
+    let seen = data(vec![record(3, 1200, true)]);
+    let found =
+        HystereticOscillator::fit(&seen, &options(ClassicalModel::HystereticOscillator), &mut go_on).unwrap();
+    let unseen = error(&found.law, &data(vec![record(4, 1200, true)]));
+    assert!(unseen < 2e-3, "{unseen}");
+    // m = 2 kg and k = 5e4 N/m; the displacement under a unit force is 1/k. The element may take a share of k.
+    let mode = found.law.0.modes[0];
+    let gain = mode.gain * found.law.0.output_scale / found.law.0.input_scale;
+    let mass = 1.0 / (gain * mode.frequency * mode.frequency);
+    assert!((mass / 2.0 - 1.0).abs() < 0.01, "{mass}");
+}
+
+/// Random samples at three times the trained amplitude stay within the bound that the model states.
+#[test]
+fn outputs_stay_bounded_far_beyond_the_training() {
+    let seen = data(vec![record(5, 800, false)]);
+    let quick = ClassicalOptions { epochs: Some(8), ..options(ClassicalModel::HystereticStateSpace) };
+    let law = HystereticStateSpace::fit(&seen, &quick, &mut go_on).unwrap().law;
+    let (low, high) = seen.input_range(0);
+    let largest = 3.0 * high.max(-low);
+    let bound = law.output_bound(
+        hysid::law::interval::Interval(-largest, largest),
+        hysid::law::interval::Interval(0.0, 0.0),
+    );
+    let mut motion = law.virgin();
+    for k in 0..20_000u64 {
+        let share = 2.0 * number(k * k) - 1.0;
+        let y = law.step(&mut motion, Sample { x: largest * share, rate: 0.0, step: 1.0 / RATE });
+        assert!(y >= bound.0 && y <= bound.1, "{y} is beyond {bound:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_law_for_any_number_of_threads() {
+    let seen = data(vec![record(6, 500, false)]);
+    let quick = ClassicalOptions {
+        starts: Some(3),
+        epochs: Some(6),
+        hidden: Some(3),
+        ..ClassicalOptions::of(ClassicalModel::HystereticOscillator)
+    };
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| HystereticOscillator::fit(&seen, &quick, &mut go_on).unwrap().law)
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn a_search_can_be_stopped_and_keeps_its_best() {
+    let seen = data(vec![record(7, 500, false)]);
+    let quick = ClassicalOptions { hidden: Some(3), ..options(ClassicalModel::HystereticOscillator) };
+    let mut laws = 0;
+    let mut stop_soon = |progress: SearchProgress| {
+        laws += usize::from(progress.law_so_far().is_some());
+        if progress.round == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let Identified { law, .. } = HystereticOscillator::fit(&seen, &quick, &mut stop_soon).unwrap();
+    assert_eq!(laws, 3);
+    assert!(error(&law, &seen) < 1.0);
+    let never_begun = HystereticOscillator::identify(&seen, &quick, &mut go_on, StopCheck::new(&|| true));
+    assert!(matches!(never_begun, Err(Error::Stopped)));
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused() {
+    let without_time =
+        Dataset::from_slices(&[0.0, 1.0, 0.5, 0.0, 1.0, 0.3], &[0.0, 0.5, 0.4, 0.1, 0.6, 0.2]).unwrap();
+    let name = ModelName::Classical(ClassicalModel::HystereticOscillator);
+    let refused = name.check_data(&without_time, None);
+    assert_eq!(refused, Err(Error::TimeNeeded("hysteretic-oscillator")));
+    for (change, words) in [
+        ((|o: &mut ClassicalOptions| o.modes = Some(11)) as fn(&mut ClassicalOptions), "modes 11"),
+        (|o| o.hidden = Some(61), "hidden 61"),
+        (|o| o.states = Some(11), "states 11"),
+        (|o| o.operators = Some(61), "operators 61"),
+    ] {
+        let mut wrong = options(ClassicalModel::HystereticOscillator);
+        change(&mut wrong);
+        let error = HystereticOscillator::fit(&data(vec![record(8, 100, true)]), &wrong, &mut go_on);
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
+/// Data that look like a resonance make `auto` try models with inertia, which win.
+#[test]
+fn auto_chooses_a_model_with_inertia_for_a_resonance() {
+    let seen = data(vec![record(9, 1200, false)]);
+    let quick = Fit::new().option("epochs", 12).option("members", 2).option("starts", 1).option("hidden", 4);
+    let model = quick.run(&seen).unwrap();
+    let unseen = data(vec![record(10, 600, false)]);
+    let nrmse = model.evaluate(&unseen).unwrap().nrmse_std_percent.unwrap();
+    assert!(nrmse < 15.0, "{nrmse}");
+    let selection = model.provenance().selection.as_ref().unwrap();
+    assert_eq!(selection.candidates.iter().find(|c| c.members > 0).unwrap().kind, "dynamic");
+}
