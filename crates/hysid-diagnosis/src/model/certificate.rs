@@ -168,7 +168,7 @@ fn step_is_free(body: &Predictor) -> bool {
 fn sees_rate_or_time(body: &Predictor) -> bool {
     match body {
         Predictor::Network { network, .. } => sees_time(network.architecture()),
-        Predictor::Law(law) => law.sees_rate(),
+        Predictor::Law(law) => law.sees_rate() || law.facts().needs_time,
         Predictor::Ensemble(ensemble) => {
             ensemble.members().iter().any(|member| sees_rate_or_time(member.predictor()))
         }

@@ -91,6 +91,6 @@ pub(super) fn sees_time(architecture: &Architecture) -> bool {
 }
 
 fn of_law(law: &Classical, about_origin: bool) -> Vec<(Property, bool)> {
-    let rate = (!law.sees_rate()).then_some(RATE_INDEPENDENT);
+    let rate = (!law.sees_rate() && !law.facts().needs_time).then_some(RATE_INDEPENDENT);
     law.memory_properties(about_origin).into_iter().chain(rate).collect()
 }
