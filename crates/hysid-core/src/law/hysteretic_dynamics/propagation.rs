@@ -166,10 +166,7 @@ impl Weights {
         let [displacement, s, velocity] = self.changes(ratio);
         // A displacement and velocity after the second half.
         let moved = |q: Dual, p: Dual| {
-            [
-                q.plus(displacement.times(q).plus(s.times(p))),
-                p.plus(velocity.times(p).minus(s.times(q))),
-            ]
+            [q.plus(displacement.times(q).plus(s.times(p))), p.plus(velocity.times(p).minus(s.times(q)))]
         };
         let half = |of: [Dual; 2]| [of[0].scaled(0.5), of[1].scaled(0.5)];
         let (alpha, beta) = (half(self.alpha), half(self.beta));
@@ -186,10 +183,7 @@ impl Weights {
         let one = Dual::constant(1.0);
         let [displacement, s, velocity] = self.changes(ratio);
         let ([alpha_0, alpha_1], [beta_0, beta_1]) = (self.alpha, self.beta);
-        [
-            [one.plus(displacement), s, alpha_0, alpha_1],
-            [s.scaled(-1.0), one.plus(velocity), beta_0, beta_1],
-        ]
+        [[one.plus(displacement), s, alpha_0, alpha_1], [s.scaled(-1.0), one.plus(velocity), beta_0, beta_1]]
     }
 }
 

@@ -197,7 +197,7 @@ impl<'a> Compiler<'a> {
     fn block(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Remark(_) => {}
+                Statement::Remark(_) | Statement::ForSlope(_) => {}
                 Statement::Let(variable, value) | Statement::Assign(variable, value) => {
                     let value = self.real(value);
                     self.values.reals.insert(*variable, value);
@@ -697,7 +697,7 @@ fn collect(statements: &[Statement], changed: &mut Vec<Changed>) {
                 collect(yes, changed);
                 collect(no, changed);
             }
-            Statement::Remark(_) | Statement::Let(..) | Statement::LetWhole(..) => {}
+            Statement::Remark(_) | Statement::Let(..) | Statement::LetWhole(..) | Statement::ForSlope(_) => {}
         }
     }
 }
