@@ -41,7 +41,10 @@ impl Parts<'_> {
             let here = builder.value(elements.forces.at(&e));
             builder.set(elements.forces_before, &e, &here);
             let ahead = builder.value(2.0 * here - before);
-            builder.set(elements.forces, &e, elements.limited(&e, &ahead));
+            let first = builder.value(elements.limited(&e, &ahead));
+            builder.set(elements.forces, &e, &first);
+            builder.set(elements.tried, &e, first);
+            builder.set(elements.tried_following, &e, 0.0);
         });
         let enclosed = (count == 1).then(|| {
             let largest = builder.value(elements.largest.at(0_usize));
@@ -64,7 +67,7 @@ impl Parts<'_> {
             });
             builder.when(Real::from(goes_on).above(0.0), |builder| {
                 builder.each(0_usize, count, |builder, e| {
-                    elements.assume_next(builder, &e, &trial.into(), &sizes);
+                    elements.assume_next(builder, &e, &sizes);
                 });
                 if let Some(enclosed) = enclosed {
                     elements.enclose(builder, enclosed, (&trial.into(), &is_even.into()));
@@ -131,16 +134,15 @@ impl Elements<'_> {
     }
 
     /// Assumes the force next that the mismatch over `1 - ∂R/∂r` gives.
-    fn assume_next(&self, builder: &mut Builder, e: &Whole, trial: &Whole, sizes: &Sizes) {
+    fn assume_next(&self, builder: &mut Builder, e: &Whole, sizes: &Sizes) {
         let assumed = builder.value(self.forces.at(e));
         let follows = builder.value(self.following.at(e));
-        builder.when(trial.above(1_usize), |builder| {
-            let by = builder.value(&assumed - self.tried.at(e));
-            let tells = by.abs().above(sizes.least_difference * self.largest.at(e));
-            builder.when(tells, |builder| {
-                let slope = builder.value((&follows - self.tried_following.at(e)) / &by);
-                builder.set(self.slopes, e, slope.clamp(-LARGEST_SLOPE, STEEPEST_SLOPE).detached());
-            });
+        // The first trial is compared with itself, which tells nothing.
+        let by = builder.value(&assumed - self.tried.at(e));
+        let tells = by.abs().above(sizes.least_difference * self.largest.at(e));
+        builder.when(tells, |builder| {
+            let slope = builder.value((&follows - self.tried_following.at(e)) / &by);
+            builder.set(self.slopes, e, slope.clamp(-LARGEST_SLOPE, STEEPEST_SLOPE).detached());
         });
         builder.set(self.tried, e, &assumed);
         builder.set(self.tried_following, e, &follows);
