@@ -25,6 +25,14 @@ pub enum Error {
         /// Inputs of the model.
         inputs: usize,
     },
+    /// A model with inertia for a target whose elements have none.
+    #[error(
+        "{target} is a force that follows from a displacement, and the model has inertia: a resonance of its own"
+    )]
+    Inertia {
+        /// What has no inertia.
+        target: &'static str,
+    },
     /// A band of a model that has none.
     #[error("the model has no prediction band: only ensembles and single models that replace one have")]
     NoBand,

@@ -87,6 +87,8 @@ pub enum Statement {
     While(Truth, Vec<Statement>),
     /// Runs the first block where the condition holds, otherwise the second.
     If(Truth, Vec<Statement>, Vec<Statement>),
+    /// Runs the block only where the slope is computed. It changes derivatives, and no value that is read behind it.
+    ForSlope(Vec<Statement>),
 }
 
 /// Precision of all real numbers of a program.
@@ -308,6 +310,14 @@ impl Builder {
     pub fn while_true(&mut self, condition: Truth, write: impl FnOnce(&mut Self)) {
         let body = self.block(write);
         self.add(Statement::While(condition, body));
+    }
+
+    /// Runs a block only where the slope is computed: it must leave all values that are read behind it as they are.
+    ///
+    /// A loop that iterates until values fit need not have made their derivatives fit: this is the place for that.
+    pub fn for_slope(&mut self, write: impl FnOnce(&mut Self)) {
+        let body = self.block(write);
+        self.add(Statement::ForSlope(body));
     }
 
     /// Runs a block where a condition holds.

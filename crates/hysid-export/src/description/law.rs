@@ -3,6 +3,7 @@
 mod bouc_wen;
 mod duhem_nn;
 mod generalized_prandtl_ishlinskii;
+mod hysteretic_dynamics;
 mod jiles_atherton;
 mod lugre;
 mod masing;
@@ -13,6 +14,7 @@ mod peak_oriented;
 mod prandtl_ishlinskii;
 mod preisach;
 mod rate_dependent_prandtl_ishlinskii;
+mod tanh_layer;
 mod turning_points;
 mod yield_curve;
 
@@ -30,7 +32,8 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &Classical, sample: &
         Classical::GeneralizedPrandtlIshlinskii(law) => {
             generalized_prandtl_ishlinskii::step(builder, name, law, sample)
         }
-        Classical::HystereticOscillator(_) | Classical::HystereticStateSpace(_) => todo!(),
+        Classical::HystereticOscillator(law) => hysteretic_dynamics::step(builder, name, &law.0, sample),
+        Classical::HystereticStateSpace(law) => hysteretic_dynamics::step(builder, name, &law.0, sample),
         Classical::JilesAtherton(law) => jiles_atherton::step(builder, name, law, sample),
         Classical::Lugre(law) => lugre::step(builder, name, law, sample),
         Classical::Masing(law) => masing::step(builder, name, law, sample),

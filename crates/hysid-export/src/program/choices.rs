@@ -45,7 +45,7 @@ impl Next {
                     let condition = self.truth(condition, &mut block);
                     Statement::If(condition, self.block(yes), self.block(no))
                 }
-                Statement::Remark(_) => statement.clone(),
+                Statement::Remark(_) | Statement::ForSlope(_) => statement.clone(),
             };
             block.push(lowered);
         }

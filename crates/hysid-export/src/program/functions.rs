@@ -27,7 +27,7 @@ impl Functions {
     fn block(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Remark(_) => {}
+                Statement::Remark(_) | Statement::ForSlope(_) => {}
                 Statement::Let(_, value) | Statement::Assign(_, value) => self.real(value),
                 Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.whole(value),
                 Statement::Set(_, index, value) => {

@@ -85,7 +85,7 @@ impl<'p> Machine<'p> {
     fn run(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Remark(_) => {}
+                Statement::Remark(_) | Statement::ForSlope(_) => {}
                 Statement::Let(variable, value) | Statement::Assign(variable, value) => {
                     self.reals[variable.0] = self.real(value);
                 }

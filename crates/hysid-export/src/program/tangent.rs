@@ -83,7 +83,9 @@ impl Active {
                 Statement::Set(array, _, value) if self.depends(value) => {
                     self.arrays.insert(*array);
                 }
-                Statement::Each(_, _, _, body) | Statement::While(_, body) => self.take(body),
+                Statement::Each(_, _, _, body) | Statement::While(_, body) | Statement::ForSlope(body) => {
+                    self.take(body);
+                }
                 Statement::If(_, yes, no) => {
                     self.take(yes);
                     self.take(no);
@@ -156,6 +158,7 @@ impl Derivative {
                     let (yes, no) = (self.block(program, yes), self.block(program, no));
                     block.push(Statement::If(condition.clone(), yes, no));
                 }
+                Statement::ForSlope(body) => block.extend(self.block(program, body)),
                 Statement::Remark(_) | Statement::LetWhole(..) | Statement::AssignWhole(..) => {
                     block.push(statement.clone());
                 }

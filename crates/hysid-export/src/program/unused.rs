@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::program::expression::{Real, RealVariable, Truth, Whole, WholeVariable};
 use crate::program::{Array, Program, Statement, Storage};
 
-/// The program without values that are never read. All its arrays stay declared.
+/// The program without values that are never read, and without what only its slope needs. All its arrays stay declared.
 pub fn without_unused(program: &Program) -> Program {
     let mut program = program.clone();
     loop {
@@ -43,7 +43,7 @@ impl Read {
     fn statements(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Remark(_) => {}
+                Statement::Remark(_) | Statement::ForSlope(_) => {}
                 Statement::Let(_, value) | Statement::Assign(_, value) => self.real(value),
                 Statement::LetWhole(_, value) | Statement::AssignWhole(_, value) => self.whole(value),
                 Statement::Set(_, index, value) => {
@@ -165,6 +165,7 @@ impl Read {
                         kept.push(Statement::If(condition.clone(), yes, no));
                     }
                 }
+                Statement::ForSlope(_) => {}
                 other => kept.push(other.clone()),
             }
         }

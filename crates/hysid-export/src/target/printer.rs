@@ -87,6 +87,7 @@ impl<'a, L: Language> Printer<'a, L> {
         for statement in statements {
             match statement {
                 Statement::Remark(remark) => line(text, &language.remark(remark)),
+                Statement::ForSlope(_) => {}
                 Statement::Let(variable, value) => {
                     let value = self.real(value, Binding::Choice);
                     let is_constant = !self.assigned.contains(variable);

@@ -2,6 +2,8 @@
 
 #![allow(dead_code)]
 
+mod dynamics;
+
 use hysid::{ColumnNames, Dataset, Fit, Model, Record};
 use serde_json::{Value, json};
 
@@ -104,6 +106,17 @@ pub fn laws() -> Vec<(String, Model)> {
     ]
 }
 
+/// Laws with inertia: one fitted with a lead-in, and others.
+pub fn laws_with_inertia() -> Vec<(String, Model)> {
+    let options = [("starts", 1), ("epochs", 3), ("operators", 3), ("hidden", 3)];
+    let mut options = options.map(|(name, value)| (name, json!(value))).to_vec();
+    options.push(("initial_state", json!("saturated-up")));
+    let (name, model) = fitted("hysteretic-oscillator", 1, &options);
+    assert!(!model.lead_in().is_empty());
+    let variants = dynamics::variants(&model);
+    [vec![(name, model)], variants].concat()
+}
+
 /// The default ensemble, of hasty members.
 pub fn ensembles() -> Vec<(String, Model)> {
     vec![fitted("auto", 1, &[("starts", json!(1)), ("epochs", json!(2))])]
@@ -111,7 +124,7 @@ pub fn ensembles() -> Vec<(String, Model)> {
 
 /// Models of all kinds.
 pub fn all() -> Vec<(String, Model)> {
-    [networks(), laws(), ensembles()].concat()
+    [networks(), laws(), laws_with_inertia(), ensembles()].concat()
 }
 
 /// Rows that no model has seen: reversals inside and outside the trained range, rest, large values.
@@ -127,7 +140,10 @@ pub fn path(rows: usize, inputs: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The time step before a row.
+/// The time step before a row: some are equal, most are not.
 pub fn time_step(row: usize) -> f64 {
+    if row % 90 > 70 {
+        return 0.05;
+    }
     0.004 + 0.01 * ((row * 7919) % 13) as f64
 }

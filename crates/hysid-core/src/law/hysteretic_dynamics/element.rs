@@ -68,14 +68,15 @@ impl Element {
             && self.force.len() == stops + states + neurons
     }
 
-    pub(super) fn shape(&self) -> Shape {
+    /// Numbers of its parts.
+    pub fn shape(&self) -> Shape {
         let (stops, states) = (self.thresholds.len(), self.path_leaks.len());
         Shape { stops, states, neurons: self.force.len().saturating_sub(stops + states) }
     }
 
     /// Bound of the magnitude of the force, and of each state: a state is an average of its past and its targets, and
     /// a target is no larger than the sum of its weights.
-    pub(super) fn bounds(&self) -> (f64, Vec<f64>) {
+    pub fn bounds(&self) -> (f64, Vec<f64>) {
         let Shape { stops, states, neurons } = self.shape();
         let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();
         let of_state = |i: usize| {

@@ -3,6 +3,7 @@
 use hysid_core::law::duhem_nn::DuhemNn;
 
 use super::prandtl_ishlinskii::follow;
+use super::tanh_layer::{Slice, layer, partial_sums, product};
 use crate::description::Sample;
 use crate::description::network::tanh;
 use crate::program::expression::{Real, Whole};
@@ -10,9 +11,6 @@ use crate::program::{Array, Builder};
 
 /// Scaled inputs are limited to this magnitude, as in the library.
 const LARGEST_INPUT: f64 = 1e6;
-
-/// Partial sums of the library's vectors.
-const LANES: usize = 8;
 
 /// theory.md (8.29) to (8.32)
 pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sample) -> Real {
@@ -42,19 +40,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sa
 
     let hidden = builder.constants(&format!("{name}_hidden"), cell.hidden.clone());
     let (inputs, neurons) = (shape.inputs(), shape.neurons);
-    builder.each(0_usize, neurons, |builder, i| builder.set(terms, &i + inputs, hidden.at(&i)));
-    builder.each(1_usize, inputs, |builder, k| {
-        let input = builder.value(terms.at(&k));
-        builder.each(0_usize, neurons, |builder, i| {
-            let place = Whole::from(builder.whole_variable(&i + inputs));
-            builder.set(terms, &place, hidden.at(&k * neurons + &i) * &input + terms.at(&place));
-        });
-    });
-    builder.each(0_usize, neurons, |builder, i| {
-        let sum = builder.value(terms.at(&i + inputs));
-        let value = tanh(builder, &sum);
-        builder.set(terms, &i + inputs, value);
-    });
+    layer(builder, hidden, (terms, inputs), (Slice(terms, inputs), neurons));
 
     let targets = builder.constants(&format!("{name}_target"), cell.targets.clone());
     let path_leaks = builder.constants(&format!("{name}_leak"), cell.path_leaks.clone());
@@ -62,7 +48,7 @@ pub(super) fn step(builder: &mut Builder, name: &str, law: &DuhemNn, sample: &Sa
         .then(|| builder.constants(&format!("{name}_time"), cell.relaxation_times.clone()));
     let gains = (!cell.rate_gains.is_empty())
         .then(|| builder.constants(&format!("{name}_gain"), cell.rate_gains.clone()));
-    let sums = builder.scratch(&format!("{name}_sum"), LANES);
+    let sums = partial_sums(builder, name);
     builder.each(0_usize, shape.states, |builder, i| {
         let row = Whole::from(builder.whole_variable(&i * neurons));
         let first = Whole::from(inputs);
@@ -125,30 +111,4 @@ fn stops(
         let elongation = builder.value(drive - play);
         builder.set(terms, &i + (1 + shape.channels), elongation.clamp(-1.0, 1.0));
     });
-}
-
-/// Scalar product in eight partial sums, as in the library.
-fn product(
-    builder: &mut Builder,
-    (a, from_a): (Array, &Whole),
-    (b, from_b): (Array, &Whole),
-    (length, sums): (usize, Array),
-) -> Real {
-    let whole = length - length % LANES;
-    builder.each(0_usize, LANES, |builder, l| builder.set(sums, &l, 0.0));
-    if whole > 0 {
-        builder.each(0_usize, whole / LANES, |builder, group| {
-            builder.each(0_usize, LANES, |builder, l| {
-                let k = Whole::from(builder.whole_variable(&group * LANES + &l));
-                builder.set(sums, &l, a.at(from_a + &k) * b.at(from_b + &k) + sums.at(&l));
-            });
-        });
-    }
-    let rest = builder.variable(0.0);
-    builder.each(whole, length, |builder, k| {
-        builder.assign(rest, a.at(from_a + &k) * b.at(from_b + &k) + Real::from(rest));
-    });
-    let s = |l: usize| sums.at(l);
-    let [first, second] = [(s(0) + s(4)) + (s(1) + s(5)), (s(2) + s(6)) + (s(3) + s(7))];
-    builder.value(first + second + Real::from(rest))
 }

@@ -197,7 +197,7 @@ impl<'a> Compiler<'a> {
     fn block(&mut self, statements: &[Statement]) {
         for statement in statements {
             match statement {
-                Statement::Remark(_) => {}
+                Statement::Remark(_) | Statement::ForSlope(_) => {}
                 Statement::Let(variable, value) | Statement::Assign(variable, value) => {
                     let value = self.real(value);
                     self.values.reals.insert(*variable, value);
@@ -397,6 +397,9 @@ impl<'a> Compiler<'a> {
     }
 
     fn branch(&mut self, condition: &Truth, yes: &[Statement], no: &[Statement]) {
+        if let Some(holds) = self.known_truth(condition) {
+            return self.block(if holds { yes } else { no });
+        }
         let condition = self.truth(condition);
         let mut changed = self.changed(yes);
         changed.extend(self.changed(no));
@@ -484,6 +487,22 @@ impl<'a> Compiler<'a> {
             Whole::Difference(a, b) => Some(self.known(a)? - self.known(b)?),
             Whole::Product(a, b) => Some(self.known(a)? * self.known(b)?),
             Whole::OfReal(_) => None,
+        }
+    }
+
+    /// A condition that is known here.
+    fn known_truth(&self, condition: &Truth) -> Option<bool> {
+        match condition {
+            Truth::Whole(comparison, a, b) => {
+                let (a, b) = (self.known(a)?, self.known(b)?);
+                Some(match comparison {
+                    Comparison::Below => a < b,
+                    Comparison::AtMost => a <= b,
+                    Comparison::Equal => a == b,
+                })
+            }
+            Truth::Not(a) => Some(!self.known_truth(a)?),
+            Truth::Real(..) | Truth::And(..) | Truth::Or(..) => None,
         }
     }
 
@@ -697,7 +716,7 @@ fn collect(statements: &[Statement], changed: &mut Vec<Changed>) {
                 collect(yes, changed);
                 collect(no, changed);
             }
-            Statement::Remark(_) | Statement::Let(..) | Statement::LetWhole(..) => {}
+            Statement::Remark(_) | Statement::Let(..) | Statement::LetWhole(..) | Statement::ForSlope(_) => {}
         }
     }
 }

@@ -1,0 +1,213 @@
+//! A hysteretic element: its way to a displacement, and the force there.
+
+use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Shape};
+
+use crate::description::law::tanh_layer::{Slice, layer, partial_sums, product};
+use crate::description::network::tanh;
+use crate::program::expression::{Real, Whole};
+use crate::program::{Array, Builder};
+
+/// Travel below which the mean decay is that of a straight line, to rounding.
+const LEAST_TRAVEL: f64 = 1e-8;
+
+/// Inputs of the tanh layer that are not remembered: the constant and the velocity.
+const FORGOTTEN: usize = 2;
+
+/// The arrays of an element.
+pub(super) struct ElementParts<'l> {
+    element: &'l Element,
+    shape: Shape,
+    index: usize,
+    /// How its displacement follows from displacement and velocity of each mode.
+    of_displacements: Array,
+    of_velocities: Array,
+    thresholds: Array,
+    /// `W↑`, then `W↓`.
+    targets: Array,
+    leaks: Array,
+    layer: Array,
+    /// `v`
+    weights: Array,
+    /// `ζ, e, s` and the neurons, where the element is.
+    place: Array,
+    place_neurons: Array,
+    /// `1, ζ, ν, e, s` and the neurons, where it goes.
+    inputs: Array,
+    neurons: Array,
+    /// `a`, `w_0`, `w_1` and `T_0` of each state.
+    way: Array,
+    sums: Array,
+    /// The force of each element.
+    following: Array,
+}
+
+impl<'l> ElementParts<'l> {
+    /// Those of all elements; their forces are in `following`.
+    pub fn all(builder: &mut Builder, name: &str, law: &'l Dynamics, following: Array) -> Vec<Self> {
+        let sums = partial_sums(builder, name);
+        let elements = law.elements.iter().enumerate();
+        elements.map(|(index, element)| Self::new(builder, name, index, element, (sums, following))).collect()
+    }
+
+    fn new(
+        builder: &mut Builder,
+        name: &str,
+        index: usize,
+        element: &'l Element,
+        (sums, following): (Array, Array),
+    ) -> Self {
+        let shape = element.shape();
+        let name = |what: &str| format!("{name}_element_{}_{what}", index + 1);
+        let mut constants = |what: &str, values: &[f64]| builder.constants(&name(what), values.to_vec());
+        let targets = [element.rising.as_slice(), &element.falling].concat();
+        let of_displacements = constants("of_displacement", &element.of_displacements);
+        let of_velocities = constants("of_velocity", &element.of_velocities);
+        let thresholds = constants("threshold", &element.thresholds);
+        let targets = constants("target", &targets);
+        let leaks = constants("leak", &element.path_leaks);
+        let layer = constants("layer", &element.layer);
+        let weights = constants("weight", &element.force);
+        let mut place = vec![0.0; 1 + shape.stops];
+        place.extend(&element.initial);
+        Self {
+            element,
+            shape,
+            index,
+            of_displacements,
+            of_velocities,
+            thresholds,
+            targets,
+            leaks,
+            layer,
+            weights,
+            place: builder.state(&name("place"), place),
+            place_neurons: builder.state(&name("neuron"), vec![0.0; shape.neurons]),
+            inputs: builder.scratch(&name("input"), shape.inputs()),
+            neurons: builder.scratch(&name("neuron_ahead"), shape.neurons),
+            way: builder.scratch(&name("way"), 4 * shape.states),
+            sums,
+            following,
+        }
+    }
+
+    /// Number of stops and states.
+    fn memory(&self) -> usize {
+        self.shape.stops + self.shape.states
+    }
+
+    /// The neurons and the force of the virgin element.
+    pub fn begin(&self, builder: &mut Builder) {
+        builder.set(self.inputs, 0_usize, 1.0);
+        builder.set(self.inputs, 1_usize, 0.0);
+        builder.set(self.inputs, 2_usize, 0.0);
+        let memory = self.memory();
+        builder.each(0_usize, memory, |builder, i| {
+            builder.set(self.inputs, &i + 3_usize, self.place.at(&i + 1_usize));
+        });
+        self.finish(builder);
+        self.arrive(builder);
+    }
+
+    /// Remembers where the element went.
+    pub fn arrive(&self, builder: &mut Builder) {
+        builder.set(self.place, 0_usize, self.inputs.at(1_usize));
+        let memory = self.memory();
+        builder.each(1_usize, memory + 1, |builder, i| {
+            builder.set(self.place, &i, self.inputs.at(&i + FORGOTTEN));
+        });
+        builder.each(0_usize, self.shape.neurons, |builder, i| {
+            builder.set(self.place_neurons, &i, self.neurons.at(&i));
+        });
+    }
+
+    /// The way to where displacements and velocities of the modes and the scaled input are.
+    pub fn go(&self, builder: &mut Builder, (displacements, velocities): (Array, Array), input: &Real) {
+        let displacement = builder.variable(self.element.of_input * input);
+        let velocity = builder.variable(0.0);
+        builder.each(0_usize, self.element.of_displacements.len(), |builder, i| {
+            let (q, p) = (displacements.at(&i), builder.value(velocities.at(&i)));
+            let of_displacement = builder.value(self.of_displacements.at(&i));
+            builder.assign(displacement, &of_displacement * q + Real::from(displacement));
+            builder.assign(displacement, self.of_velocities.at(&i) * &p + Real::from(displacement));
+            builder.assign(velocity, of_displacement * p + Real::from(velocity));
+        });
+        let moved = builder.value(Real::from(displacement) - self.place.at(0_usize));
+        builder.set(self.inputs, 0_usize, 1.0);
+        builder.set(self.inputs, 1_usize, displacement);
+        builder.set(self.inputs, 2_usize, velocity);
+        self.stops(builder, &moved);
+        if self.shape.states > 0 {
+            self.states(builder, &moved);
+        }
+        self.finish(builder);
+    }
+
+    fn stops(&self, builder: &mut Builder, moved: &Real) {
+        if self.shape.stops == 0 {
+            return;
+        }
+        builder.each(0_usize, self.shape.stops, |builder, i| {
+            let free = builder.value(self.place.at(&i + 1_usize) + moved);
+            let threshold = builder.value(self.thresholds.at(&i));
+            builder.set(self.inputs, &i + 3_usize, free.clamp(-&threshold, &threshold));
+        });
+    }
+
+    fn states(&self, builder: &mut Builder, moved: &Real) {
+        let Shape { stops, states, neurons } = self.shape;
+        let path = builder.value(moved.abs());
+        let rows = builder.whole_variable(0_usize);
+        builder.when(moved.below(0.0), |builder| builder.assign_whole(rows, states * neurons));
+        let zero = Whole::from(0_usize);
+        let target = |builder: &mut Builder, i: &Whole, of: Array| {
+            let row = Whole::from(builder.whole_variable(Whole::from(rows) + i * neurons));
+            product(builder, (self.targets, &row), (of, &zero), (neurons, self.sums))
+        };
+        let way = |what: usize, i: &Whole| i + what * states;
+        builder.each(0_usize, states, |builder, i| {
+            let travel = builder.value(self.leaks.at(&i) * &path);
+            let half = builder.value(0.5 * &travel);
+            let t = tanh(builder, &half);
+            let left = builder.value(2.0 * &t / (1.0 + &t));
+            let is_far = travel.above(LEAST_TRAVEL);
+            let mean = builder.value(is_far.choose(&left / &travel, 1.0 - 0.5 * &travel));
+            let kept = builder.value(1.0 - left);
+            let first = builder.value(&mean - &kept);
+            let target = target(builder, &i, self.place_neurons);
+            let before = builder.value(self.place.at(&i + (1 + stops)));
+            let ahead = (1.0 - &kept) * (&target - &before) + &before;
+            builder.set(self.inputs, &i + (3 + stops), ahead);
+            builder.set(self.way, way(0, &i), kept);
+            builder.set(self.way, way(1, &i), first.max(0.0));
+            builder.set(self.way, way(2, &i), 1.0 - mean);
+            builder.set(self.way, way(3, &i), target);
+        });
+        self.layer(builder);
+        builder.each(0_usize, states, |builder, i| {
+            let ahead = target(builder, &i, self.neurons);
+            let [kept, first, last, target] = [0, 1, 2, 3].map(|what| self.way.at(way(what, &i)));
+            let before = self.place.at(&i + (1 + stops));
+            builder.set(self.inputs, &i + (3 + stops), kept * before + (first * target + last * ahead));
+        });
+    }
+
+    fn layer(&self, builder: &mut Builder) {
+        let neurons = (Slice(self.neurons, 0), self.shape.neurons);
+        layer(builder, self.layer, (self.inputs, self.shape.inputs()), neurons);
+    }
+
+    /// Neurons and force from the inputs of the layer.
+    fn finish(&self, builder: &mut Builder) {
+        self.layer(builder);
+        let (zero, three) = (Whole::from(0_usize), Whole::from(3_usize));
+        let memory = self.memory();
+        let of_memory = match memory {
+            0 => Real::Constant(0.0),
+            _ => product(builder, (self.weights, &zero), (self.inputs, &three), (memory, self.sums)),
+        };
+        let behind = Whole::from(memory);
+        let lengths = (self.shape.neurons, self.sums);
+        let of_neurons = product(builder, (self.weights, &behind), (self.neurons, &zero), lengths);
+        builder.set(self.following, self.index, of_memory + of_neurons);
+    }
+}
