@@ -97,6 +97,15 @@ impl Predictor {
         }
     }
 
+    /// True if it, or a member of it, has a mass: its output answers later than by the next sample.
+    fn has_inertia(&self) -> bool {
+        match self {
+            Self::Network { .. } => false,
+            Self::Law(law) => law.facts().needs_time,
+            Self::Ensemble(ensemble) => ensemble.members().iter().any(Model::has_inertia),
+        }
+    }
+
     /// True if it needs the time between samples, other than for a rate.
     fn needs_steps(&self) -> bool {
         match self {
@@ -619,6 +628,11 @@ impl Model {
     pub fn evaluate(&self, data: &Dataset) -> Result<Errors> {
         data.records().iter().try_for_each(|record| self.check_time(&record.excitation()))?;
         errors(Runner::of_model(self), data)
+    }
+
+    /// True for a model with inertia, or an ensemble with one.
+    pub fn has_inertia(&self) -> bool {
+        self.body.has_inertia()
     }
 
     /// Rows at the beginning of each record that advanced the memory in training and were not scored

@@ -46,7 +46,7 @@ struct State {
 enum Memory {
     /// A network's simulator, and room for its channels.
     Network(Box<Simulator>, Vec<f64>),
-    Law(ClassicalState),
+    Law(Box<ClassicalState>),
     Ensemble(Box<EnsembleMemory>),
 }
 
@@ -65,7 +65,7 @@ impl Memory {
             Predictor::Network { network, .. } => {
                 Self::Network(Box::new(network.simulator()), vec![0.0; network.architecture().channels()])
             }
-            Predictor::Law(law) => Self::Law(law.virgin()),
+            Predictor::Law(law) => Self::Law(Box::new(law.virgin())),
             Predictor::Ensemble(ensemble) => Self::Ensemble(Box::new(EnsembleMemory {
                 members: ensemble.members().iter().map(State::virgin).collect(),
                 excursion: Excursion::beyond(ensemble.range()),

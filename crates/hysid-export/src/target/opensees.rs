@@ -3,9 +3,6 @@
 mod material;
 mod native;
 
-use hysid_core::law::Classical;
-use hysid_core::model::{Model, Predictor};
-
 use crate::error::Error;
 use crate::subject::{File, Subject};
 use crate::target::{BackEnd, Written, c};
@@ -27,7 +24,7 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
     if inputs > 1 {
         return Err(Error::Inputs { target: MATERIAL, inputs });
     }
-    if has_inertia(subject.model()) {
+    if subject.model().has_inertia() {
         return Err(Error::Inertia { target: MATERIAL });
     }
     let name = subject.name();
@@ -40,17 +37,6 @@ fn write(subject: &Subject<'_>) -> Result<Written, Error> {
         files.push(File::new(format!("{name}.py"), native.python()));
     }
     Ok(files.into())
-}
-
-/// True if a part of the model has a resonance. In a structure, masses are those of its nodes.
-fn has_inertia(model: &Model) -> bool {
-    match model.predictor() {
-        Predictor::Law(law) => {
-            matches!(law, Classical::HystereticOscillator(_) | Classical::HystereticStateSpace(_))
-        }
-        Predictor::Ensemble(ensemble) => ensemble.members().iter().any(has_inertia),
-        Predictor::Network { .. } => false,
-    }
 }
 
 fn usage(subject: &Subject<'_>) -> String {

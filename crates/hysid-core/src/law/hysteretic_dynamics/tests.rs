@@ -255,14 +255,15 @@ fn a_record_begins_at_rest() {
 fn what_does_not_fit_together_is_refused() {
     let sound = model(1, 2, 1, SHAPE, 0.5);
     assert!(sound.check("test").is_ok());
-    let broken: [(&str, &dyn Fn(&mut Dynamics)); 7] = [
-        ("not positive", &|d| d.longest_step = 0.0),
-        ("or none", &|d| d.modes.clear()),
-        ("go together", &|d| d.elements[0].force.truncate(3)),
-        ("go together", &|d| d.elements[0].compliances.clear()),
-        ("ζ_1", &|d| d.modes[0].damping = -0.1),
-        ("ω_2", &|d| d.modes[1].frequency = f64::NAN),
-        ("c_1,1", &|d| d.elements[0].path_leaks[0] = 0.0),
+    type Change = fn(&mut Dynamics);
+    let broken: [(&str, Change); 7] = [
+        ("not positive", |d| d.longest_step = 0.0),
+        ("or none", |d| d.modes.clear()),
+        ("go together", |d| d.elements[0].force.truncate(3)),
+        ("go together", |d| d.elements[0].compliances.clear()),
+        ("ζ_1", |d| d.modes[0].damping = -0.1),
+        ("ω_2", |d| d.modes[1].frequency = f64::NAN),
+        ("c_1,1", |d| d.elements[0].path_leaks[0] = 0.0),
     ];
     for (words, change) in broken {
         let mut changed = sound.clone();

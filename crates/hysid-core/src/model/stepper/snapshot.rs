@@ -26,7 +26,7 @@ impl Snapshot {
     pub(super) fn of(state: &State) -> Self {
         let memory = match &state.memory {
             Memory::Network(simulator, _) => Remembered::Network(simulator.state().clone()),
-            Memory::Law(law) => Remembered::Law(Box::new(law.clone())),
+            Memory::Law(law) => Remembered::Law(law.clone()),
             Memory::Ensemble(ensemble) => {
                 Remembered::Ensemble(ensemble.members.iter().map(Self::of).collect(), ensemble.excursion)
             }

@@ -101,8 +101,11 @@ impl<'e> Judgement<'e> {
                 worst: place.map(|(examined, _)| examined.scan.points.clone()),
             },
         };
-        if verdict == Verdict::NotTestable {
-            let statement = "the output hardly changes with the next input";
+        if verdict == Verdict::NotTestable || probe.model.has_inertia() {
+            let statement = match probe.model.has_inertia() {
+                true => "a model with inertia answers its input later than by the next sample",
+                false => "the output hardly changes with the next input",
+            };
             found.finding = Finding::not_testable(Property::Invertible, statement, EXPERIMENT);
             return found;
         }
