@@ -154,6 +154,10 @@ pub(crate) fn examine(
             last.evidence.extend(complaint.evidence.into_iter().take(1));
         }
     }
+    // A vibration turns at its own frequency; more rows would not make it another law.
+    if told.iter().any(|complaint| complaint.kind == DataIssueKind::Resonance) {
+        told.retain(|complaint| complaint.kind != DataIssueKind::FewSamples);
+    }
     told.sort_by_key(|complaint| std::cmp::Reverse(complaint.severity));
     told
 }

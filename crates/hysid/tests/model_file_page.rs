@@ -122,6 +122,7 @@ fn with_all_parts(spec: FitSpec) -> FitSpec {
             options.asymmetric = true;
             options.shaping = shaping(false);
             options.states = Some(3);
+            options.modes = Some(2);
             options.deterioration = Some(true);
             FitSpec::Classical(options)
         }
