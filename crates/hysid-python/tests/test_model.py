@@ -391,6 +391,33 @@ def test_a_record_begins_in_its_initial_state(spring_and_slider, tmp_path):
         model.reset(3)
 
 
+@pytest.mark.parametrize("name", ["hysteretic-oscillator", "hysteretic-state-space"])
+def test_a_model_with_inertia_steps_in_time_as_it_simulates(name, tmp_path):
+    train, _ = hysid.specimen("duffing-oscillator").data(seed=3)
+    x, y, time = (column[:400] for column in (train.x, train.y, train.time))
+    model = hysid.fit(x, y, time, model=name, modes=2, states=1, hidden=2, starts=1, epochs=2)
+    assert model.needs_time and model.rate is None
+    own = model.simulate(x, time)
+    path = tmp_path / "model.json"
+    model.save(path)
+    loaded = hysid.Model.load(path)
+    assert loaded == model
+    assert [loaded.step(*sample) for sample in zip(x, time)] == own.tolist()
+    loaded.reset()
+    assert loaded.step(x[0], time[0]) == own[0]
+    with pytest.raises(ValueError, match="there is no time column, and the model needs one"):
+        model.simulate(x)
+    with pytest.raises(ValueError, match="time"):
+        model.stepper().step(x[0])
+
+
+def test_the_seed_of_a_specimen_draws_its_excitation():
+    specimen = hysid.specimen("duffing-oscillator")
+    first, other = ([data.x for data in specimen.data(seed=seed)] for seed in (1, 2))
+    assert all(np.array_equal(one, same.x) for one, same in zip(first, specimen.data(seed=1)))
+    assert not any(np.array_equal(one, another) for one, another in zip(first, other))
+
+
 def test_states_of_records_are_found():
     def record(past, size):
         x = size * np.sin(0.11 * np.arange(150))

@@ -60,6 +60,12 @@ CASES = {
         "auto",
         None,
     ),
+    "model with inertia": (
+        "shear-building",
+        {"model": "hysteretic-state-space", "modes": 1, "states": 1, "hidden": 2, "starts": 1, "epochs": 2},
+        "auto",
+        None,
+    ),
 }
 
 
@@ -180,7 +186,7 @@ def test_the_estimator_has_the_same_options():
 
 @pytest.mark.parametrize(
     "keywords",
-    [{"model": "masing", "stops": 3}, {"model": "pnn", "population": 20, "epochs": 2, "starts": 1}],
+    [{"model": "masing", "stops": 3}, {"model": "masing", "modes": 2}, {"model": "pnn", "population": 20, "epochs": 2, "starts": 1}],
 )
 def test_ignored_options_are_warned_of_in_the_same_words(keywords, program, tmp_path):
     train, _ = hysid.specimen("terfenol-rod").data()
@@ -207,6 +213,8 @@ def test_ignored_options_are_warned_of_in_the_same_words(keywords, program, tmp_
         ({"rate": "forward"}, "rate `forward` is unknown"),
         ({"rate": "central"}, "rate='central' needs time stamps"),
         ({"model": "rate-dependent-prandtl-ishlinskii"}, "needs the rate of the input"),
+        ({"model": "hysteretic-oscillator"}, "hysteretic-oscillator needs the time of each row"),
+        ({"modes": 11}, "modes 11: choose a whole number from 1 to 10"),
         ({"sign": "positive"}, 'sign "positive": choose one of any, non-negative'),
     ],
 )

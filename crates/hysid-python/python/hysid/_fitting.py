@@ -51,6 +51,7 @@ def fit(
     decay: float | None = None,
     operators: int | None = None,
     states: int | None = None,
+    modes: int | None = None,
     thresholds: ArrayLike | None = None,
     sign: str | None = None,
     dead_zones: int | None = None,
@@ -98,8 +99,9 @@ def fit(
     stops : int, optional
         Stop neurons of a network. Default: 10.
     hidden : int, optional
-        Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100) or of random-stops. Default: 10;
-        neuro-madelung and duhem-nn 8, random-stops none.
+        Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each
+        hysteretic element (at most 60). Default: 10; neuro-madelung, duhem-nn and hysteretic elements 8,
+        random-stops none.
     relaxation : int, optional
         Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4.
     no_deterioration : bool, optional
@@ -129,12 +131,12 @@ def fit(
         Number of random starts: networks, populations or parameter sets from which the training begins.
         Default: 2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for
         rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for
-        generalized-prandtl-ishlinskii.
+        generalized-prandtl-ishlinskii, 2 for models with inertia.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400; 2000 for
         hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for
-        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn.
+        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 110 for models with inertia.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional
@@ -152,11 +154,17 @@ def fit(
     decay : float, optional
         Penalty on the squared weights of stops and tanh neurons. Default: 1e-7, otherwise as for ridge.
     operators : int, optional
-        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, or stops of
-        duhem-nn (at most 100, 0 for none). Default: 10 for generalized- and rate-dependent-prandtl-ishlinskii,
-        20 for modified-prandtl-ishlinskii, 300 for random-stops, 6 for duhem-nn, otherwise 30.
+        Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
+        duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
+        Default: 10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii,
+        300 for random-stops, 6 for duhem-nn, none for hysteretic elements, otherwise 30.
     states : int, optional
-        States of duhem-nn, which move with the input and with time. Default: 3.
+        States of duhem-nn, which move with the input and with time, or of each hysteretic element of
+        hysteretic-oscillator and hysteretic-state-space, which move along its path (at most 10). Default: 3; 2
+        for hysteretic elements.
+    modes : int, optional
+        Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: 1; 2 for
+        hysteretic-state-space.
     thresholds : array of numbers, optional
         Thresholds of the plays of masing, prandtl-ishlinskii or modified-prandtl-ishlinskii, in the unit of the
         input. Default: chosen by cross-validation.

@@ -47,7 +47,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         model, which takes seconds.
     members, stops, hidden, relaxation, no_deterioration, companding, rate_companding, history : optional
     warm_up, initial_state, training, starts, epochs, population, stall, validation, ridge, decay : optional
-    operators, states, thresholds, sign, dead_zones, free_weights : optional
+    operators, states, modes, thresholds, sign, dead_zones, free_weights : optional
     logarithmic_thresholds, degradation, asymmetric, differential_form, time_limit, threads : optional
         As of `hysid.fit`.
     random_state : int, RandomState instance or None, default None
@@ -103,6 +103,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         decay: float | None = None,
         operators: int | None = None,
         states: int | None = None,
+        modes: int | None = None,
         thresholds: Any = None,
         sign: str | None = None,
         dead_zones: int | None = None,
@@ -140,6 +141,7 @@ class HysteresisRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.decay = decay
         self.operators = operators
         self.states = states
+        self.modes = modes
         self.thresholds = thresholds
         self.sign = sign
         self.dead_zones = dead_zones
