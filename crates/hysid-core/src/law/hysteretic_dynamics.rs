@@ -174,8 +174,11 @@ impl Dynamics {
         (row / self.longest_step - 1e-6).ceil().clamp(1.0, MOST_STEPS as f64) as usize
     }
 
-    /// The parameters, with their symbols, in scaled units where they have no unit of their own.
-    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+    /// The parameters that are free in this form, with their symbols, in scaled units where they have no unit of their
+    /// own.
+    pub(crate) fn parameters(&self, form: Form) -> Vec<Parameter> {
+        let is_general = form == Form::StateSpace;
+        let is_coupled = is_general || self.modes.len() > 1;
         let any = (-LARGEST_WEIGHT, LARGEST_WEIGHT);
         let positive = (f64::MIN_POSITIVE, LARGEST_VALUE);
         let per_time = Dimension { input: 0, output: 0, time: -1 };
@@ -203,29 +206,33 @@ impl Dynamics {
             );
             all.extend([frequency, damping]);
             all.push(number(format!("b_{i}"), "displacement of a mode under a unit input", mode.gain));
-            all.push(number(
-                format!("k_{i}"),
-                "share of its velocity in the output",
-                mode.velocity_in_output,
-            ));
+            if is_general {
+                let share = mode.velocity_in_output;
+                all.push(number(format!("k_{i}"), "share of its velocity in the output", share));
+            }
         }
         for (e, element) in (1..).zip(&self.elements) {
-            let rows: [(&str, &'static str, &[f64]); 9] = [
-                ("D", "share of a mode in the displacement of an element", &element.of_displacements),
-                ("V", "share of its velocity in the displacement of an element", &element.of_velocities),
-                ("g", "displacement of a mode under a unit force of an element", &element.compliances),
-                ("A", "weight of a tanh neuron", &element.layer),
-                ("W↑", "weight of a target where the displacement rises", &element.rising),
-                ("W↓", "weight of a target where the displacement falls", &element.falling),
-                ("s", "state before the first sample", &element.initial),
-                ("v", "weight of the force of an element", &element.force),
-                ("U", "share of the input in the displacement of an element", &[element.of_input]),
+            let rows: [(bool, &str, &'static str, &[f64]); 10] = [
+                (
+                    is_coupled,
+                    "D",
+                    "share of a mode in the displacement of an element",
+                    &element.of_displacements,
+                ),
+                (is_general, "V", "share of its velocity there", &element.of_velocities),
+                (is_general, "U", "share of the input there", &[element.of_input]),
+                (is_coupled, "g", "displacement of a mode under a unit force", &element.compliances),
+                (is_general, "m", "share of a force in the output", &[element.in_output]),
+                (true, "A", "weight of a tanh neuron", &element.layer),
+                (true, "W↑", "weight of a target where the displacement rises", &element.rising),
+                (true, "W↓", "weight of a target where the displacement falls", &element.falling),
+                (true, "s", "state before the first sample", &element.initial),
+                (true, "v", "weight of the force of an element", &element.force),
             ];
-            for (symbol, meaning, values) in rows {
+            for (_, symbol, meaning, values) in rows.into_iter().filter(|row| row.0) {
                 let numbered = (1..).zip(values);
                 all.extend(numbered.map(|(k, &value)| number(format!("{symbol}_{e},{k}"), meaning, value)));
             }
-            all.push(number(format!("m_{e}"), "share of a force in the output", element.in_output));
             let of_path = [
                 ("ρ", "threshold of a stop", &element.thresholds),
                 ("c", "leak along the path", &element.path_leaks),
@@ -260,7 +267,7 @@ impl Dynamics {
         if !self.elements.iter().all(is_sound) {
             return refuse("the parts of an element have lengths that do not go together");
         }
-        self.parameters().iter().try_for_each(|parameter| parameter.check(law))
+        self.parameters(Form::StateSpace).iter().try_for_each(|parameter| parameter.check(law))
     }
 
     /// An interval that contains every output for inputs within an interval (theory.md (15.12)).

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::law::facts::Facts;
-use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Motion, STATE_LIMITS};
+use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Form, Motion, STATE_LIMITS};
 use crate::law::interval::Interval;
 use crate::law::{Law, Parameter, Sample};
 use crate::property::Property;
@@ -49,7 +49,7 @@ impl Law for HystereticOscillator {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        self.0.parameters()
+        self.0.parameters(Form::Oscillator)
     }
 
     fn validated(self) -> Result<Self> {

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::law::facts::Facts;
-use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Motion, STATE_LIMITS};
+use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Form, Motion, STATE_LIMITS};
 use crate::law::interval::Interval;
 use crate::law::{Law, Parameter, Sample};
 use crate::property::Property;
@@ -47,7 +47,7 @@ impl Law for HystereticStateSpace {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        self.0.parameters()
+        self.0.parameters(Form::StateSpace)
     }
 
     fn validated(self) -> Result<Self> {

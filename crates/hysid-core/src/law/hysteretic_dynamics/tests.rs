@@ -252,6 +252,14 @@ fn a_record_begins_at_rest() {
 }
 
 #[test]
+fn parameters_that_are_listed_are_those_that_are_free() {
+    for (form, modes) in [(Form::Oscillator, 1), (Form::Oscillator, 2), (Form::StateSpace, 1)] {
+        let listed = model(1, modes, 1, SHAPE, 0.5).parameters(form);
+        assert_eq!(listed.len(), Layout::new(form, modes, 1, SHAPE).count(), "{form:?} {modes}");
+    }
+}
+
+#[test]
 fn what_does_not_fit_together_is_refused() {
     let sound = model(1, 2, 1, SHAPE, 0.5);
     assert!(sound.check("test").is_ok());
