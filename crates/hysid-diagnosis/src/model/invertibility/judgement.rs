@@ -19,6 +19,7 @@ const FLAT: f64 = 1e-6;
 const DRAWN: usize = 16;
 
 const EXPERIMENT: &str = "fit the model to a record whose output follows the input";
+const WITHOUT_INERTIA: &str = "fit a model without inertia to a record well below the resonance";
 
 /// The scans, with what is common to all conclusions.
 pub(super) struct Judgement<'e> {
@@ -102,11 +103,13 @@ impl<'e> Judgement<'e> {
             },
         };
         if verdict == Verdict::NotTestable || probe.model.has_inertia() {
-            let statement = match probe.model.has_inertia() {
-                true => "a model with inertia answers its input later than by the next sample",
-                false => "the output hardly changes with the next input",
+            let (statement, experiment) = match probe.model.has_inertia() {
+                true => {
+                    ("a model with inertia answers its input later than by the next sample", WITHOUT_INERTIA)
+                }
+                false => ("the output hardly changes with the next input", EXPERIMENT),
             };
-            found.finding = Finding::not_testable(Property::Invertible, statement, EXPERIMENT);
+            found.finding = Finding::not_testable(Property::Invertible, statement, experiment);
             return found;
         }
         found.finding.statement = Words::of(probe.model.names()).statement(&found);
