@@ -3,15 +3,15 @@
 //!
 //! ```text
 //! q_i'' + 2 ζ_i ω_i q_i' + ω_i² q_i = ω_i² f_i,   f_i = b_i u - Σ_e g_ei r_e             theory.md (15.1)
-//! ζ_e = Σ_i (D_ei q_i + V_ei p_i) + U_e u,   ν_e = Σ_i D_ei p_i,   p_i = q_i'/ω_i        theory.md (15.2)
+//! δ_e = Σ_i (D_ei q_i + V_ei p_i) + U_e u,   ν_e = Σ_i D_ei p_i,   p_i = q_i'/ω_i        theory.md (15.2)
 //! y = y_0 + σ [d u + Σ_i (q_i + k_i p_i) + Σ_e m_e r_e]                                  theory.md (15.5)
 //! ```
 //!
 //! `u` is the input divided by its scale, `q_i` the displacement of a mode and `r_e` the force of an [`Element`],
-//! which depends on the path of `ζ_e`. The numbers of [`Mode`] and [`Element`] are these coefficients.
+//! which depends on the path of `δ_e`. The numbers of [`Mode`] and [`Element`] are these coefficients.
 //!
 //! A step follows the modes exactly under forces that go along straight lines, and finds the force `r_e` at its end
-//! from the equation in which `ζ_e` depends on it (theory.md (15.11)). A row of data is divided into equal steps no
+//! from the equation in which `δ_e` depends on it (theory.md (15.11)). A row of data is divided into equal steps no
 //! longer than [`Dynamics::longest_step`], between which the input follows its [`Hold`].
 //!
 //! **The output is bounded** for a bounded input, any parameters and any time steps (theory.md (15.12)): the forces

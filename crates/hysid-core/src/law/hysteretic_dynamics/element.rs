@@ -1,16 +1,16 @@
 //! A hysteretic element: a force that depends on the path of a displacement.
 //!
 //! ```text
-//! e_i   = max(-ρ_i, min(ρ_i, e_i,0 + ζ - ζ_0))                                 theory.md (15.6)
-//! h     = tanh(A [1, ζ, ν, e, s])                                              theory.md (15.7)
-//! T     = W↑ h  where ζ rises,  W↓ h  where it falls                           theory.md (15.8)
-//! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   x = c |ζ - ζ_0|                         theory.md (15.9)
-//! a = e^-x,   w_1 = 1 - (1 - a)/x,   w_0 = 1 - a - w_1
+//! e_i   = max(-ρ_i, min(ρ_i, e_i,0 + δ - δ_0))                                 theory.md (15.6)
+//! h     = tanh(A [1, δ, ν, e, s])                                              theory.md (15.7)
+//! T     = W↑ h  where δ rises,  W↓ h  where it falls                           theory.md (15.8)
+//! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   l = c |δ - δ_0|                         theory.md (15.9)
+//! a = e^-l,   w_1 = 1 - (1 - a)/l,   w_0 = 1 - a - w_1
 //! r     = v [e, s, h]                                                          theory.md (15.10)
 //! ```
 //!
-//! `ζ` is the displacement of the element and `ν` its velocity, `e` stops, `s` states, `h` tanh neurons and `r` the
-//! force; index 0 is the beginning of the step. (15.9) integrates `ds/d|ζ| = c (T - s)` to second order: `T_1` is
+//! `δ` is the displacement of the element and `ν` its velocity, `e` stops, `s` states, `h` tanh neurons and `r` the
+//! force; index 0 is the beginning of the step. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
 //! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
 //! to 1, so a state stays among its targets whatever the step.
 
@@ -38,7 +38,7 @@ pub struct Element {
     pub in_output: f64,
     /// `ρ > 0`: thresholds of the stops.
     pub thresholds: Vec<f64>,
-    /// `A`: for each input of the layer (1, `ζ`, `ν`, stops, states) its weight in every neuron.
+    /// `A`: for each input of the layer (1, `δ`, `ν`, stops, states) its weight in every neuron.
     pub layer: Vec<f64>,
     /// `W↑`: a row of weights of the neurons for each state.
     pub rising: Vec<f64>,
@@ -95,7 +95,7 @@ impl Element {
 /// An element at a point of its path.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Place {
-    /// `1, ζ, ν, e, s`.
+    /// `1, δ, ν, e, s`.
     pub inputs: Vec<f64>,
     pub neurons: Vec<f64>,
     pub force: f64,
@@ -110,9 +110,9 @@ pub(super) struct Way {
     pub neurons_ahead: Vec<f64>,
     pub targets: Vec<f64>,
     pub targets_ahead: Vec<f64>,
-    /// `x`, `a`, `w_0` and `w_1` of each state.
+    /// `l`, `a`, `w_0` and `w_1` of each state.
     pub weights: Vec<StateWeights>,
-    /// `ζ - ζ_0`.
+    /// `δ - δ_0`.
     pub moved: f64,
     /// Of each stop that ends at its threshold its elongation, otherwise 0.
     pub at_threshold: Vec<f64>,
@@ -132,7 +132,7 @@ const LEAST_TRAVEL: f64 = 1e-8;
 impl StateWeights {
     #[inline(always)]
     fn of<S: Simd>(travel: f64) -> Self {
-        // 1 - e^-x = 2 t/(1 + t) with t = tanh(x/2), which has no cancellation.
+        // 1 - e^-l = 2 t/(1 + t) with t = tanh(l/2), which has no cancellation.
         let t = tanh::<S>(0.5 * travel);
         let left = 2.0 * t / (1.0 + t);
         let mean = if travel > LEAST_TRAVEL { left / travel } else { 1.0 - 0.5 * travel };

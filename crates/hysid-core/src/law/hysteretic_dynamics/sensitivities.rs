@@ -154,7 +154,7 @@ struct Sensitivities<'l> {
     /// What the forces are without their own influence, then the new `∂r`.
     new_forces: Vec<f64>,
     elements: Vec<OfElement>,
-    /// `∂ζ` and `∂ν` at the end of the step.
+    /// `∂δ` and `∂ν` at the end of the step.
     ends: Vec<f64>,
     slopes: Vec<PropagationSlopes>,
     step: f64,
@@ -166,9 +166,9 @@ struct Sensitivities<'l> {
 
 /// Derivatives of an element.
 struct OfElement {
-    /// Of its place: `∂ζ`, `∂ν`, `∂e` of each stop, `∂s` of each state.
+    /// Of its place: `∂δ`, `∂ν`, `∂e` of each stop, `∂s` of each state.
     place: Vec<f64>,
-    /// Of the states at the end of a way, without those of `ζ` and `ν` there.
+    /// Of the states at the end of a way, without those of `δ` and `ν` there.
     states: Vec<f64>,
     local: Vec<Local>,
     of_force: Local,
@@ -180,7 +180,7 @@ struct OfElement {
 /// Derivatives of one number at the end of a way.
 #[derive(Clone)]
 struct Local {
-    /// By `ζ`, `ν`, stops and states at its beginning.
+    /// By `δ`, `ν`, stops and states at its beginning.
     by_start: Vec<f64>,
     /// By the stops and states at its end; of the force only.
     by_memory: Vec<f64>,
@@ -333,7 +333,7 @@ impl<'l> Sensitivities<'l> {
         }
     }
 
-    /// `∂ζ` and `∂ν` at the end of the step, from those modes.
+    /// `∂δ` and `∂ν` at the end of the step, from those modes.
     #[inline(always)]
     fn displacements_alone<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
         let (width, modes) = (self.width, dynamics.modes.len());
@@ -359,7 +359,7 @@ impl<'l> Sensitivities<'l> {
         }
     }
 
-    /// States and force of an element without `∂ζ` and `∂ν` at the end of the step, and their derivatives by these.
+    /// States and force of an element without `∂δ` and `∂ν` at the end of the step, and their derivatives by these.
     #[inline(always)]
     fn element<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion, e: usize) {
         let (width, shape) = (self.width, self.layout.shape);
@@ -386,7 +386,7 @@ impl<'l> Sensitivities<'l> {
         add_multiple::<S>(row, own.of_force.by_velocity, &self.ends[(2 * e + 1) * width..][..width]);
     }
 
-    /// `∂ζ/∂r` and `∂ν/∂r` at the end of a step: of element `e` by the force of element `f`.
+    /// `∂δ/∂r` and `∂ν/∂r` at the end of a step: of element `e` by the force of element `f`.
     fn influence(&self, dynamics: &Dynamics, e: usize, f: usize) -> (f64, f64) {
         let (of, by) = (&dynamics.elements[e], &dynamics.elements[f]);
         let (mut displacement, mut velocity) = (0.0, 0.0);
@@ -483,7 +483,7 @@ impl<'l> Sensitivities<'l> {
 }
 
 impl OfElement {
-    /// Of the force at a place: by `ζ`, `ν` and memory there, and in `row` by its own parameters.
+    /// Of the force at a place: by `δ`, `ν` and memory there, and in `row` by its own parameters.
     #[inline(always)]
     fn force<S: Simd>(&mut self, element: &Element, layout: &ElementLayout, place: &Place, row: &mut [f64]) {
         let Scratch { back, by_inputs, .. } = &mut self.scratch;
@@ -515,7 +515,7 @@ impl OfElement {
         }
     }
 
-    /// To the end of the way, from `∂ζ` and `∂ν` there.
+    /// To the end of the way, from `∂δ` and `∂ν` there.
     #[inline(always)]
     fn end<S: Simd>(&mut self, layout: &ElementLayout, way: &Way, displacement: &[f64], velocity: &[f64]) {
         let width = displacement.len();

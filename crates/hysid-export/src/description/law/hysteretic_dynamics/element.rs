@@ -28,10 +28,10 @@ pub(super) struct ElementParts<'l> {
     layer: Array,
     /// `v`
     weights: Array,
-    /// `ζ, e, s` and the neurons, where the element is.
+    /// `δ, e, s` and the neurons, where the element is.
     place: Array,
     place_neurons: Array,
-    /// `1, ζ, ν, e, s` and the neurons, where it goes.
+    /// `1, δ, ν, e, s` and the neurons, where it goes.
     inputs: Array,
     neurons: Array,
     /// `a`, `w_0`, `w_1` and `T_0` of each state.
