@@ -9,8 +9,9 @@
 //! integrated and why the output is bounded. With one mode the restoring force `r` depends on the path of that mode's
 //! displacement; with several each element is between masses that the identification finds.
 //!
-//! The mass itself does not follow from the data if only `u` and `y` are known in their own units: `b/ω²` does, which
-//! is `1/k` of the mode, so that `m = 1/(b ω²)` for a force in newtons and a displacement in metres.
+//! For a force as input, `b σ` over the scale of the input is the compliance `1/k` of a mode, and its mass is
+//! `m = 1/(k⁻¹ ω²)`; for a voltage or an acceleration the data do not tell the mass. `k` is not unique either, because
+//! `r` may contain an elastic part.
 
 use serde::{Deserialize, Serialize};
 

@@ -22,7 +22,7 @@ use crate::law::tanh_layer::{layer, product};
 use crate::network::tanh::tanh;
 use crate::simd::multiply_add;
 
-/// The parameters of an element; symbols as on the [module page](self) and in `dynamics`.
+/// The parameters of a hysteretic element, with the symbols of theory.md (15.2) to (15.10).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Element {
