@@ -15,7 +15,7 @@
 //! longer than [`Dynamics::longest_step`], between which the input follows its [`Hold`].
 //!
 //! **The output is bounded** for a bounded input, any parameters and any time steps (theory.md (15.12)): the forces
-//! of elements are bounded by their weights, the equation for `r_e` is never left with a value beyond that bound, and
+//! of elements are bounded by their weights, `r_e` is limited to that bound even where its equation is not solved, and
 //! a mode that is followed exactly under a bounded force cannot leave `|q| ≤ F ∫|S|`, which is finite because `ω` and
 //! `ζ` are positive.
 

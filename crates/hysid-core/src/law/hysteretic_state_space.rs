@@ -2,10 +2,10 @@
 //! its input, and act on all of them.
 //!
 //! ```text
-//! z' = A z + B u + E r(memory(C z + U u)),   y = y_0 + C_y z + d u + m r    theory.md (15.14)
+//! z' = A_z z + B u + E r,   r = R(C z + U u, C_ν z),   y = y_0 + σ (C_y z + d u + m r)   theory.md (15.14)
 //! ```
 //!
-//! `A` is in modal form with positive frequencies and damping ratios, so that it is stable for any parameters; modes
+//! `R` is a hysteretic element. `A_z` is in modal form with positive frequencies and damping ratios, so that it is stable for any parameters; modes
 //! with a damping ratio of more than 1 do not vibrate. The equations, their integration and the bound of the output are
 //! those of [`hysteretic_dynamics`](super::hysteretic_dynamics). A hysteretic oscillator is the case in which outputs
 //! and displacements of elements are displacements of modes.

@@ -9,7 +9,7 @@
 //! r     = v [e, s, h]                                                          theory.md (15.10)
 //! ```
 //!
-//! `δ` is the displacement of the element and `ν` its velocity, `e` stops, `s` states, `h` tanh neurons and `r` the
+//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `e` stops, `s` states, `h` tanh neurons and `r` the
 //! force; index 0 is the beginning of the step. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
 //! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
 //! to 1, so a state stays among its targets whatever the step.

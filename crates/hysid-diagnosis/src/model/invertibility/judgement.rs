@@ -104,9 +104,7 @@ impl<'e> Judgement<'e> {
         };
         if verdict == Verdict::NotTestable || probe.model.has_inertia() {
             let (statement, experiment) = match probe.model.has_inertia() {
-                true => {
-                    ("a model with inertia answers its input later than by the next sample", WITHOUT_INERTIA)
-                }
+                true => ("the sample-by-sample inverse of a model with inertia is unstable", WITHOUT_INERTIA),
                 false => ("the output hardly changes with the next input", EXPERIMENT),
             };
             found.finding = Finding::not_testable(Property::Invertible, statement, experiment);

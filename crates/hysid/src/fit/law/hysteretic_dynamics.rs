@@ -2,12 +2,12 @@
 //! the free run, by Levenberg-Marquardt with exact derivatives through time.
 //!
 //! ```text
-//! F(θ) = ½ Σ_k n_k (y_k - ŷ_k)²/N + ½ κ |θ|²                                  theory.md (15.15)
+//! F(P) = ½ Σ_k n_k (y_k - ŷ_k)²/N + ½ κ |P_w|²                                  theory.md (15.15)
 //! ```
 //!
 //! `ŷ_k` is the output of the free run at row `k`, scaled; `n_k` is the number of periods that the row is the mean of,
-//! and `N` their sum. The penalty acts on the weights of the elements only. It falls in stages, and first the error
-//! over the beginning of the records is minimised, so that the elements learn small things before large ones.
+//! and `N` their sum. The penalty acts on the weights of the elements only, and falls in stages. The first stages use
+//! only the beginnings of the records.
 
 mod linear_start;
 mod records;
