@@ -9,9 +9,9 @@
 //! integrated and why the output is bounded. With one mode the restoring force `r` depends on the path of that mode's
 //! displacement; with several each element is between masses that the identification finds.
 //!
-//! For a force as input, `b σ` over the scale of the input is the compliance `1/k` of a mode, and its mass is
-//! `m = 1/(k⁻¹ ω²)`; for a voltage or an acceleration the data do not tell the mass. `k` is not unique either, because
-//! `r` may contain an elastic part.
+//! For a force as input, `C = b σ`, divided by the scale of the input, is the compliance of a mode and `1/(C ω²)` its mass.
+//! For a voltage or an acceleration the data do not tell the mass. The stiffness `1/C` is not unique either, because `r`
+//! may contain an elastic part.
 
 use serde::{Deserialize, Serialize};
 
