@@ -154,7 +154,7 @@ mod tests {
         let period = 64;
         let rows = periods * period + 10;
         let x = |k: usize| (0.1 * (k % period) as f64).sin() + 0.3 * (0.7 * (k % period) as f64).cos();
-        let noise = |k: usize| 1e-3 * (k as f64 * 1.7 + (k / period) as f64).sin();
+        let noise = |k: usize| 1e-3 * ((k * k) as f64 * 0.618_033_988_749_895).fract();
         let y = |k: usize| x(k) + transient * (-(k as f64) / 40.0).exp() + noise(k);
         Drive {
             x: (0..rows).map(x).collect(),
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn equal_periods_become_two_of_which_the_second_counts_more() {
-        let whole = drive(5, 0.01);
+        let whole = drive(5, 1e-3);
         let short = averaged(&whole, 1e-9).unwrap();
         assert_eq!(short.x.len(), 128);
         assert_eq!(short.targets[..64], whole.targets[..64]);
