@@ -177,7 +177,7 @@ fn command_lines() {
             (
                 "fit data.csv --model nn",
                 2,
-                "invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, peak-oriented, menegotto-pinto, jiles-atherton, lugre, duhem-nn, random-stops]",
+                "invalid value 'nn' for '--model <NAME>' [possible values: auto, pnn, gpnn, preisach-nn, xpnn, xpnn+, masing, prandtl-ishlinskii, modified-prandtl-ishlinskii, generalized-prandtl-ishlinskii, rate-dependent-prandtl-ishlinskii, preisach, neuro-madelung, bouc-wen, peak-oriented, menegotto-pinto, jiles-atherton, lugre, duhem-nn, hysteretic-oscillator, hysteretic-state-space, random-stops]",
             ),
             (
                 "fit data.csv --stops 0",
