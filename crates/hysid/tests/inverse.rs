@@ -82,6 +82,8 @@ fn models_driven_by_their_inverses_have_the_wanted_outputs() {
         // These three models are not monotone everywhere.
         let is_monotone =
             !["neuro-madelung", "duhem-nn", "xpnn+"].iter().any(|other| name.starts_with(other));
+        // The inverse of a model with inertia is unstable: it ends at the limits.
+        let is_monotone = is_monotone && !model.has_inertia();
         assert!(!is_monotone || rows - reached <= 1 + rows / 1000, "{name}: {counts:?}");
     }
 }
@@ -345,8 +347,12 @@ fn models_judged_invertible_are_inverted() {
     const ROWS: usize = 5000;
     for (name, model) in MODELS.iter() {
         let found = ModelDiagnosis::of(model).unwrap().invertibility;
-        let (_, counts) = round_trip(model, ROWS);
         let verdict = found.finding.verdict;
+        if model.has_inertia() {
+            assert_eq!(verdict, Verdict::NotTestable, "{name}");
+            continue;
+        }
+        let (_, counts) = round_trip(model, ROWS);
         println!("{name}: {verdict}, index {:.1e}, {counts:?}", found.finding.index.unwrap());
         println!("    {}", found.finding.statement);
         let count = |reach: Reach| counts.get(reach.word()).copied().unwrap_or(0);
