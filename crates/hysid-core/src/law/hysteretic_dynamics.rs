@@ -67,7 +67,7 @@ pub(crate) const STATIC_STEPS: usize = 16;
 pub(crate) const FIT_OPTIONS: &[&str] = &["modes", "operators", "hidden", "states", "starts", "epochs"];
 
 /// Smallest and largest values of such options.
-pub(crate) const STATE_LIMITS: &[(&str, usize, usize)] =
+pub const LIMITS: &[(&str, usize, usize)] =
     &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 1, MOST_PARTS)];
 
 /// A mode of vibration.
@@ -302,3 +302,62 @@ fn largest_response(damping: f64) -> (f64, f64) {
     let peak = (-damping / w * w.atan2(damping)).exp();
     ((1.0 + decay) / (1.0 - decay), 2.0 * peak / (1.0 - decay))
 }
+
+/// Makes a law of a type that holds [`Dynamics`]: its form, its words in errors, its name and its summary.
+macro_rules! law_of_dynamics {
+    ($law:ident, $form:expr, $words:literal, $name:literal, $summary:literal) => {
+        impl $crate::law::Law for $law {
+            type State = $crate::law::hysteretic_dynamics::Motion;
+
+            const FACTS: $crate::law::facts::Facts = $crate::law::facts::Facts {
+                needs_time: true,
+                limits: $crate::law::hysteretic_dynamics::LIMITS,
+                ..$crate::law::facts::Facts::searched(
+                    $name,
+                    $summary,
+                    $crate::law::hysteretic_dynamics::FIT_OPTIONS,
+                    1.5,
+                )
+            };
+
+            fn virgin(&self) -> Self::State {
+                self.0.virgin()
+            }
+
+            fn step(&self, motion: &mut Self::State, sample: $crate::law::Sample) -> f64 {
+                self.0.step(motion, sample)
+            }
+
+            fn parameters(&self) -> Vec<$crate::law::Parameter> {
+                self.0.parameters($form)
+            }
+
+            fn validated(self) -> $crate::error::Result<Self> {
+                self.0.check($words)?;
+                Ok(self)
+            }
+
+            fn needs_steps(&self) -> bool {
+                true
+            }
+
+            fn is_step_free(&self) -> bool {
+                false
+            }
+
+            fn memory_properties(&self, _: bool) -> Vec<($crate::property::Property, bool)> {
+                Vec::new()
+            }
+
+            fn output_bound(
+                &self,
+                x: $crate::law::interval::Interval,
+                _: $crate::law::interval::Interval,
+            ) -> $crate::law::interval::Interval {
+                self.0.output_bound(x)
+            }
+        }
+    };
+}
+
+pub(crate) use law_of_dynamics;

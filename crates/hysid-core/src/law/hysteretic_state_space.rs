@@ -12,62 +12,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
-use crate::law::facts::Facts;
-use crate::law::hysteretic_dynamics::{Dynamics, FIT_OPTIONS, Form, Motion, STATE_LIMITS};
-use crate::law::interval::Interval;
-use crate::law::{Law, Parameter, Sample};
-use crate::property::Property;
+use crate::law::hysteretic_dynamics::{Dynamics, Form, law_of_dynamics};
 
 /// A hysteretic state space model in the user's units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct HystereticStateSpace(pub Dynamics);
 
-impl Law for HystereticStateSpace {
-    type State = Motion;
-
-    const FACTS: Facts = Facts {
-        needs_time: true,
-        limits: STATE_LIMITS,
-        ..Facts::searched(
-            "hysteretic-state-space",
-            "linear state space model with hysteretic elements, for data with a resonance; needs time",
-            FIT_OPTIONS,
-            1.5,
-        )
-    };
-
-    fn virgin(&self) -> Motion {
-        self.0.virgin()
-    }
-
-    fn step(&self, motion: &mut Motion, sample: Sample) -> f64 {
-        self.0.step(motion, sample)
-    }
-
-    fn parameters(&self) -> Vec<Parameter> {
-        self.0.parameters(Form::StateSpace)
-    }
-
-    fn validated(self) -> Result<Self> {
-        self.0.check("hysteretic state space model")?;
-        Ok(self)
-    }
-
-    fn needs_steps(&self) -> bool {
-        true
-    }
-
-    fn is_step_free(&self) -> bool {
-        false
-    }
-
-    fn memory_properties(&self, _: bool) -> Vec<(Property, bool)> {
-        Vec::new()
-    }
-
-    fn output_bound(&self, x: Interval, _: Interval) -> Interval {
-        self.0.output_bound(x)
-    }
+law_of_dynamics! {
+    HystereticStateSpace, Form::StateSpace, "hysteretic state space model",
+    "hysteretic-state-space", "linear state space model with hysteretic elements, for data with a resonance; needs time"
 }

@@ -128,7 +128,8 @@ macro_rules! fit {
         ) -> Result<Identified<Classical>> {
             match options.model {
                 $(ClassicalModel::$law => {
-                    crate::law::$module::$law::identify(data, options, observer, stop).map(any)
+                    crate::law::$module::$law::identify(data, options, observer, stop)?
+                        .try_map(|law| Ok(law.into()))
                 })*
                 ClassicalModel::RandomStops => unreachable!("random stops are a network"),
             }
@@ -157,9 +158,3 @@ macro_rules! linearised {
 }
 
 for_each_law!(linearised);
-
-/// The same as one of all laws.
-fn any(found: Identified<impl Into<Classical>>) -> Identified<Classical> {
-    let Identified { law, train_nrmse_percent, evaluations, termination, searched } = found;
-    Identified { law: law.into(), train_nrmse_percent, evaluations, termination, searched }
-}

@@ -129,8 +129,9 @@ impl Motion {
         if is_first || row.is_nan() || row <= 0.0 {
             if is_first {
                 self.recent = Recent::at_rest(u);
+            } else {
+                self.recent.values[0] = u;
             }
-            self.recent.values[0] = u;
             self.input = u;
             return RowSteps { count: 0, length: 0.0 };
         }
@@ -250,8 +251,7 @@ impl Motion {
             self.forces_before[e] = here;
             self.forces[e] = (2.0 * here - before).clamp(-self.largest[e], self.largest[e]);
         }
-        let mut enclosed =
-            (-self.largest.first().copied().unwrap_or(0.0), self.largest.first().copied().unwrap_or(0.0));
+        let mut enclosed = (count == 1).then(|| (-self.largest[0], self.largest[0]));
         for trial in 1..=MOST_TRIALS {
             self.move_modes::<S>(dynamics);
             for e in 0..count {
@@ -262,23 +262,26 @@ impl Motion {
                 return;
             }
             for e in 0..count {
-                let mismatch = self.mismatch(e);
-                let next = self.next_force(e, trial > 1);
-                self.forces[e] = next;
-                if count == 1 {
-                    let assumed = self.tried[0].0;
-                    if mismatch > 0.0 {
-                        enclosed.0 = assumed;
-                    } else {
-                        enclosed.1 = assumed;
-                    }
-                    let is_inside = next > enclosed.0 && next < enclosed.1;
-                    if !is_inside || trial > TRIALS_IN_HASTE && trial % 2 == 0 {
-                        self.forces[0] = 0.5 * (enclosed.0 + enclosed.1);
-                    }
-                }
+                self.forces[e] = self.next_force(e, trial > 1);
+            }
+            if let Some(enclosed) = &mut enclosed {
+                self.forces[0] = self.within(enclosed, trial);
             }
         }
+    }
+
+    /// The force of a single element to assume next, within what encloses it after the last trial.
+    #[inline(always)]
+    fn within(&self, enclosed: &mut (f64, f64), trial: usize) -> f64 {
+        let ((assumed, follows), next) = (self.tried[0], self.forces[0]);
+        if follows - assumed > 0.0 {
+            enclosed.0 = assumed;
+        } else {
+            enclosed.1 = assumed;
+        }
+        let is_inside = next > enclosed.0 && next < enclosed.1;
+        let is_in_haste = trial <= TRIALS_IN_HASTE || trial % 2 == 1;
+        if is_inside && is_in_haste { next } else { 0.5 * (enclosed.0 + enclosed.1) }
     }
 
     /// Difference of the force that follows from the one that is assumed.

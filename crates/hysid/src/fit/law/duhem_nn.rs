@@ -22,6 +22,7 @@ use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, LARGEST_VALUE, OptionError, Result};
 use crate::fit::law::Identify;
+use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{
     Effort, Identified, LawSoFar, Memory, SearchObserver, SearchProgress, spread, thinned_to,
 };
@@ -355,12 +356,6 @@ fn time_scales(series: &[Series]) -> (f64, f64) {
     let durations = series.iter().map(steps);
     let steps: usize = series.iter().map(|series| series.samples.len() - 1).sum();
     (durations.clone().sum::<f64>() / steps.max(1) as f64, durations.fold(0.0, f64::max))
-}
-
-/// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
-fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
-    let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
-    low * (high / low).powf(share)
 }
 
 fn bounds(layout: &Layout, index: usize, (step, duration): (f64, f64)) -> (f64, f64) {

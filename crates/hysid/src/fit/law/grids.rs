@@ -1,4 +1,4 @@
-//! Thresholds that a fit tries.
+//! Thresholds that a fit tries, and numbers spread between bounds.
 
 use crate::error::{Error, OptionError, Result};
 use crate::fit::law::linear::lowest;
@@ -63,4 +63,10 @@ pub(crate) fn best_on_grids(
     let (scores, mut weights): (Vec<f64>, Vec<Vec<f64>>) = fits_on_grids(&grids, fit)?.into_iter().unzip();
     let best = lowest(&scores);
     Ok((grids.swap_remove(best), weights.swap_remove(best)))
+}
+
+/// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
+pub(crate) fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
+    let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
+    low * (high / low).powf(share)
 }

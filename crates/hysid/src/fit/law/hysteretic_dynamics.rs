@@ -22,9 +22,10 @@ use serde_json::json;
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
 use crate::error::{Error, OptionError, Result};
+use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{Effort, Identified, LawSoFar, SearchObserver, SearchProgress};
 use crate::law::Classical;
-use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, Layout, MOST_NEURONS, MOST_PARTS, Shape};
+use crate::law::hysteretic_dynamics::{Dynamics, Element, Form, LIMITS, Layout, Shape};
 use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
@@ -90,21 +91,20 @@ impl Asked {
             neurons: options.hidden.unwrap_or(HIDDEN),
         };
         check([("modes", json!(modes)), ("states", json!(shape.states))])?;
-        let counts = [
-            ("hidden", shape.neurons, 1, MOST_NEURONS),
-            ("operators", shape.stops, 0, MOST_NEURONS),
-            ("states", shape.states, 1, MOST_PARTS),
-        ];
-        match counts.into_iter().find(|(_, count, least, most)| !(*least..=*most).contains(count)) {
-            Some((option, count, least, most)) => {
-                Err(OptionError::value(option, count, format!("choose {least} to {most}")).into())
-            }
-            None => {
-                // An element of a state space model may be driven by all of its modes.
-                let elements = if form == Form::Oscillator { modes } else { 1 };
-                Ok(Self { form, modes, elements, shape })
+        for &(option, least, most) in LIMITS {
+            let count = match option {
+                "hidden" => shape.neurons,
+                "operators" => shape.stops,
+                "states" => shape.states,
+                _ => unreachable!("an element consists of neurons, stops and states"),
+            };
+            if !(least..=most).contains(&count) {
+                return Err(OptionError::value(option, count, format!("choose {least} to {most}")).into());
             }
         }
+        // An element of a state space model may be driven by all of its modes.
+        let elements = if form == Form::Oscillator { modes } else { 1 };
+        Ok(Self { form, modes, elements, shape })
     }
 
     /// The layout of its parameters.
@@ -196,12 +196,6 @@ fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> D
     Dynamics { elements: (0..elements).map(&mut element).collect(), ..linear.clone() }
 }
 
-/// Number `index` of `count` between two bounds, logarithmically spaced; a single one lies in the middle.
-fn spaced((low, high): (f64, f64), index: usize, count: usize) -> f64 {
-    let share = if count == 1 { 0.5 } else { index as f64 / (count - 1) as f64 };
-    low * (high / low).powf(share)
-}
-
 /// A start on its way.
 struct Walk {
     search: LevenbergMarquardt<Value>,
@@ -269,3 +263,26 @@ impl Start for Walk {
         self.ended.filter(|_| self.is_in_last)
     }
 }
+
+/// Identifies a law that holds modes and elements, in its form.
+macro_rules! identified_as {
+    ($law:ident, $form:expr) => {
+        impl $crate::fit::law::Identify for $law {
+            fn identify(
+                data: &$crate::data::record::Dataset,
+                options: &$crate::options::classical::ClassicalOptions,
+                observer: &mut $crate::fit::law::search::SearchObserver<'_>,
+                stop: $crate::stop_check::StopCheck<'_>,
+            ) -> $crate::error::Result<$crate::fit::law::search::Identified<Self>> {
+                use $crate::fit::law::hysteretic_dynamics::{Asked, identify};
+                use $crate::law::Law;
+                let asked = Asked::of($form, options)?;
+                let found =
+                    identify(data, &asked, options, &|dynamics| Self(dynamics).into(), observer, stop)?;
+                found.try_map(|dynamics| Self(dynamics).validated())
+            }
+        }
+    };
+}
+
+pub(super) use identified_as;

@@ -175,6 +175,14 @@ pub struct Identified<L> {
     pub searched: Vec<f64>,
 }
 
+impl<L> Identified<L> {
+    /// The same result with a law made of this one.
+    pub(crate) fn try_map<M>(self, make: impl FnOnce(L) -> Result<M>) -> Result<Identified<M>> {
+        let Self { law, train_nrmse_percent, evaluations, termination, searched } = self;
+        Ok(Identified { law: make(law)?, train_nrmse_percent, evaluations, termination, searched })
+    }
+}
+
 /// How much is searched.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Effort {
