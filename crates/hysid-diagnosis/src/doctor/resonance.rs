@@ -1,4 +1,4 @@
-//! Resonance: the output swings as a mass on a spring does, and a law without inertia cannot, theory.md (10.28).
+//! Resonance: a linear oscillator fits the output better than a law without inertia, theory.md (10.28).
 
 use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::branch::BranchSet;
@@ -12,8 +12,9 @@ pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
     let found = Resonance::of(survey.data).filter(Resonance::is_found)?;
     let seconds = Units::of(survey).time.as_deref() == Some("s");
     let statement = format!(
-        "this looks like a resonance at {:.3} {} (damping {:.2} %): a linear oscillator leaves {:.2} of what the best \
-         memoryless and stop-operator fit leaves; fit a model with inertia (--model hysteretic-oscillator)",
+        "this looks like a resonance at {:.3} {} (damping ratio {:.2} %): the error of a linear oscillator is {:.2} times \
+         that of the best fit without inertia; fit a model with inertia (--model hysteretic-oscillator or \
+         hysteretic-state-space)",
         Significant(found.oscillator.natural_frequency),
         if seconds { "Hz" } else { "cycles per unit of time" },
         Significant(100.0 * found.oscillator.damping_ratio),
