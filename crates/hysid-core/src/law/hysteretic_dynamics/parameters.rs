@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Dynamics, Element, Mode, Shape};
+use super::{DAMPING_RATIOS, Dynamics, Element, LARGEST_WEIGHT, Mode, Shape};
 
 /// Which coefficients are free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,7 +128,7 @@ impl Layout {
     pub fn dynamics(&self, parameters: &[f64], template: &Dynamics) -> Dynamics {
         let mode = |(layout, template): (&ModeLayout, &Mode)| Mode {
             frequency: parameters[layout.ln_frequency].exp(),
-            damping: parameters[layout.ln_damping].exp(),
+            damping: within(parameters[layout.ln_damping], DAMPING_RATIOS),
             gain: parameters[layout.gain],
             velocity_in_output: layout
                 .velocity_in_output
@@ -141,7 +141,9 @@ impl Layout {
             false => parameters[range.clone()].to_vec(),
         };
         let one = |range: &Range<usize>, otherwise: f64| part(range, &[otherwise])[0];
-        let exponentials = |range: &Range<usize>| parameters[range.clone()].iter().map(|p| p.exp()).collect();
+        let positive = (f64::MIN_POSITIVE, LARGEST_WEIGHT);
+        let exponentials =
+            |range: &Range<usize>| parameters[range.clone()].iter().map(|&ln| within(ln, positive)).collect();
         let element = |(layout, template): (&ElementLayout, &Element)| Element {
             of_displacements: part(&layout.of_displacements, &template.of_displacements),
             of_velocities: part(&layout.of_velocities, &template.of_velocities),
@@ -197,4 +199,9 @@ impl Layout {
         }
         parameters
     }
+}
+
+/// The exponential of a logarithm that was limited to bounds: rounding may put it just outside them.
+fn within(ln: f64, (low, high): (f64, f64)) -> f64 {
+    ln.exp().clamp(low, high)
 }

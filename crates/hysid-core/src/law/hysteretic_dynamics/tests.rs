@@ -259,6 +259,21 @@ fn parameters_that_are_listed_are_those_that_are_free() {
     }
 }
 
+/// `exp(ln x)` is not always `x`.
+#[test]
+fn parameters_at_their_bounds_are_accepted() {
+    let layout = Layout::new(Form::StateSpace, 1, 1, SHAPE);
+    let mut sound = model(1, 1, 1, SHAPE, 0.5);
+    sound.output_offset = 0.0;
+    for damping in [DAMPING_RATIOS.0, DAMPING_RATIOS.1] {
+        sound.modes[0].damping = damping;
+        sound.elements[0].thresholds.fill(LARGEST_WEIGHT);
+        sound.elements[0].path_leaks.fill(LARGEST_WEIGHT);
+        let parameters = layout.parameters(&sound);
+        layout.dynamics(&parameters, &sound).check("test").unwrap();
+    }
+}
+
 #[test]
 fn what_does_not_fit_together_is_refused() {
     let sound = model(1, 2, 1, SHAPE, 0.5);
