@@ -474,10 +474,7 @@ fn numbers_that_no_network_can_have_are_refused() {
     let data = data(&law, rate, vec![timed("a", 100, 1.0)]);
     let none = options(rate);
     for (options, words) in [
-        (
-            ClassicalOptions { states: Some(0), ..none.clone() },
-            "states 0: choose a whole number from 1 to 20",
-        ),
+        (ClassicalOptions { states: Some(0), ..none.clone() }, "states 0: choose 1 to 20"),
         (ClassicalOptions { states: Some(21), ..none.clone() }, "states 21"),
         (ClassicalOptions { hidden: Some(0), ..none.clone() }, "hidden 0: choose 1 to 100"),
         (ClassicalOptions { hidden: Some(101), ..none.clone() }, "hidden 101"),

@@ -115,7 +115,7 @@ impl Law for DuhemNn {
 
     const FACTS: Facts = Facts {
         rate: Rate::Optional,
-        limits: &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS)],
+        limits: &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 1, MOST_STATES)],
         ..Facts::searched(
             "duhem-nn",
             "recurrent network whose states move with the input and with time",

@@ -68,7 +68,7 @@ pub(crate) const FIT_OPTIONS: &[&str] = &["modes", "operators", "hidden", "state
 
 /// Smallest and largest values of such options.
 pub const LIMITS: &[(&str, usize, usize)] =
-    &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 1, MOST_PARTS)];
+    &[("hidden", 1, MOST_NEURONS), ("operators", 0, MOST_NEURONS), ("states", 0, MOST_PARTS)];
 
 /// A mode of vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

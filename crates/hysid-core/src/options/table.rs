@@ -279,9 +279,10 @@ pub const OPTIONS: [FitOption; 31] = [
     FitOption {
         name: "states",
         group: Classical,
-        meaning: "States of duhem-nn, which move with the input and with time, or of each hysteretic element of \
-                  hysteretic-oscillator and hysteretic-state-space, which move along its path (at most 10)",
-        values: Values::Count(1, MOST_STATES),
+        meaning: "States of duhem-nn, which move with the input and with time (1 to 20), or of each element of \
+                  hysteretic-oscillator and hysteretic-state-space, which move along its path (0 to 10; an element \
+                  without states and stops has no hysteresis)",
+        values: Values::Count(0, MOST_STATES),
         default: "3; 2 for hysteretic elements",
         used_by: of_none,
     },

@@ -16,7 +16,6 @@ use std::ops::ControlFlow;
 
 use rand::RngExt;
 use rayon::prelude::*;
-use serde_json::json;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
@@ -28,7 +27,7 @@ use crate::fit::law::search::{
 };
 use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
 use crate::law::Law;
-use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, MOST_NEURONS, Run, Shape};
+use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, MOST_NEURONS, MOST_STATES, Run, Shape};
 use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
@@ -36,7 +35,6 @@ use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, S
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
-use crate::options::table::check;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
@@ -184,11 +182,14 @@ pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
 
 /// Rejects numbers that no network can have.
 fn check_shape(shape: Shape) -> Result<()> {
-    check([("states", json!(shape.states))])?;
-    let counts = [("hidden", shape.neurons, 1), ("operators", shape.stops, 0)];
-    match counts.into_iter().find(|(_, count, least)| !(*least..=MOST_NEURONS).contains(count)) {
-        Some((option, count, least)) => {
-            Err(OptionError::value(option, count, format!("choose {least} to {MOST_NEURONS}")).into())
+    let counts = [
+        ("hidden", shape.neurons, 1, MOST_NEURONS),
+        ("operators", shape.stops, 0, MOST_NEURONS),
+        ("states", shape.states, 1, MOST_STATES),
+    ];
+    match counts.into_iter().find(|(_, count, least, most)| !(*least..=*most).contains(count)) {
+        Some((option, count, least, most)) => {
+            Err(OptionError::value(option, count, format!("choose {least} to {most}")).into())
         }
         None => Ok(()),
     }

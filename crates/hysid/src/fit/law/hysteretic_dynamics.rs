@@ -90,7 +90,7 @@ impl Asked {
             states: options.states.unwrap_or(STATES),
             neurons: options.hidden.unwrap_or(HIDDEN),
         };
-        check([("modes", json!(modes)), ("states", json!(shape.states))])?;
+        check([("modes", json!(modes))])?;
         for &(option, least, most) in LIMITS {
             let count = match option {
                 "hidden" => shape.neurons,
