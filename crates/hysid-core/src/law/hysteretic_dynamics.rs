@@ -64,7 +64,8 @@ pub(crate) const MOST_STEPS: usize = 64;
 pub(crate) const STATIC_STEPS: usize = 16;
 
 /// Options of a fit of a model made of modes and elements.
-pub(crate) const FIT_OPTIONS: &[&str] = &["modes", "operators", "hidden", "states", "starts", "epochs"];
+pub(crate) const FIT_OPTIONS: &[&str] =
+    &["modes", "operators", "degradation", "hidden", "states", "starts", "epochs"];
 
 /// Smallest and largest values of such options.
 pub const LIMITS: &[(&str, usize, usize)] =
@@ -93,12 +94,20 @@ pub struct Shape {
     pub states: usize,
     /// Tanh neurons.
     pub neurons: usize,
+    /// True if the stops deteriorate. The tanh neurons then have no constant, so that an element without states has
+    /// opposite forces on opposite paths: a force with a preferred direction would drift through an earthquake.
+    pub deteriorates: bool,
 }
 
 impl Shape {
     /// Number of inputs of the tanh layer, the constant included.
     pub fn inputs(self) -> usize {
         3 + self.stops + self.states
+    }
+
+    /// The first input of the tanh layer whose weights are free.
+    pub(crate) fn first_free_input(self) -> usize {
+        usize::from(self.deteriorates)
     }
 
     fn first_state(self) -> usize {
@@ -212,7 +221,9 @@ impl Dynamics {
             }
         }
         for (e, element) in (1..).zip(&self.elements) {
-            let rows: [(bool, &str, &'static str, &[f64]); 10] = [
+            let shape = element.shape();
+            let free_layer = &element.layer[shape.first_free_input() * shape.neurons..];
+            let rows: [(bool, &str, &'static str, &[f64]); 11] = [
                 (
                     is_coupled,
                     "D",
@@ -223,7 +234,8 @@ impl Dynamics {
                 (is_general, "U", "share of the input there", &[element.of_input]),
                 (is_coupled, "g", "displacement of a mode under a unit force", &element.compliances),
                 (is_general, "m", "share of a force in the output", &[element.in_output]),
-                (true, "A", "weight of a tanh neuron", &element.layer),
+                (true, "τ", "share of the velocity in what drives a stop", &element.stop_velocities),
+                (true, "A", "weight of a tanh neuron", free_layer),
                 (true, "W↑", "weight of a target where the displacement rises", &element.rising),
                 (true, "W↓", "weight of a target where the displacement falls", &element.falling),
                 (true, "s", "state before the first sample", &element.initial),
@@ -233,15 +245,17 @@ impl Dynamics {
                 let numbered = (1..).zip(values);
                 all.extend(numbered.map(|(k, &value)| number(format!("{symbol}_{e},{k}"), meaning, value)));
             }
+            let least = f64::MIN_POSITIVE;
             let of_path = [
-                ("ρ", "threshold of a stop", &element.thresholds),
-                ("c", "leak along the path", &element.path_leaks),
+                ("ρ", "threshold of a stop", &element.thresholds, least),
+                ("κ", "strength that a stop loses per unit of slip", &element.strength_losses, 0.0),
+                ("c", "leak along the path", &element.path_leaks, least),
             ];
-            for (symbol, meaning, values) in of_path {
+            for (symbol, meaning, values, least) in of_path {
                 let numbered = (1..).zip(values);
-                let positive = (f64::MIN_POSITIVE, LARGEST_WEIGHT);
+                let bounds = (least, LARGEST_WEIGHT);
                 all.extend(numbered.map(|(k, &value)| {
-                    Parameter::new(format!("{symbol}_{e},{k}"), meaning, value, positive, Dimension::NONE)
+                    Parameter::new(format!("{symbol}_{e},{k}"), meaning, value, bounds, Dimension::NONE)
                 }));
             }
         }

@@ -24,7 +24,7 @@ impl Numbers {
 }
 
 fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
-    let Shape { stops, states, neurons } = shape;
+    let Shape { stops, states, neurons, deteriorates } = shape;
     Element {
         of_displacements: numbers.many(modes, 1.0),
         of_velocities: numbers.many(modes, 0.3),
@@ -32,6 +32,12 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
         compliances: numbers.many(modes, 0.3),
         in_output: numbers.next(),
         thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * t.exp()).collect(),
+        stop_velocities: numbers.many(stops, 0.3),
+        strength_losses: numbers
+            .many(if deteriorates { stops } else { 0 }, 0.01)
+            .iter()
+            .map(|k| k.abs())
+            .collect(),
         layer: numbers.many(shape.inputs() * neurons, 0.6),
         rising: numbers.many(states * neurons, 0.6),
         falling: numbers.many(states * neurons, 0.6),
@@ -65,14 +71,16 @@ fn dynamics(modes: usize, elements: usize, shape: Shape, hold: Hold, begins_unde
 
 /// Both laws, with all variants that differ in code. The model gives them its ranges.
 pub fn variants(of: &Model) -> Vec<(String, Model)> {
-    let shape = |stops, states, neurons| Shape { stops, states, neurons };
+    let shape = |stops, states, neurons| Shape { stops, states, neurons, deteriorates: false };
+    let deteriorating =
+        |stops, states, neurons| Shape { deteriorates: true, ..shape(stops, states, neurons) };
     let oscillator =
         |dynamics| Classical::HystereticOscillator(HystereticOscillator(dynamics).validated().unwrap());
     let state_space =
         |dynamics| Classical::HystereticStateSpace(HystereticStateSpace(dynamics).validated().unwrap());
     let laws = [
         ("hysteretic-oscillator, linear", oscillator(dynamics(1, 0, shape(0, 1, 1), Hold::Linear, false))),
-        ("hysteretic-oscillator", oscillator(dynamics(1, 1, shape(2, 2, 9), Hold::Cubic, false))),
+        ("hysteretic-oscillator", oscillator(dynamics(1, 1, deteriorating(2, 2, 9), Hold::Cubic, false))),
         (
             "hysteretic-state-space, two elements",
             state_space(dynamics(2, 2, shape(1, 2, 4), Hold::Linear, true)),

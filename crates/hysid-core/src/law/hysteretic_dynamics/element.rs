@@ -1,16 +1,19 @@
 //! A hysteretic element: a force that depends on the path of a displacement.
 //!
 //! ```text
-//! e_i   = max(-ρ_i, min(ρ_i, e_i,0 + δ - δ_0))                                 theory.md (15.6)
-//! h     = tanh(A [1, δ, ν, e, s])                                              theory.md (15.7)
+//! a_i   = δ + τ_i ν,   f_i = e_i,0 + a_i - a_i,0,   e_i = max(-ρ_i, min(ρ_i, f_i))
+//! S_i   = S_i,0 + |f_i - e_i|,   z_i = e_i max(0, 1 - κ_i S_i)                 theory.md (15.6)
+//! h     = tanh(A [1, δ, ν, z, s])                                              theory.md (15.7)
 //! T     = W↑ h  where δ rises,  W↓ h  where it falls                           theory.md (15.8)
 //! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   l = c |δ - δ_0|                         theory.md (15.9)
 //! a = e^-l,   w_1 = 1 - (1 - a)/l,   w_0 = 1 - a - w_1
-//! r     = v [e, s, h]                                                          theory.md (15.10)
+//! r     = v [z, s, h]                                                          theory.md (15.10)
 //! ```
 //!
-//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `e` stops, `s` states, `h` tanh neurons and `r` the
-//! force; index 0 is the beginning of the step. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
+//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `r` its force; `e` is the elongation of
+//! a stop, `S` its slip, `z` its output, `s` a state and `h` a tanh neuron. Index 0 is the beginning of the step. A stop
+//! is driven by displacement and velocity and deteriorates as it slips, as the
+//! [deteriorating stop](crate::operator::deteriorating_stop) does. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
 //! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
 //! to 1, so a state stays among its targets whatever the step.
 
@@ -38,6 +41,10 @@ pub struct Element {
     pub in_output: f64,
     /// `ρ > 0`: thresholds of the stops.
     pub thresholds: Vec<f64>,
+    /// `τ`: share of the velocity in what drives each stop.
+    pub stop_velocities: Vec<f64>,
+    /// `κ ≥ 0`: the strength that each stop loses per unit of its slip. Empty for stops that do not deteriorate.
+    pub strength_losses: Vec<f64>,
     /// `A`: for each input of the layer (1, `δ`, `ν`, stops, states) its weight in every neuron.
     pub layer: Vec<f64>,
     /// `W↑`: a row of weights of the neurons for each state.
@@ -54,12 +61,14 @@ pub struct Element {
 
 impl Element {
     pub(super) fn is_consistent(&self, shape: Shape, modes: usize) -> bool {
-        let Shape { stops, states, neurons } = shape;
+        let Shape { stops, states, neurons, deteriorates } = shape;
         neurons > 0
             && self.of_displacements.len() == modes
             && self.of_velocities.len() == modes
             && self.compliances.len() == modes
             && self.thresholds.len() == stops
+            && self.stop_velocities.len() == stops
+            && self.strength_losses.len() == if deteriorates { stops } else { 0 }
             && self.layer.len() == shape.inputs() * neurons
             && self.rising.len() == states * neurons
             && self.falling.len() == states * neurons
@@ -71,13 +80,14 @@ impl Element {
     /// Numbers of its parts.
     pub fn shape(&self) -> Shape {
         let (stops, states) = (self.thresholds.len(), self.path_leaks.len());
-        Shape { stops, states, neurons: self.force.len().saturating_sub(stops + states) }
+        let neurons = self.force.len().saturating_sub(stops + states);
+        Shape { stops, states, neurons, deteriorates: !self.strength_losses.is_empty() }
     }
 
     /// Bound of the magnitude of the force, and of each state: a state is an average of its past and its targets, and
     /// a target is no larger than the sum of its weights.
     pub fn bounds(&self) -> (f64, Vec<f64>) {
-        let Shape { stops, states, neurons } = self.shape();
+        let Shape { stops, states, neurons, .. } = self.shape();
         let size = |weights: &[f64]| weights.iter().map(|w| w.abs()).sum::<f64>();
         let of_state = |i: usize| {
             let row = i * neurons..(i + 1) * neurons;
@@ -95,10 +105,13 @@ impl Element {
 /// An element at a point of its path.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Place {
-    /// `1, δ, ν, e, s`.
+    /// `1, δ, ν, z, s`.
     pub inputs: Vec<f64>,
     pub neurons: Vec<f64>,
     pub force: f64,
+    /// `e` and `S` of each stop.
+    pub elongations: Vec<f64>,
+    pub slips: Vec<f64>,
 }
 
 /// A way from one place to another, with what its derivatives need.
@@ -116,6 +129,8 @@ pub(super) struct Way {
     pub moved: f64,
     /// Of each stop that ends at its threshold its elongation, otherwise 0.
     pub at_threshold: Vec<f64>,
+    /// `max(0, 1 - κ S)` of each stop.
+    pub strengths: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -151,11 +166,20 @@ impl StateWeights {
 }
 
 impl Place {
+    fn zero(shape: Shape) -> Self {
+        Self {
+            inputs: vec![0.0; shape.inputs()],
+            neurons: vec![0.0; shape.neurons],
+            force: 0.0,
+            elongations: vec![0.0; shape.stops],
+            slips: vec![0.0; shape.stops],
+        }
+    }
+
     /// Where an element is before the first sample, without its force.
     pub fn virgin(element: &Element) -> Self {
         let shape = element.shape();
-        let mut place =
-            Self { inputs: vec![0.0; shape.inputs()], neurons: vec![0.0; shape.neurons], force: 0.0 };
+        let mut place = Self::zero(shape);
         place.inputs[0] = 1.0;
         place.inputs[shape.first_state()..].copy_from_slice(&element.initial);
         place
@@ -173,13 +197,15 @@ impl Place {
         self.inputs.copy_from_slice(&other.inputs);
         self.neurons.copy_from_slice(&other.neurons);
         self.force = other.force;
+        self.elongations.copy_from_slice(&other.elongations);
+        self.slips.copy_from_slice(&other.slips);
     }
 }
 
 impl Way {
     pub fn new(element: &Element) -> Self {
         let shape = element.shape();
-        let to = Place { inputs: vec![0.0; shape.inputs()], neurons: vec![0.0; shape.neurons], force: 0.0 };
+        let to = Place::zero(shape);
         Self {
             inputs_ahead: to.inputs.clone(),
             neurons_ahead: to.neurons.clone(),
@@ -188,6 +214,7 @@ impl Way {
             weights: vec![StateWeights::default(); shape.states],
             moved: 0.0,
             at_threshold: vec![0.0; shape.stops],
+            strengths: vec![1.0; shape.stops],
             to,
         }
     }
@@ -206,13 +233,21 @@ impl Way {
         self.moved = displacement - from.inputs[1];
         let rows = self.targets_of(element);
         let path = self.moved.abs();
-        let inputs = &mut self.to.inputs;
+        let Place { inputs, elongations, slips, .. } = &mut self.to;
         (inputs[0], inputs[1], inputs[2]) = (1.0, displacement, velocity);
+        let of_velocity = velocity - from.inputs[2];
         for i in 0..stops {
-            let (free, threshold) = (from.inputs[3 + i] + self.moved, element.thresholds[i]);
-            inputs[3 + i] = free.clamp(-threshold, threshold);
-            self.at_threshold[i] = if inputs[3 + i] == free { 0.0 } else { inputs[3 + i] };
+            let driven = multiply_add::<S>(element.stop_velocities[i], of_velocity, self.moved);
+            let (free, threshold) = (from.elongations[i] + driven, element.thresholds[i]);
+            let elongation = free.clamp(-threshold, threshold);
+            elongations[i] = elongation;
+            slips[i] = from.slips[i] + (free - elongation).abs();
+            let loss = element.strength_losses.get(i).copied().unwrap_or(0.0);
+            self.strengths[i] = (1.0 - loss * slips[i]).max(0.0);
+            self.at_threshold[i] = if elongation == free { 0.0 } else { elongation };
+            inputs[3 + i] = elongation * self.strengths[i];
         }
+        let inputs = &mut self.to.inputs;
         self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let weights = StateWeights::of::<S>(element.path_leaks[i] * path);

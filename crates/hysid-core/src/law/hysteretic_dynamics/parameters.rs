@@ -44,6 +44,8 @@ pub struct ElementLayout {
     pub ln_path_leaks: Range<usize>,
     pub initial: Range<usize>,
     pub ln_thresholds: Range<usize>,
+    pub stop_velocities: Range<usize>,
+    pub strength_losses: Range<usize>,
     pub force: Range<usize>,
 }
 
@@ -90,12 +92,14 @@ impl Layout {
             of_input: next(if_general(1)),
             compliances: next(coupled),
             in_output: next(if_general(1)),
-            layer: next(shape.inputs() * shape.neurons),
+            layer: next((shape.inputs() - shape.first_free_input()) * shape.neurons),
             rising: next(shape.states * shape.neurons),
             falling: next(shape.states * shape.neurons),
             ln_path_leaks: next(shape.states),
             initial: next(shape.states),
             ln_thresholds: next(shape.stops),
+            stop_velocities: next(shape.stops),
+            strength_losses: next(if shape.deteriorates { shape.stops } else { 0 }),
             force: next(shape.stops + shape.states + shape.neurons),
         };
         let of_elements = (0..elements).map(of_element).collect();
@@ -140,6 +144,7 @@ impl Layout {
             true => otherwise.to_vec(),
             false => parameters[range.clone()].to_vec(),
         };
+        let constants = vec![0.0; self.shape.first_free_input() * self.shape.neurons];
         let one = |range: &Range<usize>, otherwise: f64| part(range, &[otherwise])[0];
         let positive = (f64::MIN_POSITIVE, LARGEST_WEIGHT);
         let exponentials =
@@ -151,7 +156,9 @@ impl Layout {
             compliances: part(&layout.compliances, &template.compliances),
             in_output: one(&layout.in_output, template.in_output),
             thresholds: exponentials(&layout.ln_thresholds),
-            layer: part(&layout.layer, &[]),
+            stop_velocities: part(&layout.stop_velocities, &[]),
+            strength_losses: part(&layout.strength_losses, &[]),
+            layer: [&constants, &parameters[layout.layer.clone()]].concat(),
             rising: part(&layout.rising, &[]),
             falling: part(&layout.falling, &[]),
             path_leaks: exponentials(&layout.ln_path_leaks),
@@ -179,18 +186,20 @@ impl Layout {
         }
         for (layout, element) in self.elements.iter().zip(&dynamics.elements) {
             let ln = |values: &[f64]| values.iter().map(|value| value.ln()).collect::<Vec<f64>>();
-            let parts: [(&Range<usize>, &[f64]); 12] = [
+            let parts: [(&Range<usize>, &[f64]); 14] = [
                 (&layout.of_displacements, &element.of_displacements),
                 (&layout.of_velocities, &element.of_velocities),
                 (&layout.of_input, &[element.of_input]),
                 (&layout.compliances, &element.compliances),
                 (&layout.in_output, &[element.in_output]),
-                (&layout.layer, &element.layer),
+                (&layout.layer, &element.layer[self.shape.first_free_input() * self.shape.neurons..]),
                 (&layout.rising, &element.rising),
                 (&layout.falling, &element.falling),
                 (&layout.ln_path_leaks, &ln(&element.path_leaks)),
                 (&layout.initial, &element.initial),
                 (&layout.ln_thresholds, &ln(&element.thresholds)),
+                (&layout.stop_velocities, &element.stop_velocities),
+                (&layout.strength_losses, &element.strength_losses),
                 (&layout.force, &element.force),
             ];
             for (range, values) in parts {

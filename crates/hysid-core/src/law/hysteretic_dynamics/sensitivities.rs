@@ -6,6 +6,9 @@
 //! from them. The local derivatives of an element by the ends of its way come from sweeps backwards through its layer,
 //! one for each state and one for the force.
 
+mod of_stops;
+
+use of_stops::{OfStops, add_by_end};
 use pulp::{Simd, WithSimd};
 
 use super::element::{Element, Place, Way};
@@ -166,11 +169,12 @@ struct Sensitivities<'l> {
 
 /// Derivatives of an element.
 struct OfElement {
-    /// Of its place: `∂δ`, `∂ν`, `∂e` of each stop, `∂s` of each state.
+    /// Of its place: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
     place: Vec<f64>,
-    /// Of the states at the end of a way, without those of `δ` and `ν` there.
-    states: Vec<f64>,
-    local: Vec<Local>,
+    /// Of the outputs of stops and of the states at the end of a way, without those of `δ` and `ν` there.
+    memory: Vec<f64>,
+    stops: OfStops,
+    of_states: Vec<Local>,
     of_force: Local,
     /// Where the way began.
     from: Option<Place>,
@@ -180,9 +184,9 @@ struct OfElement {
 /// Derivatives of one number at the end of a way.
 #[derive(Clone)]
 struct Local {
-    /// By `δ`, `ν`, stops and states at its beginning.
+    /// By `δ`, `ν`, stops and states at its beginning; empty for the force.
     by_start: Vec<f64>,
-    /// By the stops and states at its end; of the force only.
+    /// By the stops at its end, and of the force by the states there too.
     by_memory: Vec<f64>,
     by_displacement: f64,
     by_velocity: f64,
@@ -207,9 +211,10 @@ impl OfElement {
         };
         Self {
             place: vec![0.0; (2 + memory) * width],
-            states: vec![0.0; shape.states * width],
-            local: vec![local.clone(); shape.states],
-            of_force: local,
+            memory: vec![0.0; memory * width],
+            stops: OfStops::new(shape, width),
+            of_states: vec![local.clone(); shape.states],
+            of_force: Local { by_start: Vec::new(), ..local },
             from: None,
             scratch: Scratch {
                 back: vec![0.0; shape.neurons],
@@ -252,6 +257,7 @@ impl<'l> Sensitivities<'l> {
         for (e, element) in self.elements.iter_mut().enumerate() {
             let layout = &self.layout.elements[e];
             element.place.fill(0.0);
+            element.stops.begin();
             for (i, place) in layout.initial.clone().enumerate() {
                 element.place[(2 + shape.stops + i) * width + place] = 1.0;
             }
@@ -287,7 +293,7 @@ impl<'l> Sensitivities<'l> {
             self.element::<S>(dynamics, motion, e);
         }
         self.solve::<S>(dynamics);
-        self.finish::<S>(dynamics, motion);
+        self.finish::<S>(dynamics);
     }
 
     /// `∂q` and `∂p` at the end of the step with the forces there held.
@@ -365,23 +371,25 @@ impl<'l> Sensitivities<'l> {
         let (width, shape) = (self.width, self.layout.shape);
         let (element, layout, way) = (&dynamics.elements[e], &self.layout.elements[e], &motion.ways[e]);
         let own = &mut self.elements[e];
-        for k in 0..shape.states {
-            let row = &mut own.states[k * width..(k + 1) * width];
-            let from = own.from.as_ref().expect("the beginning of a step is remembered");
-            let ends = Ends { element, layout, shape, from, way };
-            ends.of_state::<S>(k, &mut own.scratch, &mut own.local[k], row);
-            add_multiples::<S>(row, &own.local[k].by_start, &own.place);
+        let from = own.from.as_ref().expect("the beginning of a step is remembered");
+        let ends = Ends { element, layout, shape, from, way };
+        let (outputs, states) = own.memory.split_at_mut(shape.stops * width);
+        own.stops.go::<S>(ends, &own.place, outputs);
+        for (k, local) in own.of_states.iter_mut().enumerate() {
+            let row = &mut states[k * width..(k + 1) * width];
+            ends.of_state::<S>(k, &mut own.scratch, local, row);
+            local.through_stops(&own.stops.outputs);
+            add_multiples::<S>(row, &local.by_start, &own.place);
+            add_multiples::<S>(row, &local.by_memory[..shape.stops], outputs);
         }
         let row = &mut self.new_forces[e * width..(e + 1) * width];
         own.force::<S>(element, layout, &way.to, row);
-        own.force_through_stops(layout, way, row);
-        for (k, local) in own.local.iter().enumerate() {
-            let by = own.of_force.by_memory[shape.stops + k];
+        own.of_force.through_stops(&own.stops.outputs);
+        for (local, by) in own.of_states.iter().zip(&own.of_force.by_memory[shape.stops..]) {
             own.of_force.by_displacement += by * local.by_displacement;
             own.of_force.by_velocity += by * local.by_velocity;
         }
-        add_multiples::<S>(row, &own.of_force.by_memory[shape.stops..], &own.states);
-        add_multiples::<S>(row, &own.of_force.by_start, &own.place);
+        add_multiples::<S>(row, &own.of_force.by_memory, &own.memory);
         add_multiple::<S>(row, own.of_force.by_displacement, &self.ends[2 * e * width..][..width]);
         add_multiple::<S>(row, own.of_force.by_velocity, &self.ends[(2 * e + 1) * width..][..width]);
     }
@@ -420,7 +428,7 @@ impl<'l> Sensitivities<'l> {
 
     /// Everything else at the end of the step, from `∂r` there.
     #[inline(always)]
-    fn finish<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn finish<S: Simd>(&mut self, dynamics: &Dynamics) {
         let (width, modes) = (self.width, dynamics.modes.len());
         let count = self.elements.len();
         let mut factors = [0.0; super::MOST_PARTS];
@@ -432,7 +440,7 @@ impl<'l> Sensitivities<'l> {
             let (displacement, velocity) = self.ends[2 * e * width..][..2 * width].split_at_mut(width);
             add_multiples::<S>(displacement, &of_displacement[..count], &self.forces);
             add_multiples::<S>(velocity, &of_velocity[..count], &self.forces);
-            self.elements[e].end::<S>(&self.layout.elements[e], &motion.ways[e], displacement, velocity);
+            self.elements[e].end::<S>(displacement, velocity);
         }
         std::mem::swap(&mut self.modes, &mut self.alone);
         for i in 0..modes {
@@ -487,6 +495,7 @@ impl OfElement {
     #[inline(always)]
     fn force<S: Simd>(&mut self, element: &Element, layout: &ElementLayout, place: &Place, row: &mut [f64]) {
         let Scratch { back, by_inputs, .. } = &mut self.scratch;
+        let first_free = element.shape().first_free_input();
         let memory = place.inputs.len() - 3;
         let (of_memory, of_neurons) = element.force.split_at(memory);
         for ((back, weight), h) in back.iter_mut().zip(of_neurons).zip(&place.neurons) {
@@ -494,7 +503,6 @@ impl OfElement {
         }
         through_layer::<S>(element, back, by_inputs);
         let local = &mut self.of_force;
-        local.by_start.fill(0.0);
         (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
         for ((by, own), through) in local.by_memory.iter_mut().zip(of_memory).zip(&by_inputs[3..]) {
             *by = own + through;
@@ -503,40 +511,20 @@ impl OfElement {
         let (own_memory, own_neurons) = row[layout.force.clone()].split_at_mut(memory);
         own_memory.copy_from_slice(&place.inputs[3..]);
         own_neurons.copy_from_slice(&place.neurons);
-        add_of_layer(&place.inputs, back, &mut row[layout.layer.clone()]);
-    }
-
-    /// Of the force by the stops, which follow from the ends of the way or their thresholds.
-    #[inline(always)]
-    fn force_through_stops(&mut self, layout: &ElementLayout, way: &Way, row: &mut [f64]) {
-        for (i, at_threshold) in way.at_threshold.iter().enumerate() {
-            let by = self.of_force.by_memory[i];
-            self.of_force.through_stop(i, by, *at_threshold, &mut row[layout.ln_thresholds.clone()]);
-        }
+        add_of_layer(&place.inputs[first_free..], back, &mut row[layout.layer.clone()]);
     }
 
     /// To the end of the way, from `∂δ` and `∂ν` there.
     #[inline(always)]
-    fn end<S: Simd>(&mut self, layout: &ElementLayout, way: &Way, displacement: &[f64], velocity: &[f64]) {
+    fn end<S: Simd>(&mut self, displacement: &[f64], velocity: &[f64]) {
         let width = displacement.len();
         let (ends, memory) = self.place.split_at_mut(2 * width);
-        let (stops, states) = memory.split_at_mut(way.at_threshold.len() * width);
-        let before = &ends[..width];
-        for i in 0..way.at_threshold.len() {
-            let row = &mut stops[i * width..(i + 1) * width];
-            if way.at_threshold[i] != 0.0 {
-                row.fill(0.0);
-                row[layout.ln_thresholds.start + i] = way.at_threshold[i];
-            } else {
-                add_multiple::<S>(row, 1.0, displacement);
-                add_multiple::<S>(row, -1.0, before);
-            }
-        }
-        states.copy_from_slice(&self.states);
-        for (k, local) in self.local.iter().enumerate() {
-            let row = &mut states[k * width..(k + 1) * width];
-            add_multiple::<S>(row, local.by_displacement, displacement);
-            add_multiple::<S>(row, local.by_velocity, velocity);
+        self.stops.end::<S>(displacement, velocity);
+        memory.copy_from_slice(&self.memory);
+        let (outputs, states) = memory.split_at_mut(self.stops.outputs.len() * width);
+        add_by_end::<S>(outputs, &self.stops.outputs, displacement, velocity);
+        for (row, local) in states.chunks_exact_mut(width).zip(&self.of_states) {
+            add_by_end::<S>(row, &[[local.by_displacement, local.by_velocity]], displacement, velocity);
         }
         ends[..width].copy_from_slice(displacement);
         ends[width..].copy_from_slice(velocity);
@@ -544,21 +532,19 @@ impl OfElement {
 }
 
 impl Local {
-    /// Adds what depends on a stop at the end of a way by the factor `by`.
+    /// Adds what depends on `δ` and `ν` at the end of a way through the stops there.
     #[inline(always)]
-    fn through_stop(&mut self, stop: usize, by: f64, at_threshold: f64, by_thresholds: &mut [f64]) {
-        if at_threshold != 0.0 {
-            by_thresholds[stop] += by * at_threshold;
-        } else {
-            self.by_displacement += by;
-            self.by_start[0] -= by;
-            self.by_start[2 + stop] += by;
+    fn through_stops(&mut self, outputs: &[[f64; 2]]) {
+        for (by, [of_displacement, of_velocity]) in self.by_memory.iter().zip(outputs) {
+            self.by_displacement += by * of_displacement;
+            self.by_velocity += by * of_velocity;
         }
     }
 }
 
 /// A way of an element and its ends.
-struct Ends<'a> {
+#[derive(Clone, Copy)]
+pub(super) struct Ends<'a> {
     element: &'a Element,
     layout: &'a ElementLayout,
     shape: Shape,
@@ -572,11 +558,13 @@ impl Ends<'_> {
     fn of_state<S: Simd>(&self, k: usize, scratch: &mut Scratch, local: &mut Local, row: &mut [f64]) {
         let Self { element, layout, shape, from, way } = *self;
         let Scratch { back, back_ahead, by_inputs, on_targets } = scratch;
-        let (neurons, first_state) = (shape.neurons, shape.first_state());
+        let (neurons, first_state, first_free) =
+            (shape.neurons, shape.first_state(), shape.first_free_input());
         let rows = way.targets_of(element);
         let of_targets = if way.moved < 0.0 { layout.falling.start } else { layout.rising.start };
         let last = way.weights[k].last;
         local.by_start.fill(0.0);
+        local.by_memory.fill(0.0);
         row.fill(0.0);
 
         // T_1, taken with the states ahead.
@@ -587,11 +575,9 @@ impl Ends<'_> {
         for (to, h) in row[of_targets + k * neurons..].iter_mut().zip(&way.neurons_ahead) {
             *to += last * h;
         }
-        add_of_layer(&way.inputs_ahead, back_ahead, &mut row[layout.layer.clone()]);
+        add_of_layer(&way.inputs_ahead[first_free..], back_ahead, &mut row[layout.layer.clone()]);
         (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
-        for (i, at_threshold) in way.at_threshold.iter().enumerate() {
-            local.through_stop(i, by_inputs[3 + i], *at_threshold, &mut row[layout.ln_thresholds.clone()]);
-        }
+        local.by_memory[..shape.stops].copy_from_slice(&by_inputs[3..first_state]);
 
         // The states ahead, and the weights of the targets, follow from the travel.
         let mut by_path = 0.0;
@@ -628,7 +614,7 @@ impl Ends<'_> {
         for (by, through) in local.by_start.iter_mut().zip(&by_inputs[1..]) {
             *by += through;
         }
-        add_of_layer(&from.inputs, back, &mut row[layout.layer.clone()]);
+        add_of_layer(&from.inputs[first_free..], back, &mut row[layout.layer.clone()]);
     }
 }
 

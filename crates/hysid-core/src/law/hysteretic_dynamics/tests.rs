@@ -23,7 +23,8 @@ impl Numbers {
 }
 
 fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Element {
-    let Shape { stops, states, neurons } = shape;
+    let Shape { stops, states, neurons, deteriorates } = shape;
+    let constant = shape.first_free_input();
     Element {
         of_displacements: numbers.many(modes, 1.0),
         of_velocities: numbers.many(modes, 0.5),
@@ -31,7 +32,14 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize, size: f64) -> Elem
         compliances: numbers.many(modes, 0.3),
         in_output: numbers.next(),
         thresholds: numbers.many(stops, 1.0).iter().map(|t| 0.3 * t.exp()).collect(),
-        layer: numbers.many(shape.inputs() * neurons, size),
+        stop_velocities: numbers.many(stops, 0.3),
+        strength_losses: numbers
+            .many(if deteriorates { stops } else { 0 }, 0.2)
+            .iter()
+            .map(|k| k.abs())
+            .collect(),
+        layer: [vec![0.0; constant * neurons], numbers.many((shape.inputs() - constant) * neurons, size)]
+            .concat(),
         rising: numbers.many(states * neurons, size),
         falling: numbers.many(states * neurons, size),
         path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * c.exp()).collect(),
@@ -85,7 +93,7 @@ fn outputs(dynamics: &Dynamics, samples: &[Sample]) -> Vec<f64> {
     samples.iter().map(|&sample| dynamics.step(&mut motion, sample)).collect()
 }
 
-const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9 };
+const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9, deteriorates: true };
 
 #[test]
 fn derivatives_equal_differences() {
@@ -93,8 +101,16 @@ fn derivatives_equal_differences() {
         (Form::Oscillator, 1, 1, SHAPE, false, Hold::Cubic),
         (Form::Oscillator, 2, 2, SHAPE, true, Hold::Linear),
         (Form::StateSpace, 2, 2, SHAPE, false, Hold::Constant),
-        (Form::StateSpace, 3, 1, Shape { stops: 0, states: 3, neurons: 4 }, true, Hold::Cubic),
+        (
+            Form::StateSpace,
+            3,
+            1,
+            Shape { stops: 0, states: 3, neurons: 4, deteriorates: false },
+            true,
+            Hold::Cubic,
+        ),
         (Form::Oscillator, 2, 0, SHAPE, false, Hold::Cubic),
+        (Form::Oscillator, 1, 1, Shape { states: 0, deteriorates: false, ..SHAPE }, false, Hold::Cubic),
     ] {
         let layout = Layout::new(form, modes, elements, shape);
         let mut template = model(7, modes, elements, shape, 0.7);
@@ -110,7 +126,7 @@ fn derivatives_equal_differences() {
         let run = Run { dynamics: &dynamics, drives: &drives, stop: StopCheck::never() };
         let rows = run.rows(&layout).unwrap();
         for place in 0..layout.count() {
-            let by = 1e-6;
+            let by = 4e-6;
             let at = |by: f64| {
                 let mut moved = parameters.clone();
                 moved[place] += by;
@@ -190,7 +206,7 @@ fn shorter_steps_converge_to_second_order() {
 /// A stop of large threshold is a spring: the mode under it is a mode of another frequency.
 #[test]
 fn an_element_that_is_a_spring_shifts_the_frequency() {
-    let mut dynamics = model(2, 1, 1, Shape { stops: 1, states: 0, neurons: 1 }, 0.0);
+    let mut dynamics = model(2, 1, 1, Shape { stops: 1, states: 0, neurons: 1, deteriorates: false }, 0.0);
     let (stiffness, mode) = (3.0, Mode { frequency: 1.0, damping: 0.05, gain: 1.0, velocity_in_output: 0.0 });
     dynamics.modes = vec![mode];
     dynamics.direct = 0.0;
@@ -199,6 +215,7 @@ fn an_element_that_is_a_spring_shifts_the_frequency() {
     (element.of_displacements, element.of_velocities, element.of_input) = (vec![1.0], vec![0.0], 0.0);
     (element.compliances, element.in_output) = (vec![1.0], 0.0);
     (element.thresholds, element.force) = (vec![1e6], vec![stiffness, 0.0]);
+    element.stop_velocities = vec![0.0];
     let root = f64::sqrt(1.0 + stiffness);
     let stiffer = Dynamics {
         modes: vec![Mode { frequency: root, damping: 0.05 / root, gain: 1.0 / (root * root), ..mode }],
@@ -215,12 +232,13 @@ fn an_element_that_is_a_spring_shifts_the_frequency() {
 /// record that returns to rest is not negative.
 #[test]
 fn stops_dissipate() {
-    let mut dynamics = model(4, 1, 1, Shape { stops: 3, states: 0, neurons: 1 }, 0.0);
+    let mut dynamics = model(4, 1, 1, Shape { stops: 3, states: 0, neurons: 1, deteriorates: false }, 0.0);
     dynamics.modes = vec![Mode { frequency: 1.0, damping: 0.01, gain: 1.0, velocity_in_output: 0.0 }];
     (dynamics.direct, dynamics.longest_step) = (0.0, 0.01);
     let element = &mut dynamics.elements[0];
     (element.of_displacements, element.of_velocities, element.of_input) = (vec![1.0], vec![0.0], 0.0);
     (element.compliances, element.in_output, element.force) = (vec![1.0], 0.0, vec![0.5, 0.5, 0.5, 0.0]);
+    element.stop_velocities = vec![0.0; 3];
     let mut motion = dynamics.virgin();
     let (mut work, mut before) = (0.0, 0.0);
     let mut lowest = f64::INFINITY;
@@ -257,6 +275,41 @@ fn parameters_that_are_listed_are_those_that_are_free() {
         let listed = model(1, modes, 1, SHAPE, 0.5).parameters(form);
         assert_eq!(listed.len(), Layout::new(form, modes, 1, SHAPE).count(), "{form:?} {modes}");
     }
+}
+
+/// The stops of an element are those of the networks.
+#[test]
+fn a_stop_deteriorates_as_the_operator_does() {
+    use crate::operator::{DeterioratingStop, Operator};
+    let shape = Shape { stops: 2, states: 0, neurons: 1, deteriorates: true };
+    let mut element = element(&mut Numbers::new(3), shape, 1, 0.5);
+    let capacity = 4.0;
+    element.strength_losses = element.thresholds.iter().map(|r| 1.0 / (r * capacity)).collect();
+    element.stop_velocities = vec![0.0, 0.4];
+    let (mut place, mut way) = (element::Place::virgin(&element), element::Way::new(&element));
+    let stop = |i: usize| DeterioratingStop::new(element.thresholds[i], capacity).unwrap();
+    let (mut plain, mut of_rate) = (stop(0), stop(1));
+    (plain.step(0.0), of_rate.step(0.0));
+    let mut numbers = Numbers::new(4);
+    for _ in 0..40 {
+        let (displacement, velocity) = (numbers.next(), numbers.next());
+        way.go::<pulp::Scalar>(&element, &place, displacement, velocity);
+        place.copy_from(&way.to);
+        let expected = [plain.step(displacement), of_rate.step(displacement + 0.4 * velocity)];
+        assert!((0..2).all(|i| (place.inputs[3 + i] - expected[i]).abs() < 1e-12), "{expected:?}");
+    }
+    assert!(plain.is_dead() || of_rate.is_dead());
+}
+
+#[test]
+fn an_element_of_deteriorating_stops_is_odd() {
+    let shape = Shape { states: 0, ..SHAPE };
+    let mut dynamics = model(6, 1, 1, shape, 0.7);
+    dynamics.output_offset = 0.0;
+    let there = samples(&drive(2, 60, 0.1));
+    let back: Vec<Sample> = there.iter().map(|sample| Sample { x: -sample.x, ..*sample }).collect();
+    let opposite = outputs(&dynamics, &back);
+    assert!(outputs(&dynamics, &there).iter().zip(opposite).all(|(a, b)| (a + b).abs() < 1e-9));
 }
 
 /// `exp(ln x)` is not always `x`.

@@ -42,9 +42,9 @@ pub(crate) const STARTS: usize = 2;
 /// Default number of iterations of each start.
 const EPOCHS: usize = 110;
 
-/// Default numbers of tanh neurons and states of an element.
-const HIDDEN: usize = 8;
-const STATES: usize = 2;
+/// Default parts of an element, and of one whose stops deteriorate.
+const USUAL: Shape = Shape { stops: 0, states: 2, neurons: 8, deteriorates: false };
+const DETERIORATING: Shape = Shape { stops: 6, states: 0, neurons: 4, deteriorates: true };
 
 /// Default number of modes of a state space model; an oscillator has one.
 const MODES_OF_STATE_SPACE: usize = 2;
@@ -70,6 +70,9 @@ const FIRST_LEAKS: (f64, f64) = (0.4, 4.0);
 /// First thresholds of stops, in the same unit.
 const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
 
+/// First loss of strength of a stop, in the inverse unit of the displacement.
+const FIRST_STRENGTH_LOSS: f64 = 1e-3;
+
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Asked {
@@ -85,11 +88,17 @@ impl Asked {
     pub fn of(form: Form, options: &ClassicalOptions) -> Result<Self> {
         let of_form = if form == Form::Oscillator { 1 } else { MODES_OF_STATE_SPACE };
         let modes = options.modes.unwrap_or(of_form);
+        let usual = if options.degradation { DETERIORATING } else { USUAL };
         let shape = Shape {
-            stops: options.operators.unwrap_or(0),
-            states: options.states.unwrap_or(STATES),
-            neurons: options.hidden.unwrap_or(HIDDEN),
+            stops: options.operators.unwrap_or(usual.stops),
+            states: options.states.unwrap_or(usual.states),
+            neurons: options.hidden.unwrap_or(usual.neurons),
+            deteriorates: options.degradation,
         };
+        if shape.deteriorates && shape.stops == 0 {
+            let needed = "without stops nothing deteriorates: choose 1 or more, or leave out degradation";
+            return Err(OptionError::value("operators", 0, needed).into());
+        }
         check([("modes", json!(modes))])?;
         for &(option, least, most) in LIMITS {
             let count = match option {
@@ -173,11 +182,15 @@ fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> D
     let mut random =
         |count: usize, size: f64| -> Vec<f64> { (0..count).map(|_| size * normal(&mut generator)).collect() };
     let Asked { form, modes, elements, shape } = *asked;
-    let Shape { stops, states, neurons } = shape;
+    let Shape { stops, states, neurons, deteriorates } = shape;
     let mut element = |e: usize| {
         let mut of_displacements = if modes == 1 { vec![1.0] } else { random(modes, 0.4) };
         of_displacements[e % modes] = 1.0;
         let of_velocities = if form == Form::StateSpace { random(modes, 0.1) } else { vec![0.0; modes] };
+        let mut layer = random(shape.inputs() * neurons, 1.2 / (shape.inputs() as f64).sqrt());
+        if deteriorates {
+            layer[..neurons].fill(0.0);
+        }
         Element {
             compliances: of_displacements.clone(),
             of_displacements,
@@ -185,7 +198,9 @@ fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> D
             of_input: 0.0,
             in_output: 0.0,
             thresholds: (0..stops).map(|i| spaced(FIRST_THRESHOLDS, i, stops)).collect(),
-            layer: random(shape.inputs() * neurons, 1.2 / (shape.inputs() as f64).sqrt()),
+            stop_velocities: vec![0.0; stops],
+            strength_losses: vec![FIRST_STRENGTH_LOSS; if deteriorates { stops } else { 0 }],
+            layer,
             rising: random(states * neurons, 0.1),
             falling: random(states * neurons, 0.1),
             path_leaks: (0..states).map(|i| spaced(FIRST_LEAKS, i, states)).collect(),

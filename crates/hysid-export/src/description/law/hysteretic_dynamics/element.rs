@@ -10,8 +10,15 @@ use crate::program::{Array, Builder};
 /// Travel below which the mean decay is that of a straight line, to rounding.
 const LEAST_TRAVEL: f64 = 1e-8;
 
-/// Inputs of the tanh layer that are not remembered: the constant and the velocity.
-const FORGOTTEN: usize = 2;
+/// The constant, which is the only input of the tanh layer that is not remembered.
+const FORGOTTEN: usize = 1;
+
+/// Places of the velocity and of the first stop or state among what is remembered.
+const VELOCITY: usize = 1;
+const MEMORY: usize = 2;
+
+/// Numbers of each stop: its elongation and its slip.
+const OF_STOP: usize = 2;
 
 /// The arrays of an element.
 pub(super) struct ElementParts<'l> {
@@ -22,18 +29,24 @@ pub(super) struct ElementParts<'l> {
     of_displacements: Array,
     of_velocities: Array,
     thresholds: Array,
+    stop_velocities: Array,
+    strength_losses: Array,
     /// `W↑`, then `W↓`.
     targets: Array,
     leaks: Array,
     layer: Array,
     /// `v`
     weights: Array,
-    /// `δ, e, s` and the neurons, where the element is.
+    /// `δ, ν, z, s` and the neurons, where the element is.
     place: Array,
     place_neurons: Array,
-    /// `1, δ, ν, e, s` and the neurons, where it goes.
+    /// `e` and `S` of each stop there.
+    stops: Array,
+    /// `1, δ, ν, z, s` and the neurons, where it goes.
     inputs: Array,
     neurons: Array,
+    /// `e` and `S` of each stop there.
+    stops_ahead: Array,
     /// `a`, `w_0`, `w_1` and `T_0` of each state.
     way: Array,
     sums: Array,
@@ -63,11 +76,13 @@ impl<'l> ElementParts<'l> {
         let of_displacements = constants("of_displacement", &element.of_displacements);
         let of_velocities = constants("of_velocity", &element.of_velocities);
         let thresholds = constants("threshold", &element.thresholds);
+        let stop_velocities = constants("stop_velocity", &element.stop_velocities);
+        let strength_losses = constants("strength_loss", &element.strength_losses);
         let targets = constants("target", &targets);
         let leaks = constants("leak", &element.path_leaks);
         let layer = constants("layer", &element.layer);
         let weights = constants("weight", &element.force);
-        let mut place = vec![0.0; 1 + shape.stops];
+        let mut place = vec![0.0; MEMORY + shape.stops];
         place.extend(&element.initial);
         Self {
             element,
@@ -76,14 +91,18 @@ impl<'l> ElementParts<'l> {
             of_displacements,
             of_velocities,
             thresholds,
+            stop_velocities,
+            strength_losses,
             targets,
             leaks,
             layer,
             weights,
             place: builder.state(&name("place"), place),
             place_neurons: builder.state(&name("neuron"), vec![0.0; shape.neurons]),
+            stops: builder.state(&name("stop"), vec![0.0; OF_STOP * shape.stops]),
             inputs: builder.scratch(&name("input"), shape.inputs()),
             neurons: builder.scratch(&name("neuron_ahead"), shape.neurons),
+            stops_ahead: builder.scratch(&name("stop_ahead"), OF_STOP * shape.stops),
             way: builder.scratch(&name("way"), 4 * shape.states),
             sums,
             following,
@@ -98,11 +117,11 @@ impl<'l> ElementParts<'l> {
     /// The neurons and the force of the virgin element.
     pub fn begin(&self, builder: &mut Builder) {
         builder.set(self.inputs, 0_usize, 1.0);
-        builder.set(self.inputs, 1_usize, 0.0);
-        builder.set(self.inputs, 2_usize, 0.0);
-        let memory = self.memory();
-        builder.each(0_usize, memory, |builder, i| {
-            builder.set(self.inputs, &i + 3_usize, self.place.at(&i + 1_usize));
+        builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
+            builder.set(self.inputs, &i + FORGOTTEN, self.place.at(&i));
+        });
+        builder.each(0_usize, OF_STOP * self.shape.stops, |builder, i| {
+            builder.set(self.stops_ahead, &i, self.stops.at(&i));
         });
         self.finish(builder);
         self.arrive(builder);
@@ -110,10 +129,11 @@ impl<'l> ElementParts<'l> {
 
     /// Remembers where the element went.
     pub fn arrive(&self, builder: &mut Builder) {
-        builder.set(self.place, 0_usize, self.inputs.at(1_usize));
-        let memory = self.memory();
-        builder.each(1_usize, memory + 1, |builder, i| {
+        builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
             builder.set(self.place, &i, self.inputs.at(&i + FORGOTTEN));
+        });
+        builder.each(0_usize, OF_STOP * self.shape.stops, |builder, i| {
+            builder.set(self.stops, &i, self.stops_ahead.at(&i));
         });
         builder.each(0_usize, self.shape.neurons, |builder, i| {
             builder.set(self.place_neurons, &i, self.neurons.at(&i));
@@ -135,26 +155,38 @@ impl<'l> ElementParts<'l> {
         builder.set(self.inputs, 0_usize, 1.0);
         builder.set(self.inputs, 1_usize, displacement);
         builder.set(self.inputs, 2_usize, velocity);
-        self.stops(builder, &moved);
+        self.stops(builder, &moved, &Real::from(velocity));
         if self.shape.states > 0 {
             self.states(builder, &moved);
         }
         self.finish(builder);
     }
 
-    fn stops(&self, builder: &mut Builder, moved: &Real) {
-        if self.shape.stops == 0 {
+    fn stops(&self, builder: &mut Builder, moved: &Real, velocity: &Real) {
+        let Shape { stops, deteriorates, .. } = self.shape;
+        if stops == 0 {
             return;
         }
-        builder.each(0_usize, self.shape.stops, |builder, i| {
-            let free = builder.value(self.place.at(&i + 1_usize) + moved);
+        let of_velocity = builder.value(velocity - self.place.at(VELOCITY));
+        builder.each(0_usize, stops, |builder, i| {
+            let driven = builder.value(self.stop_velocities.at(&i) * &of_velocity + moved);
+            let free = builder.value(self.stops.at(&i) + driven);
             let threshold = builder.value(self.thresholds.at(&i));
-            builder.set(self.inputs, &i + 3_usize, free.clamp(-&threshold, &threshold));
+            let elongation = builder.value(free.clone().clamp(-&threshold, &threshold));
+            builder.set(self.stops_ahead, &i, &elongation);
+            if deteriorates {
+                let slip = builder.value(self.stops.at(&i + stops) + (free - &elongation).abs());
+                builder.set(self.stops_ahead, &i + stops, &slip);
+                let strength = (1.0 - self.strength_losses.at(&i) * slip).max(0.0);
+                builder.set(self.inputs, &i + 3_usize, elongation * strength);
+            } else {
+                builder.set(self.inputs, &i + 3_usize, elongation);
+            }
         });
     }
 
     fn states(&self, builder: &mut Builder, moved: &Real) {
-        let Shape { stops, states, neurons } = self.shape;
+        let Shape { stops, states, neurons, .. } = self.shape;
         let path = builder.value(moved.abs());
         let rows = builder.whole_variable(0_usize);
         builder.when(moved.below(0.0), |builder| builder.assign_whole(rows, states * neurons));
@@ -174,7 +206,7 @@ impl<'l> ElementParts<'l> {
             let kept = builder.value(1.0 - left);
             let first = builder.value(&mean - &kept);
             let target = target(builder, &i, self.place_neurons);
-            let before = builder.value(self.place.at(&i + (1 + stops)));
+            let before = builder.value(self.place.at(&i + (MEMORY + stops)));
             let ahead = (1.0 - &kept) * (&target - &before) + &before;
             builder.set(self.inputs, &i + (3 + stops), ahead);
             builder.set(self.way, way(0, &i), kept);
@@ -186,7 +218,7 @@ impl<'l> ElementParts<'l> {
         builder.each(0_usize, states, |builder, i| {
             let ahead = target(builder, &i, self.neurons);
             let [kept, first, last, target] = [0, 1, 2, 3].map(|what| self.way.at(way(what, &i)));
-            let before = self.place.at(&i + (1 + stops));
+            let before = self.place.at(&i + (MEMORY + stops));
             builder.set(self.inputs, &i + (3 + stops), kept * before + (first * target + last * ahead));
         });
     }

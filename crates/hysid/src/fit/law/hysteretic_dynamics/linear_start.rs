@@ -137,7 +137,7 @@ fn best_of_grid(
     found.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|best| best.1)
 }
 
-const NO_ELEMENT: Shape = Shape { stops: 0, states: 0, neurons: 1 };
+const NO_ELEMENT: Shape = Shape { stops: 0, states: 0, neurons: 1, deteriorates: false };
 
 /// The least square with the best offset, direct share, gains and velocities, from the derivatives at a gain of 1; and
 /// the gain and velocity of the last mode. `None` if they are not determined.

@@ -78,6 +78,9 @@ impl<'a> Task<'a> {
         if self.layout.elements.iter().any(|element| element.ln_path_leaks.contains(&index)) {
             return of_ln(PATH_LEAKS);
         }
+        if self.layout.elements.iter().any(|element| element.strength_losses.contains(&index)) {
+            return (0.0, LARGEST_WEIGHT);
+        }
         if self.layout.is_logarithm(index) {
             return of_ln((1.0 / LARGEST_WEIGHT, LARGEST_WEIGHT));
         }
