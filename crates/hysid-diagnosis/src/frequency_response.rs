@@ -1,5 +1,5 @@
 //! Frequency responses: of measured input and output, of a linear oscillator, and of a model at several amplitudes.
-//! theory.md (10.29) to (10.31).
+//! theory.md (10.46) to (10.49).
 //!
 //! The response of measured data is the linear system that explains most of the output for this very input (the best linear
 //! approximation). If the input repeats itself, whole periods after the first are transformed, without a window and without
@@ -7,12 +7,12 @@
 //! same rows in the same way, so that both can be compared.
 //!
 //! ```
-//! use hysid_diagnosis::frequency_response::Segments;
+//! use hysid_diagnosis::frequency_response::{Segments, resolution};
 //! use hysid_diagnosis::resonance::linear_oscillators;
 //! use hysid_specimens::Specimen;
 //! let data = Specimen::named("duffing-oscillator").unwrap().train();
-//! let oscillator = linear_oscillators(&data).into_iter().next();
-//! let response = Segments::of(&data, oscillator.as_ref())?.measured(&data);
+//! let resolution = resolution(&linear_oscillators(&data)[0]);
+//! let response = Segments::of(&data, Some(resolution))?.measured(&data, resolution);
 //! let peak = response.peak().unwrap();
 //! assert!((55.0..85.0).contains(&peak.frequency)); // Hz
 //! # Ok::<(), hysid_diagnosis::frequency_response::NoResponse>(())
@@ -27,7 +27,7 @@ mod stretches;
 use std::fmt;
 
 pub use of_model::{AtAmplitude, ModelResponses};
-pub use segments::{Segments, Window};
+pub use segments::{Segments, Window, resolution};
 
 use crate::resonance::LinearOscillator;
 
@@ -40,8 +40,8 @@ pub struct ResponsePoint {
     pub real: f64,
     /// Imaginary part, in the same unit.
     pub imaginary: f64,
-    /// Share of the power of the output that the response explains, between 0 and 1; `None` where a single transform gave
-    /// the response, which explains all.
+    /// Share of the power of the output that the response explains, between 0 and 1; at a single line of a periodic input,
+    /// what noise leaves of it. `None` where a single transform gave the response, which explains all.
     pub coherence: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ pub struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// The response of an oscillator at these frequencies, theory.md (10.31).
+    /// The response of an oscillator at these frequencies, theory.md (10.48).
     pub fn of_oscillator(oscillator: &LinearOscillator, frequencies: impl Iterator<Item = f64>) -> Self {
         let point = |frequency: f64| {
             // K / (1 - q² + 2 ζ q i), q = f/f0.

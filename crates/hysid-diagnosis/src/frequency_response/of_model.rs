@@ -5,8 +5,8 @@ use hysid_core::error::Result;
 use hysid_core::model::Model;
 
 use super::spectra::mean;
-use super::stretches::Stretch;
-use super::{FrequencyResponse, NoResponse, Segments};
+use super::stretches::{Stretch, stretches};
+use super::{FrequencyResponse, NoResponse, Segments, resolution};
 use crate::resonance::{LinearOscillator, linear_oscillators};
 
 /// Factors by which the input is multiplied, about its mean. Larger ones than 1 would leave the trained range.
@@ -19,6 +19,8 @@ pub struct ModelResponses {
     pub segments: Segments,
     /// Of the measured output.
     pub measured: FrequencyResponse,
+    /// Frequencies within this distance were averaged in the measured response.
+    pub resolution: f64,
     /// The linear oscillator that fits best in a free run, and its response at the measured frequencies.
     pub oscillator: Option<(LinearOscillator, FrequencyResponse)>,
     /// Of the simulated output, the largest amplitude first: that of the measurement.
@@ -49,59 +51,101 @@ impl ModelResponses {
         data: &Dataset,
         simulated: &[Vec<f64>],
     ) -> Result<std::result::Result<Self, NoResponse>> {
+        let (stretches, step) = match stretches(data) {
+            Ok(found) => found,
+            Err(why) => return Ok(Err(why)),
+        };
         let oscillator = linear_oscillators(data).into_iter().next();
-        let segments = match Segments::of(data, oscillator.as_ref()) {
+        let of_data = oscillator.as_ref().map_or(0.0, resolution);
+        let begun = stretches.iter().map(|stretch| {
+            (stretch.input(data).to_vec(), simulated[stretch.record][..stretch.rows].to_vec())
+        });
+        let mut runs = vec![Run { factor: 1.0, columns: begun.collect(), resolution: of_data }];
+        for factor in FACTORS {
+            runs.push(Run::scaled(model, data, &stretches, step, factor, of_data)?);
+        }
+        let finest = runs.iter().map(|run| run.resolution).fold(f64::INFINITY, f64::min);
+        let segments = match Segments::of(data, (finest > 0.0).then_some(finest)) {
             Ok(segments) => segments,
             Err(why) => return Ok(Err(why)),
         };
-        let stretches = &segments.stretches;
-        let inputs: Vec<&[f64]> = stretches.iter().map(|stretch| stretch.input(data)).collect();
-        let outputs: Vec<Vec<f64>> =
-            stretches.iter().map(|stretch| simulated[stretch.record][..stretch.rows].to_vec()).collect();
-        let mut responses = vec![AtAmplitude::of(&segments, 1.0, &inputs, &outputs)];
-        for factor in FACTORS {
-            let runs = stretches.iter().map(|stretch| scaled_run(model, data, &segments, *stretch, factor));
-            let (inputs, outputs): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
-                runs.collect::<Result<Vec<_>>>()?.into_iter().unzip();
-            let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-            responses.push(AtAmplitude::of(&segments, factor, &inputs, &outputs));
-        }
-        let measured = segments.measured(data);
+        let measured = segments.measured(data, of_data);
         let oscillator = oscillator.map(|oscillator| {
             let frequencies = measured.points.iter().map(|point| point.frequency);
             (oscillator, FrequencyResponse::of_oscillator(&oscillator, frequencies))
         });
-        Ok(Ok(Self { segments, measured, oscillator, model: responses }))
+        let model = runs.iter().map(|run| run.response(&segments)).collect();
+        Ok(Ok(Self { segments, measured, resolution: of_data, oscillator, model }))
     }
 }
 
-impl AtAmplitude {
-    fn of(segments: &Segments, factor: f64, inputs: &[&[f64]], outputs: &[Vec<f64>]) -> Self {
+/// Free runs of a model.
+struct Run {
+    factor: f64,
+    /// Input and output of each stretch.
+    columns: Vec<(Vec<f64>, Vec<f64>)>,
+    /// Frequencies within this distance are averaged. A resonance is sharper at an amplitude at which less is dissipated.
+    resolution: f64,
+}
+
+impl Run {
+    /// The runs over the inputs of data, multiplied about their means. If no oscillator fits them, the resolution is the
+    /// given one.
+    fn scaled(
+        model: &Model,
+        data: &Dataset,
+        stretches: &[Stretch],
+        step: f64,
+        factor: f64,
+        coarsest: f64,
+    ) -> Result<Self> {
+        let mut columns = Vec::with_capacity(stretches.len());
+        let mut records = Vec::with_capacity(stretches.len());
+        for stretch in stretches {
+            let (input, output) = scaled_run(model, data, *stretch, step, factor)?;
+            let time = (0..input.len()).map(|row| step * row as f64).collect();
+            records.push(Record::new("", vec![input.clone()], output.clone())?.with_time(time)?);
+            columns.push((input, output));
+        }
+        let moved = Dataset::new(data.names().clone(), records)?;
+        let oscillator = linear_oscillators(&moved).into_iter().next();
+        let resolution = oscillator.map_or(coarsest, |oscillator| resolution(&oscillator).min(coarsest));
+        Ok(Self { factor, columns, resolution })
+    }
+
+    fn response(&self, segments: &Segments) -> AtAmplitude {
         let columns: Vec<(&[f64], &[f64])> =
-            inputs.iter().copied().zip(outputs.iter().map(Vec::as_slice)).collect();
-        Self { factor, input_deviation: deviation(inputs), response: segments.response(&columns) }
+            self.columns.iter().map(|(input, output)| (input.as_slice(), output.as_slice())).collect();
+        AtAmplitude {
+            factor: self.factor,
+            input_deviation: deviation(columns.iter().map(|(input, _)| *input)),
+            response: segments.response(&columns, self.resolution),
+        }
     }
 }
 
 /// Standard deviation of values, each about the mean of its record.
-fn deviation(inputs: &[&[f64]]) -> f64 {
-    let rows: usize = inputs.iter().map(|input| input.len()).sum();
-    let square = |input: &&[f64]| {
+fn deviation<'c>(inputs: impl Iterator<Item = &'c [f64]> + Clone) -> f64 {
+    let rows: usize = inputs.clone().map(<[f64]>::len).sum();
+    let square = |input: &[f64]| {
         let mean = mean(input);
         input.iter().map(|x| (x - mean) * (x - mean) / rows as f64).sum::<f64>()
     };
-    inputs.iter().map(square).sum::<f64>().sqrt()
+    inputs.map(square).sum::<f64>().sqrt()
 }
 
-/// The input of a stretch multiplied about its mean, and the output of a free run over it.
+/// Rows of the rise before a run whose input would begin with a jump.
+const RISE: usize = 2000;
+
+/// The input of a stretch multiplied about its mean, theory.md (10.49), and the output of a free run over it.
 ///
 /// A record with a mean far from its first value, such as a bias that is raised from zero, would begin with a jump. Such a
 /// run begins at the measured first value and rises smoothly to the multiplied one; these rows are left out again.
 fn scaled_run(
     model: &Model,
     data: &Dataset,
-    segments: &Segments,
     stretch: Stretch,
+    step: f64,
     factor: f64,
 ) -> Result<(Vec<f64>, Vec<f64>)> {
     let record = &data.records()[stretch.record];
@@ -109,10 +153,10 @@ fn scaled_run(
     let mean = mean(measured);
     let scaled = |x: f64| mean + factor * (x - mean);
     let (from, to) = (measured[0], scaled(measured[0]));
-    let before = if to.abs() > from.abs() { segments.length() } else { 0 };
+    let before = if to.abs() > from.abs() { RISE } else { 0 };
     let rise = (0..before).map(|row| from + (to - from) * smooth(row as f64 / before as f64));
     let input: Vec<f64> = rise.chain(measured.iter().map(|&x| scaled(x))).collect();
-    let time: Vec<f64> = (0..input.len()).map(|row| segments.step * row as f64).collect();
+    let time: Vec<f64> = (0..input.len()).map(|row| step * row as f64).collect();
     let output = run(model, record, &input, &time, scaled)?;
     Ok((input[before..].to_vec(), output[before..].to_vec()))
 }

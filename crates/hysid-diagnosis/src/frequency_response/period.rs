@@ -3,7 +3,7 @@
 //! With `E` the energy of rows and `r` the autocorrelation, the mean square difference between rows a lag `p` apart is
 //!
 //! ```text
-//! D(p) = (E(0 … n-p) + E(p … n) - 2 r(p))/(n - p)                           theory.md (10.29)
+//! D(p) = (E(0 … n-p) + E(p … n) - 2 r(p))/(n - p)                           theory.md (10.46)
 //! ```
 //!
 //! A Fourier transform gives it for all lags at a cost of `n log n`, whatever the input.

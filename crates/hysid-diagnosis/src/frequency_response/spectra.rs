@@ -1,4 +1,4 @@
-//! Sums of spectra over segments, theory.md (10.30).
+//! Sums of spectra over segments, theory.md (10.47).
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
