@@ -32,8 +32,7 @@ pub fn section(report: &Report) -> Option<Part> {
     let parts = match report.frequency_response.as_ref()? {
         Err(why) => vec![Part::note(format!("The training data have no frequency response: {why}."))],
         Ok(responses) if responses.measured.points.len() < FEWEST_POINTS => {
-            let found =
-                count(responses.measured.points.len(), "frequency").replace("frequencys", "frequencies");
+            let found = count(responses.measured.points.len(), "spectral line");
             vec![Part::note(format!(
                 "No response is drawn, because the input has power at {found} only; noise or a multisine excites many."
             ))]

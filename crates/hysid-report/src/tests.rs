@@ -199,11 +199,14 @@ fn a_response_that_cannot_be_drawn_is_explained() {
         data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
     let sine = ModelResponses::of(&model, &data, &simulated).unwrap();
     let cases = [
-        (sine, "fewer than 5 frequencies have power in the input"),
+        (sine, "the input has power at 2 spectral lines only"),
         (Err(NoResponse::UnevenTime("a".into())), "record &quot;a&quot; are not evenly spaced"),
     ];
     for (responses, told) in cases {
         let report = Report { frequency_response: Some(responses), ..report(&model, &data, &[]) };
-        assert!(page_text(&page(&report)).contains(told), "{told}");
+        let page = page_text(&page(&report));
+        let section = page.split("<section id=\"frequency-response\">").nth(1).unwrap();
+        let section = section.split("</section>").next().unwrap();
+        assert!(section.contains(told), "{told}: {section}");
     }
 }
