@@ -14,7 +14,7 @@ const LEAST_POWER: f64 = 1e-7;
 /// With a window, so are those with less than this share of the power of a line that is not further away than so many lines:
 /// a strong line leaks more than that to its next neighbours, and the edge of a band would have points that tell nothing.
 const LEAST_OF_NEIGHBOURS: f64 = 1e-2;
-const NEIGHBOURS: usize = 10;
+const NEIGHBOURS: usize = 3;
 
 /// So are those whose coherence noise alone would exceed with this probability.
 const CHANCE: f64 = 0.05;
