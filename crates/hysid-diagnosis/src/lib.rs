@@ -23,6 +23,7 @@ pub mod cycles;
 mod deterioration;
 pub mod distribution;
 mod doctor;
+pub mod frequency_response;
 mod interpolation;
 mod loop_closure;
 mod masing;

@@ -8,6 +8,7 @@ mod search;
 mod static_law;
 
 use excerpt::Excerpts;
+pub(crate) use excerpt::{JITTER, even_step};
 use hysid_core::data::record::Dataset;
 pub use linear_oscillator::LinearOscillator;
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use hysid::data::record::Dataset;
 use hysid::data::summary::Summary;
+use hysid::diagnosis::frequency_response::ModelResponses;
 use hysid::diagnosis::residuals::{FEWEST_ROWS, ResidualOptions, Residuals};
 use hysid::diagnosis::{DataIssueKind, before_a_fit};
 use hysid::fit::HeldOutRows;
@@ -125,16 +126,18 @@ impl Identified {
                 _ => residuals.extend(self.residuals_of(name, data)?),
             }
         }
+        let reported: Vec<ReportSet> =
+            sets.iter().map(|(name, data)| ReportSet::of(&self.model, name, data)).collect::<Result<_>>()?;
+        let training = reported.iter().find(|set| set.name == "training" && self.model.has_inertia());
+        let responses = training.map(|set| ModelResponses::of(&self.model, set.data, &set.simulated));
         let title = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         Ok(page(&Report {
             title,
             model: &self.model,
-            sets: sets
-                .iter()
-                .map(|(name, data)| ReportSet::of(&self.model, name, data))
-                .collect::<Result<_>>()?,
+            sets: reported,
             residuals: &residuals,
             intervals: intervals.as_ref(),
+            frequency_response: responses.transpose()?,
             warnings: &self.beforehand.warnings,
             understood: &self.beforehand.understood,
             model_file: path.display().to_string(),

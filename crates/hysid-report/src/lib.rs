@@ -9,6 +9,7 @@ pub mod diagnosis;
 mod ensemble;
 mod errors;
 mod figures;
+mod frequency_response;
 pub mod histories;
 mod identified;
 pub mod models;
@@ -27,6 +28,7 @@ use anyhow::{Context, Result};
 use hysid::data::initial_state::in_words;
 use hysid::data::metrics::{ErrorSums, Errors};
 use hysid::data::record::{Dataset, Record};
+use hysid::diagnosis::frequency_response::{ModelResponses, NoResponse};
 use hysid::diagnosis::residuals::Residuals;
 use hysid::fit::intervals::ParameterIntervals;
 use hysid::model::{Model, Prediction};
@@ -56,6 +58,8 @@ pub struct Report<'a> {
     pub residuals: &'a [(String, Residuals)],
     /// Confidence intervals of the parameters, for a law that has them.
     pub intervals: Option<&'a ParameterIntervals>,
+    /// Frequency responses on the training data, of a model with inertia; or why the data have none.
+    pub frequency_response: Option<std::result::Result<ModelResponses, NoResponse>>,
     /// What to be aware of.
     pub warnings: &'a [String],
     /// What was understood of the data: a question and its answer.
@@ -118,6 +122,7 @@ pub fn page(report: &Report) -> Page {
     parts.extend(provenance::notes(report));
     parts.push(provenance::warnings(report));
     parts.extend(report.sets.iter().map(histories::section));
+    parts.extend(frequency_response::section(report));
     parts.extend(usage::sections(report));
     parts.extend(residuals::section(report));
     parts.extend(band::section(report));

@@ -59,6 +59,7 @@ fn report<'a>(model: &'a Model, data: &'a Dataset, warnings: &'a [String]) -> Re
         sets: vec![set("training", model, data), set("unseen", model, data)],
         residuals: &[],
         intervals: None,
+        frequency_response: None,
         warnings,
         understood: &[],
         model_file: "my model.json".into(),
@@ -129,4 +130,83 @@ fn odd_data_can_be_shown() {
     assert!(page.len() < 2_000_000, "{}", page.len());
     let many = Dataset::new(data.names().clone(), (0..900).map(|_| odd(40)).collect()).unwrap();
     assert!(page_text(&super::page(&report(&model, &many, &[]))).len() < 2_000_000);
+}
+
+/// An input that moves at all frequencies, with the output of a mass on a spring: 0.16 cycles per second, 5 % of damping.
+fn vibration(names: ColumnNames) -> Dataset {
+    let (mut y, mut v, mut x, mut state) = (0.0, 0.0, 0.0, 1u64);
+    let (mut time, mut input, mut output) = (Vec::new(), Vec::new(), Vec::new());
+    for row in 0..6000 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        x += 0.5 * ((state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0 - x);
+        for _ in 0..20 {
+            v += 0.01 * (x - y - 0.1 * v);
+            y += 0.01 * v;
+        }
+        time.push(0.2 * f64::from(row));
+        input.push(x);
+        output.push(y);
+    }
+    let record = Record::new("r", vec![input], output).unwrap().with_time(time).unwrap();
+    Dataset::new(names, vec![record]).unwrap()
+}
+
+#[test]
+fn frequency_responses_are_drawn_and_their_resonances_told() {
+    for (time, hertz) in [("t_s", "Hz"), ("t_ms", "cycles per ms"), ("t", "cycles per unit of time")] {
+        let names = ColumnNames {
+            time: Some(time.into()),
+            inputs: vec!["F_kN".into()],
+            rate: None,
+            output: "y_mm".into(),
+        };
+        let data = vibration(names);
+        // A network has no inertia: what is told of it is that it does not follow.
+        let model = model(&data);
+        let simulated: Vec<Vec<f64>> =
+            data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
+        let responses = ModelResponses::of(&model, &data, &simulated).unwrap();
+        let peak = responses.as_ref().unwrap().measured.peak().unwrap();
+        // sqrt(1)/(2 pi), and a height of 1/(2 * 0.05) less what the resolution takes.
+        assert!(
+            (peak.frequency - 0.159).abs() < 0.004 && (8.0..11.0).contains(&peak.magnitude()),
+            "{peak:?}"
+        );
+        let report = Report { frequency_response: Some(responses), ..report(&model, &data, &[]) };
+        let page = page_text(&page(&report));
+        let section = page.split("<section id=\"frequency-response\">").nth(1).unwrap();
+        let section = section.split("</section>").next().unwrap();
+        assert_eq!(section.matches("<svg class=\"plot\"").count(), 2);
+        for told in [
+            "magnitude (mm per kN)".to_string(),
+            format!("resonance ({hertz})"),
+            format!(">{}</td>", hysid_document::number(peak.frequency, 4)),
+            format!(">{}</td>", hysid_document::number(peak.magnitude(), 3)),
+            "best linear oscillator".into(),
+            " kN RMS as measured".into(),
+            "Hann window".into(),
+        ] {
+            assert!(section.contains(&told), "{told}: {section}");
+        }
+    }
+}
+
+#[test]
+fn a_response_that_cannot_be_drawn_is_explained() {
+    let data = data(true);
+    let model = model(&data);
+    let simulated: Vec<Vec<f64>> =
+        data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
+    let sine = ModelResponses::of(&model, &data, &simulated).unwrap();
+    let cases = [
+        (sine, "the input has power at 2 spectral lines only"),
+        (Err(NoResponse::UnevenTime("a".into())), "record &quot;a&quot; are not evenly spaced"),
+    ];
+    for (responses, told) in cases {
+        let report = Report { frequency_response: Some(responses), ..report(&model, &data, &[]) };
+        let page = page_text(&page(&report));
+        let section = page.split("<section id=\"frequency-response\">").nth(1).unwrap();
+        let section = section.split("</section>").next().unwrap();
+        assert!(section.contains(told), "{told}: {section}");
+    }
 }

@@ -11,7 +11,7 @@ const MOST_ROWS: usize = 6000;
 const FEWEST_ROWS: usize = 200;
 
 /// Time stamps are evenly spaced up to this share of a step.
-const JITTER: f64 = 1e-3;
+pub(crate) const JITTER: f64 = 1e-3;
 
 /// Evenly spaced rows of a record. Input and output are scaled to their middle and half their range over all excerpts.
 #[derive(Debug)]
@@ -144,7 +144,7 @@ fn busiest(x: &[f64], count: usize) -> Range<usize> {
 }
 
 /// The time between rows, if it is the same everywhere.
-fn even_step(time: &[f64]) -> Option<f64> {
+pub(crate) fn even_step(time: &[f64]) -> Option<f64> {
     let first = *time.first()?;
     let step = (time.last()? - first) / (time.len() - 1) as f64;
     let is_even = |(row, t): (usize, &f64)| (t - first - row as f64 * step).abs() <= JITTER * step;

@@ -1,0 +1,242 @@
+//! The section on frequency responses of a model with inertia: measured, best linear oscillator, model at several amplitudes.
+
+use hysid::data::unit::of_column;
+use hysid::diagnosis::frequency_response::{
+    AtAmplitude, FrequencyResponse, ModelResponses, ResponsePoint, Segments, Window,
+};
+use hysid::diagnosis::resonance::LinearOscillator;
+use hysid_document::chart::Track;
+use hysid_document::chart::thin::{Point, thin};
+use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number, unit};
+
+use crate::Report;
+use crate::figures::MEASURED_WIDTH;
+
+/// Fewer frequencies make no curve.
+const FEWEST_POINTS: usize = 5;
+
+/// Points of a curve, at most.
+const POINTS: usize = 2000;
+
+/// A line is interrupted where frequencies are further apart than this multiple of their usual distance.
+const GAP: f64 = 5.0;
+
+/// Width of the lines of models, in pixels: there are several, which must be told apart.
+const WIDTH: f64 = 1.6;
+
+/// Colours of the model, by falling amplitude.
+const AMPLITUDES: [Colour; 3] = [Colour::Simulated, Colour::Series(2), Colour::Series(3)];
+
+/// The section; `None` for a model without inertia.
+pub fn section(report: &Report) -> Option<Part> {
+    let parts = match report.frequency_response.as_ref()? {
+        Err(why) => vec![Part::note(format!("The training data have no frequency response: {why}."))],
+        Ok(responses) if responses.measured.points.len() < FEWEST_POINTS => {
+            let found = count(responses.measured.points.len(), "spectral line");
+            vec![Part::note(format!(
+                "No response is drawn, because the input has power at {found} only; noise or a multisine excites many."
+            ))]
+        }
+        Ok(responses) => Section::of(report, responses).parts(),
+    };
+    Some(Part::section("Frequency response", parts))
+}
+
+/// A curve of the section.
+struct Line<'a> {
+    name: String,
+    colour: Colour,
+    width: f64,
+    /// Standard deviation of the input, in its unit.
+    input_deviation: Option<f64>,
+    response: &'a FrequencyResponse,
+}
+
+struct Section<'a> {
+    responses: &'a ModelResponses,
+    lines: Vec<Line<'a>>,
+    input: &'a str,
+    output: &'a str,
+    /// Unit of frequencies.
+    hertz: String,
+}
+
+impl<'a> Section<'a> {
+    fn of(report: &'a Report, responses: &'a ModelResponses) -> Self {
+        let names = report.model.names();
+        let hertz = match names.time.as_deref().and_then(of_column) {
+            Some(time) if time == "s" => "Hz".into(),
+            Some(time) => format!("cycles per {time}"),
+            None => "cycles per unit of time".into(),
+        };
+        let measured = Line {
+            name: "measured".into(),
+            colour: Colour::Measured,
+            width: MEASURED_WIDTH,
+            input_deviation: responses.model.first().map(|at| at.input_deviation),
+            response: &responses.measured,
+        };
+        let oscillator = responses.oscillator.as_ref().map(|(_, response)| Line {
+            name: "best linear oscillator".into(),
+            colour: Colour::Series(1),
+            width: WIDTH,
+            input_deviation: None,
+            response,
+        });
+        let model = responses.model.iter().zip(AMPLITUDES).map(|(at, colour)| Line {
+            name: model_name(at, &names.inputs[0]),
+            colour,
+            width: WIDTH,
+            input_deviation: Some(at.input_deviation),
+            response: &at.response,
+        });
+        let lines = std::iter::once(measured).chain(oscillator).chain(model).collect();
+        Self { responses, lines, input: &names.inputs[0], output: &names.output, hertz }
+    }
+
+    fn parts(&self) -> Vec<Part> {
+        let magnitude = format!("magnitude ({})", self.gain_unit());
+        let magnitudes: Vec<Curve> =
+            self.lines.iter().map(|line| self.curve(line, &magnitudes(line))).collect();
+        let oscillator = self.responses.oscillator.as_ref().map(|(oscillator, _)| oscillator);
+        let phases: Vec<Curve> =
+            self.lines.iter().map(|line| self.curve(line, &line.response.phases(oscillator))).collect();
+        let ordinates = |curves: &[Curve]| -> Vec<f64> {
+            curves.iter().flat_map(|curve| &curve.points).map(|point| point.1).collect()
+        };
+        let of_magnitudes = Axis::logarithmic(magnitude.as_str(), ordinates(&magnitudes).into_iter());
+        let of_phases = Axis::linear("phase (degrees)", ordinates(&phases).into_iter());
+        vec![
+            Part::paragraph(
+                "A linear system has the same response at every amplitude. Where the curves of the model differ, the \
+                 system is nonlinear: a resonance that falls in frequency as the input grows shows a softening \
+                 stiffness, one that rises a hardening stiffness, and a lower peak more dissipation.",
+            ),
+            Part::chart(self.chart("Magnitude", of_magnitudes, magnitudes).with_height(330.0)),
+            Part::chart(self.chart("Phase", of_phases, phases).with_height(240.0)),
+            Part::Table(self.table()),
+            Part::note(self.method()),
+        ]
+    }
+
+    /// The points of a line, and gaps where the input has no power.
+    fn curve(&self, line: &Line, values: &[f64]) -> Curve {
+        let frequency = |point: &ResponsePoint| point.frequency;
+        let points = line.response.points.iter().map(frequency).zip(values.iter().copied());
+        let points = with_gaps(&points.collect::<Vec<Point>>());
+        let record = "frequency response".to_string();
+        // The same frequency is marked in both charts.
+        Curve::new(thin(&points, POINTS), line.colour, line.width).tracked(Track {
+            record,
+            times: None,
+            cycles: Vec::new(),
+        })
+    }
+
+    fn chart(&self, what: &str, y: Axis, curves: Vec<Curve>) -> Chart {
+        let frequencies = curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
+        let x = Axis::logarithmic(format!("frequency ({})", self.hertz), frequencies);
+        let description = format!(
+            "{what} of {} per {} over frequency: measured, best linear oscillator, model at several amplitudes",
+            unit::label(self.output),
+            unit::label(self.input)
+        );
+        let legend = self.lines.iter().map(|line| (line.colour, line.name.clone()));
+        Chart::on_axes(description, x, y, curves).with_legend(legend.collect::<Vec<_>>())
+    }
+
+    fn table(&self) -> Table {
+        let mut table = Table::new([
+            "response".into(),
+            format!("input, RMS ({})", unit::of(self.input)),
+            format!("resonance ({})", self.hertz),
+            format!("magnitude there ({})", self.gain_unit()),
+            "coherence there".into(),
+        ]);
+        for line in &self.lines {
+            let name = if line.input_deviation.is_some() && line.colour != Colour::Measured {
+                "model"
+            } else {
+                &line.name
+            };
+            let peak = line.response.peak();
+            table.push([
+                name.into(),
+                Cell::number(line.input_deviation, 3),
+                Cell::number(peak.map(|peak| peak.frequency), 4),
+                Cell::number(peak.map(|peak| peak.magnitude()), 3),
+                Cell::number(peak.and_then(|peak| peak.coherence), 3),
+            ]);
+        }
+        table
+    }
+
+    fn gain_unit(&self) -> String {
+        format!("{} per {}", unit::of(self.output), unit::of(self.input))
+    }
+
+    /// How the responses came about.
+    fn method(&self) -> String {
+        let segments = &self.responses.segments;
+        let oscillator = self.responses.oscillator.as_ref();
+        let oscillator = oscillator.map_or_else(String::new, |(oscillator, _)| self.oscillator(oscillator));
+        format!(
+            "Measured and model: the linear system that explains most of the output for this very input, without a \
+             parametric form (best linear approximation), {}; resolution {} {}, finer for the model where its resonance is sharper. Frequencies without power of the \
+             input are left out. Coherence is the share of the output's power that such a linear system explains. {oscillator}Model: free runs over the measured input, and over the same input \
+             multiplied about its mean by smaller factors; larger ones would leave the trained range.",
+            divided(segments),
+            number(self.responses.resolution.max(segments.distance()), 2),
+            self.hertz
+        )
+    }
+
+    fn oscillator(&self, oscillator: &LinearOscillator) -> String {
+        format!(
+            "Best linear oscillator: the mass on a spring and a damper that fits best in a free run, natural frequency \
+             {} {}, damping ratio {} %. ",
+            number(oscillator.natural_frequency, 4),
+            self.hertz,
+            number(100.0 * oscillator.damping_ratio, 2)
+        )
+    }
+}
+
+fn model_name(at: &AtAmplitude, input: &str) -> String {
+    let rms = unit::with(&number(at.input_deviation, 3), input);
+    let measured = if at.factor == 1.0 { " RMS as measured" } else { "" };
+    format!("model, {rms}{measured}")
+}
+
+/// How rows were divided, in words.
+fn divided(segments: &Segments) -> String {
+    let rows = count(segments.length(), "row");
+    match segments.window() {
+        Window::WholePeriods => {
+            format!("from {} of {rows}, without the first", count(segments.count(), "period"))
+        }
+        Window::Hann => format!(
+            "from {} of {rows} that overlap by half, with a Hann window (Welch)",
+            count(segments.count(), "segment")
+        ),
+    }
+}
+
+fn magnitudes(line: &Line) -> Vec<f64> {
+    line.response.points.iter().map(ResponsePoint::magnitude).collect()
+}
+
+/// The points with one that is not a number where the next is far away.
+fn with_gaps(points: &[Point]) -> Vec<Point> {
+    let mut distances: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+    distances.sort_by(f64::total_cmp);
+    let usual = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
+    let mut all = Vec::with_capacity(points.len());
+    for (index, &point) in points.iter().enumerate() {
+        if index > 0 && point.0 - points[index - 1].0 > GAP * usual {
+            all.push((f64::NAN, f64::NAN));
+        }
+        all.push(point);
+    }
+    all
+}
