@@ -23,6 +23,9 @@ const TRIED_ROWS: usize = 2000;
 /// No longer window is tried once it smooths away so many times the error of the best.
 const HOPELESS: f64 = 4.0;
 
+/// Smoothing is told from noise where two filters are apart by so many times the variance that noise explains.
+const TOLD: f64 = 3.0;
+
 /// Time steps that differ by less than this share are equal.
 const EVEN: f64 = 1e-6;
 
@@ -91,18 +94,18 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
             if !filter.is_possible() {
                 continue;
             }
-            let trial = Trial::of(filter, records, &rows, order, noise);
+            let trial = Trial::of(filter, records, &rows, order, noise, best.as_ref());
             let (error, least) = (trial.error(), best.as_ref().map_or(f64::INFINITY, Trial::error));
             if error < least {
                 best = Some(trial);
-            } else if trial.smoothing > HOPELESS * least {
+            } else if trial.is_told && trial.smoothing > HOPELESS * least {
                 break;
             }
         }
     }
     let smallest = Filter { degree: DEGREES[0], on_a_side: SMALLEST_WINDOW / 2 };
-    let Trial { filter, noise, smoothing } =
-        best.unwrap_or_else(|| Trial::of(smallest, records, &rows, order, noise));
+    let Trial { filter, noise, smoothing, .. } =
+        best.unwrap_or_else(|| Trial::of(smallest, records, &rows, order, noise, None));
     let values = |&(time, values): &Channel<'_>| {
         let weights = RowWeights::new(time, filter, order);
         (0..time.len()).map(|row| weights.sum(values, row)).collect()
@@ -135,37 +138,90 @@ fn tried_rows(records: &[Channel<'_>], on_a_side: usize) -> Vec<Vec<usize>> {
 /// A filter and its errors.
 struct Trial {
     filter: Filter,
+    /// The derivative in the tried rows.
+    values: Vec<f64>,
     noise: f64,
     smoothing: f64,
+    /// The smoothing is larger than what noise alone can feign.
+    is_told: bool,
 }
 
 impl Trial {
-    fn of(filter: Filter, records: &[Channel<'_>], rows: &[Vec<usize>], order: usize, noise: f64) -> Self {
-        let (mut count, mut gain, mut apart, mut apart_by_noise) = (0.0, 0.0, 0.0, 0.0);
+    /// Tries a filter; `best` is the best of those that were tried before.
+    fn of(
+        filter: Filter,
+        records: &[Channel<'_>],
+        rows: &[Vec<usize>],
+        order: usize,
+        noise: f64,
+        best: Option<&Self>,
+    ) -> Self {
+        let (mut derivatives, mut gain) = (Vec::new(), 0.0);
+        let (mut apart, mut apart_by_noise) = (0.0, 0.0);
         for (&(time, values), rows) in records.iter().zip(rows) {
             let own = RowWeights::new(time, filter, order);
             let reference = RowWeights::new(time, filter.reference(), order);
             for &row in rows {
                 let (first, own) = own.at(row);
                 let (_, reference) = reference.at(row);
-                let mut difference = 0.0;
+                let (mut derivative, mut difference) = (0.0, 0.0);
                 for ((own, reference), value) in own.iter().zip(&*reference).zip(&values[first..]) {
+                    derivative += own * value;
                     difference += (reference - own) * value;
                     gain += own * own;
                     apart_by_noise += (reference - own).powi(2);
                 }
+                derivatives.push(derivative);
                 apart += difference * difference;
-                count += 1.0;
             }
         }
+        let count = derivatives.len() as f64;
         let variance = noise * noise;
-        // What both polynomials are apart is the smoothing, and the noise that one lets through and the other not.
-        let smoothing = ((apart - variance * apart_by_noise) / count).max(0.0).sqrt();
-        Self { filter, noise: (variance * gain / count).sqrt(), smoothing }
+        let own = Self {
+            noise: (variance * gain / count).sqrt(),
+            smoothing: 0.0,
+            is_told: false,
+            filter,
+            values: derivatives,
+        };
+        // What two filters are apart is the smoothing of the longer one and the noise that the other lets through. A
+        // window longer than the motion hides it from the polynomials of both degrees, but not from a shorter window.
+        let from_reference = Apart { total: apart / count, by_others: variance * apart_by_noise / count };
+        let from_best = best.filter(|best| own.noise < best.noise).map(|best| own.apart_from(best));
+        let all = || [Some(from_reference), from_best].into_iter().flatten();
+        Self {
+            smoothing: all().map(Apart::smoothing).fold(0.0, f64::max),
+            is_told: all().any(Apart::is_told),
+            ..own
+        }
+    }
+
+    /// The mean square of the difference from a filter that lets more noise through.
+    fn apart_from(&self, other: &Self) -> Apart {
+        let squares = self.values.iter().zip(&other.values).map(|(a, b)| (a - b).powi(2));
+        Apart { total: squares.sum::<f64>() / self.values.len() as f64, by_others: other.error().powi(2) }
     }
 
     fn error(&self) -> f64 {
         self.noise.hypot(self.smoothing)
+    }
+}
+
+/// Mean square of the difference of two filters.
+#[derive(Debug, Clone, Copy)]
+struct Apart {
+    total: f64,
+    /// What noise, and smoothing by the other filter, add to it.
+    by_others: f64,
+}
+
+impl Apart {
+    fn smoothing(self) -> f64 {
+        (self.total - self.by_others).max(0.0).sqrt()
+    }
+
+    fn is_told(self) -> bool {
+        self.total > TOLD * self.by_others
     }
 }
 
