@@ -8,28 +8,19 @@ mod units;
 use std::ops::Range;
 
 use anyhow::{Result, anyhow};
-use hysid::error::{MotionColumn, MotionError};
+use hysid::error::{DataProblem, MotionColumn, MotionError};
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
 use hysid_document::visible::clipped;
 use hysid_records::{Kind, Usage, column_of, equal_stamps, offset_of, places_of};
 use hysid_tables::{CellReader, DecimalSign, Table, spread_equal};
 
+use columns::COLUMNS;
 pub use columns::MotionColumns;
 pub use table::Written;
 pub use text::{Printed, summary, understood, warnings};
 pub use units::Units;
 
 use crate::arguments::{Force, Mass};
-
-/// Columns that may be in a table of a motion, in the order in which records keep them.
-const COLUMNS: [MotionColumn; 6] = [
-    MotionColumn::Time,
-    MotionColumn::Displacement,
-    MotionColumn::Velocity,
-    MotionColumn::Acceleration,
-    MotionColumn::BaseAcceleration,
-    MotionColumn::AppliedForce,
-];
 
 /// The motion in a table.
 pub struct MeasuredMotion {
@@ -168,6 +159,7 @@ impl MeasuredMotion {
         match error {
             hysid::Error::Motion(MotionError { record, row, column, problem }) => {
                 let name = clipped(self.names.name_of(column).unwrap_or_else(|| column.name())).into_owned();
+                let problem = in_units_of_table(problem, self.units.factor(column));
                 let record = &self.records[record];
                 match row {
                     Some(row) => {
@@ -183,5 +175,16 @@ impl MeasuredMotion {
             hysid::Error::Option(error) => Usage(error.to_string()).into(),
             other => anyhow!("{file}: {other}"),
         }
+    }
+}
+
+/// A problem with its numbers as they are in the table, not in SI units.
+fn in_units_of_table(problem: DataProblem, factor: f64) -> DataProblem {
+    match problem {
+        DataProblem::ConstantInput(value) => DataProblem::ConstantInput(value / factor),
+        DataProblem::TimeNotIncreasing { before, now } => {
+            DataProblem::TimeNotIncreasing { before: before / factor, now: now / factor }
+        }
+        other => other,
     }
 }

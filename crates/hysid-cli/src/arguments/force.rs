@@ -26,7 +26,8 @@ pub struct Force {
     pub data: PathBuf,
     /// Mass that moves, in kg or with a unit, such as "2 t"
     ///
-    /// Units: g, kg, t, lb. Without a unit it is in kg, or in whatever is consistent with the other numbers.
+    /// Units: g, kg, t, lb. Without a unit it is in kg; if no column has a known unit, in the unit that is consistent
+    /// with the other numbers.
     #[arg(long, value_name = "MASS", value_parser = mass)]
     pub mass: Mass,
     /// Table to write [default: name of DATA with `.force.csv`]; `-` is stdout

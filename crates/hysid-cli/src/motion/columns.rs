@@ -12,6 +12,16 @@ use hysid_tables::{Table, is_record};
 use super::units;
 use crate::arguments::MotionOptions;
 
+/// All columns of a motion, in the order in which records keep them.
+pub const COLUMNS: [MotionColumn; 6] = [
+    MotionColumn::Time,
+    MotionColumn::Displacement,
+    MotionColumn::Velocity,
+    MotionColumn::Acceleration,
+    MotionColumn::BaseAcceleration,
+    MotionColumn::AppliedForce,
+];
+
 /// Parts of words for an acceleration.
 const ACCELERATION: [&str; 6] = ["acc", "beschl", "accél", "aceler", "ускор", "加速度"];
 

@@ -47,7 +47,9 @@ pub fn understood(
     lines.push((
         "y''",
         match (&names.acceleration, found.acceleration_filter) {
-            (Some(measured), _) if names.is_absolute => format!("{} - a", name(measured)),
+            (Some(measured), _) if names.is_absolute => {
+                format!("{} is y'' + a, against the ground", name(measured))
+            }
             (Some(measured), _) => format!("{}: acceleration relative to the base", name(measured)),
             (None, filter) => match &names.velocity {
                 Some(velocity) => by(format!("the derivative of {}", name(velocity)), filter, motion),
@@ -61,14 +63,11 @@ pub fn understood(
     let force =
         names.applied_force.as_ref().map_or("none".into(), |force| format!("{}: applied force", name(force)));
     lines.push(("u", force));
-    lines.push(("m", shown_mass(mass, motion.units.is_same)));
-    let inertia = match (names.is_absolute, &names.base_acceleration) {
-        (true, _) => "(y'' + a)",
-        (false, Some(_)) => "(y'' + a)",
-        (false, None) => "y''",
-    };
+    lines.push(("m", shown_mass(mass, motion)));
+    let is_base_moving = names.is_absolute || names.base_acceleration.is_some();
+    let inertia = if is_base_moving { "(y'' + a)" } else { "y''" };
     lines.push(("r", format!("u - m {inertia}: pulls the mass back where it is positive")));
-    lines.extend(units(motion));
+    lines.push(units(motion));
     if !names.guessed.is_empty() {
         lines.push(("guessed", names.guessed.join("; ")));
     }
@@ -100,34 +99,29 @@ fn by(what: String, filter: Option<Filter>, motion: &MeasuredMotion) -> String {
     )
 }
 
-fn shown_mass(mass: &Mass, is_same: bool) -> String {
+fn shown_mass(mass: &Mass, motion: &MeasuredMotion) -> String {
     let number = format!("{:.6}", Significant(mass.number));
-    match &mass.unit {
-        None if is_same => number,
-        None => format!("{number} kg, or in the unit that is consistent with the other numbers"),
-        Some(unit) => format!("{number} {}", clipped(unit)),
-    }
+    let unit = mass.unit.as_deref();
+    let is_known = !motion.units.is_same && !motion.units.known().is_empty();
+    unit.or(is_known.then_some("kg")).map_or(number.clone(), |unit| format!("{number} {}", clipped(unit)))
 }
 
-fn units(motion: &MeasuredMotion) -> Option<(&'static str, String)> {
+/// What was converted, and what is assumed.
+fn units(motion: &MeasuredMotion) -> (&'static str, String) {
     let units = &motion.units;
-    if units.is_same {
-        return Some(("units", "not converted (--same-units)".into()));
-    }
     let known = units.known();
-    let assumed = "taken as they are: mass times acceleration must be a force";
-    Some((
-        "units",
-        match (known.is_empty() && !units.converts(), units.without.is_empty()) {
-            (true, _) => format!("none known; numbers are {assumed}"),
-            (false, true) => format!("{}: converted, the force is in {}", listed(&known), force_unit(motion)),
-            (false, false) => format!(
-                "{}: converted to SI units; {} without a known unit, taken to be in s, m, m/s, m/s2 or N",
-                listed(&known),
-                listed(&units.without)
-            ),
-        },
-    ))
+    let text = if units.is_same {
+        "not converted (--same-units)".into()
+    } else if known.is_empty() {
+        "none known, nothing is converted: mass times acceleration must be a force".into()
+    } else if units.without.is_empty() {
+        format!("{}: converted; the force is in {}", listed(&known), force_unit(motion))
+    } else {
+        let taken =
+            units.without.iter().map(|(name, unit)| format!("{} is taken to be in {unit}", clipped(name)));
+        format!("{}: converted to SI; {}", listed(&known), taken.collect::<Vec<_>>().join(", "))
+    };
+    ("units", text)
 }
 
 fn force_unit(motion: &MeasuredMotion) -> String {

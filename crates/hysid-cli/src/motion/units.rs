@@ -6,23 +6,13 @@ use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid_document::visible::clipped;
 
-use super::columns::MotionColumns;
+use super::columns::{COLUMNS, MotionColumns};
 use crate::arguments::Mass;
 
 /// Units of acceleration that mean other things elsewhere, and their factors to m/s². Standard gravity is exact (ISO
 /// 80000-3).
 const ACCELERATIONS: [(&str, f64); 6] =
     [("g", 9.806_65), ("G", 9.806_65), ("gn", 9.806_65), ("g0", 9.806_65), ("Gal", 1e-2), ("gal", 1e-2)];
-
-/// All columns of a motion.
-const COLUMNS: [MotionColumn; 6] = [
-    MotionColumn::Time,
-    MotionColumn::Displacement,
-    MotionColumn::Velocity,
-    MotionColumn::Acceleration,
-    MotionColumn::BaseAcceleration,
-    MotionColumn::AppliedForce,
-];
 
 /// The factor from a unit of acceleration to m/s².
 pub fn of_acceleration(unit: &str) -> Option<f64> {
@@ -41,8 +31,8 @@ pub struct Units {
     pub force: f64,
     /// Unit of the restoring force, if it is known.
     pub force_unit: Option<String>,
-    /// Columns without a known unit.
-    pub without: Vec<String>,
+    /// Columns without a known unit, each with the SI unit that it is taken to be in.
+    pub without: Vec<(String, &'static str)>,
     /// Nothing was converted because an option says so.
     pub is_same: bool,
 }
@@ -65,7 +55,7 @@ impl Units {
             let Some(name) = names.name_of(column) else { continue };
             let (factor, unit) = known(file, column, name)?;
             if unit.is_none() {
-                without.push(name.to_string());
+                without.push((name.to_string(), in_si(column)));
             }
             columns.push((column, factor, unit));
         }
@@ -99,30 +89,40 @@ impl Units {
         Some(unit::quotient(above, below))
     }
 
-    /// True if some unit is known, and is not an SI unit already.
-    pub fn converts(&self) -> bool {
-        self.mass != 1.0 || self.columns.iter().any(|(_, factor, _)| *factor != 1.0)
-    }
-
     /// The units that are known.
     pub fn known(&self) -> Vec<&str> {
         self.columns.iter().filter_map(|(_, _, unit)| unit.as_deref()).collect()
     }
 }
 
+/// The SI unit of a column.
+fn in_si(column: MotionColumn) -> &'static str {
+    match column {
+        MotionColumn::Time => "s",
+        MotionColumn::Displacement => "m",
+        MotionColumn::Velocity => "m/s",
+        MotionColumn::Acceleration | MotionColumn::BaseAcceleration => "m/s2",
+        MotionColumn::AppliedForce => "N",
+    }
+}
+
 /// The factor of a column to SI units and its unit, if it is known.
 fn known(file: &str, column: MotionColumn, name: &str) -> Result<(f64, Option<String>)> {
     let Some(found) = unit::of_column(name) else { return Ok((1.0, None)) };
-    let (factor, wanted) = match column {
-        MotionColumn::Time => (unit::factor(&found, "s"), "a time"),
-        MotionColumn::Displacement => (unit::factor(&found, "m"), "a length"),
-        MotionColumn::Velocity => (unit::factor(&found, "m/s"), "a velocity, such as mm/s"),
-        MotionColumn::Acceleration | MotionColumn::BaseAcceleration => {
-            (of_acceleration(&found), "an acceleration, such as m/s2 or g")
-        }
-        MotionColumn::AppliedForce => (unit::factor(&found, "N"), "a force"),
-    };
-    match factor {
+    let (of_si, wanted) = (
+        unit::factor(&found, in_si(column)),
+        match column {
+            MotionColumn::Time => "a time",
+            MotionColumn::Displacement => "a length",
+            MotionColumn::Velocity => "a velocity, such as mm/s",
+            MotionColumn::Acceleration | MotionColumn::BaseAcceleration => {
+                "an acceleration, such as m/s2 or g"
+            }
+            MotionColumn::AppliedForce => "a force",
+        },
+    );
+    let is_acceleration = matches!(column, MotionColumn::Acceleration | MotionColumn::BaseAcceleration);
+    match if is_acceleration { of_acceleration(&found) } else { of_si } {
         Some(factor) => Ok((factor, Some(found))),
         None if unit::is_unit(&found) => bail!(
             "{file}: column \"{}\" is in {}, which is not {wanted} (name another column, or convert nothing with \
