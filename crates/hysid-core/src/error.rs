@@ -202,7 +202,8 @@ pub enum DataProblem {
     },
     /// Fewer rows than the window of a filter has.
     #[error(
-        "has {found} rows: at least {needed} are needed, the window of the filter that differentiates it"
+        "has {}: at least {needed} rows are needed, the window of the filter that differentiates it",
+        if *.found == 1 { "1 row".to_string() } else { format!("{} rows", .found) }
     )]
     TooFewForWindow {
         /// Rows of the record.

@@ -6,7 +6,7 @@ use clap::Args;
 use hysid::restoring_force::SMALLEST_WINDOW;
 
 use super::mass::Mass;
-use super::{Overwriting, ReadingOptions};
+use super::{Overwriting, RUN, ReadingOptions};
 
 const FORCE_EXAMPLES: &str = "\
 Examples:
@@ -48,10 +48,10 @@ pub struct Force {
     /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]
     ///
     /// A longer window lets less noise through and smooths more of the motion away.
-    #[arg(long, value_name = "ROWS", value_parser = window)]
+    #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method")]
     pub window: Option<usize>,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     pub json: bool,
 }
 

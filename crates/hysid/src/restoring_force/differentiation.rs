@@ -26,6 +26,9 @@ const HOPELESS: f64 = 4.0;
 /// Smoothing is told from noise where two filters are apart by so many times the variance that noise explains.
 const TOLD: f64 = 3.0;
 
+/// A window is so many times as long where a polynomial of the next higher degree lets as much noise through.
+const LONGER: f64 = 1.7;
+
 /// Time steps that differ by less than this share are equal.
 const EVEN: f64 = 1e-6;
 
@@ -104,8 +107,9 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
         }
     }
     let smallest = Filter { degree: DEGREES[0], on_a_side: SMALLEST_WINDOW / 2 };
-    let Trial { filter, noise, smoothing, .. } =
-        best.unwrap_or_else(|| Trial::of(smallest, records, &rows, order, noise, None));
+    let chosen = best.unwrap_or_else(|| Trial::of(smallest, records, &rows, order, noise, None));
+    let smoothing = chosen.smoothing.min(chosen.smoothing_by_longer(records, &rows, order, noise));
+    let Trial { filter, noise, .. } = chosen;
     let values = |&(time, values): &Channel<'_>| {
         let weights = RowWeights::new(time, filter, order);
         (0..time.len()).map(|row| weights.sum(values, row)).collect()
@@ -194,6 +198,28 @@ impl Trial {
             is_told: all().any(Apart::is_told),
             ..own
         }
+    }
+
+    /// The smoothing by the difference from a polynomial of the higher degree on a longer window, which lets about as much
+    /// noise through; above the truth where that one smooths, too.
+    fn smoothing_by_longer(
+        &self,
+        records: &[Channel<'_>],
+        rows: &[Vec<usize>],
+        order: usize,
+        noise: f64,
+    ) -> f64 {
+        let shortest = records.iter().map(|(time, _)| time.len()).min().unwrap_or(0);
+        let on_a_side = (LONGER * self.filter.on_a_side as f64).ceil() as usize;
+        let filter = Filter { on_a_side, ..self.filter.reference() };
+        if filter.window() > shortest {
+            return self.smoothing;
+        }
+        let longer = Trial::of(filter, records, rows, order, noise, None);
+        let total = self.apart_from(&longer).total;
+        // Both have the rows of the shorter window, so that less noise than that of both is in the difference.
+        let by_others = self.noise.powi(2).max(longer.noise.powi(2));
+        Apart { total, by_others }.smoothing()
     }
 
     /// The mean square of the difference from a filter that lets more noise through.
@@ -317,6 +343,15 @@ mod tests {
             assert!(error < 1.2 * best, "{size}: {error} {best} {:?}", chosen.filter);
             assert!((0.6..1.7).contains(&(told / error)), "{size}: {told} {error}");
         }
+    }
+
+    #[test]
+    fn noise_is_not_taken_for_smoothing() {
+        let time: Vec<f64> = (0..4000).map(|k| 0.002 * f64::from(k)).collect();
+        let mut generator = generator(3, 0);
+        let x: Vec<f64> = time.iter().map(|t| (6.0 * t).sin() + 1e-3 * normal(&mut generator)).collect();
+        let found = derivative(&[(&time, &x)], 2, 1e-3, Some(7));
+        assert!(found.smoothing < 0.1 * found.noise, "{} {}", found.smoothing, found.noise);
     }
 
     #[test]
