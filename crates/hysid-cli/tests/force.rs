@@ -51,6 +51,14 @@ fn error_percent(found: &[f64], exact: impl Fn([f64; 6]) -> f64) -> f64 {
     100.0 * apart.fold(0.0, f64::max) / largest
 }
 
+/// A number from 0 to 1 without relation to that of the next row: the finaliser of splitmix64.
+fn mixed(row: u64) -> f64 {
+    let mut bits = (row + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
 /// The table of a stranger: mm, kN and g.
 fn bench() -> Workbench {
     let bench = Workbench::new();
@@ -174,7 +182,7 @@ fn other_commands_take_the_table_without_options() {
 fn noise_is_told_and_a_longer_window_lets_less_of_it_through() {
     let bench = Workbench::new();
     let cells = |row: usize, [t, y, _, _, u, _]: [f64; 6]| {
-        let noise = 2e-4 * ((row * 7919 % 1009) as f64 / 1009.0 - 0.5) * 12f64.sqrt();
+        let noise = 2e-4 * (mixed(row as u64) - 0.5) * 12f64.sqrt();
         format!("{t},{},{}", y + noise, u)
     };
     bench.put("noisy.csv", table("t_s,y_m,force_N", cells));

@@ -12,13 +12,16 @@
 //! All numbers are in consistent units: mass times acceleration is a force, such as kg, m, s and N.
 
 mod differentiation;
+mod filter;
 mod local_polynomial;
 mod noise;
+mod search;
 
-pub use differentiation::{Filter, SMALLEST_WINDOW};
+pub use filter::{Filter, SMALLEST_WINDOW};
 
-use differentiation::{Channel, Derivative, derivative};
+use differentiation::{Derivative, derivative};
 use hysid_core::error::{DataProblem, Error, LARGEST_VALUE, MotionColumn, MotionError, OptionError, Result};
+use search::Channel;
 
 /// Measured motion of a mass in one record, and the force on the mass: one value a row.
 #[derive(Debug, Clone, Copy, Default)]
