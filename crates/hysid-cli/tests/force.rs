@@ -195,10 +195,14 @@ fn noise_is_told_and_a_longer_window_lets_less_of_it_through() {
     assert!(chosen < 10.0 && !said.contains("warning"), "{chosen} {said}");
     let (short, said) = share("--window 5");
     let warning = "warning: the noise of the restoring force is about";
-    assert!(short > 10.0 && said.contains(warning) && said.contains("(--window ROWS)"), "{short} {said}");
+    assert!(
+        short > 10.0 && said.contains(warning) && said.contains("use a longer --window"),
+        "{short} {said}"
+    );
     assert!(!said.contains("smooths away about"), "{said}");
     let (_, said) = share("--window 151");
     assert!(said.contains("warning: the filter of the acceleration smooths away about"), "{said}");
+    assert!(said.contains("use a shorter --window"), "{said}");
 }
 
 #[test]

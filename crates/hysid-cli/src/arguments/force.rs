@@ -26,6 +26,9 @@ pub struct Force {
     pub data: PathBuf,
     /// Mass that moves, in kg or with a unit, such as "2 t"
     ///
+    /// The result is the restoring force u - m (y'' + a) with the applied force u, the mass m, the acceleration y'' relative
+    /// to the base and the acceleration a of the base. It pulls the mass back where it is positive.
+    ///
     /// Units: g, kg, t, lb. Without a unit it is in kg; if no column has a known unit, in the unit that is consistent
     /// with the other numbers.
     #[arg(long, value_name = "MASS", value_parser = mass)]
@@ -48,7 +51,7 @@ pub struct Force {
     /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]
     ///
     /// A longer window lets less noise through and smooths more of the motion away.
-    #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method")]
+    #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method", hide_short_help = true)]
     pub window: Option<usize>,
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
@@ -60,36 +63,43 @@ pub struct Force {
 #[command(next_help_heading = "Columns")]
 pub struct MotionOptions {
     /// Record of each row [default: `record` or `segment`]
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, value_name = "COLUMN", hide_short_help = true)]
     pub record: Option<String>,
     /// Time stamps [default: `t` or `time`, also with a unit]
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, value_name = "COLUMN", hide_short_help = true)]
     pub time: Option<String>,
     /// Displacement relative to the base [default: by name and unit]
     #[arg(long, value_name = "COLUMN")]
     pub displacement: Option<String>,
-    /// Velocity relative to the base [default: computed from the displacement]
+    /// Velocity relative to the base [default: computed]
     #[arg(long, value_name = "COLUMN")]
     pub velocity: Option<String>,
-    /// Acceleration relative to the base, the second derivative of the displacement [default: computed]
+    /// Acceleration relative to the base [default: computed]
+    ///
+    /// The second derivative of the displacement. Without one, it is the derivative of the velocity, or the second one of the
+    /// displacement, by a Savitzky-Golay filter.
     #[arg(long, value_name = "COLUMN")]
     pub acceleration: Option<String>,
-    /// Acceleration against the ground at rest, as an accelerometer on the mass measures it
+    /// Acceleration that an accelerometer on the mass measures
+    ///
+    /// It is against the ground at rest: the acceleration relative to the base plus that of the base.
     #[arg(long, value_name = "COLUMN", conflicts_with = "acceleration")]
     pub absolute_acceleration: Option<String>,
-    /// Acceleration of the base, such as of a shaking table [default: at rest]
+    /// Acceleration of the base, such as a shaking table
+    ///
+    /// Without one, the base is at rest.
     #[arg(long, value_name = "COLUMN", conflicts_with = "absolute_acceleration")]
     pub base_acceleration: Option<String>,
-    /// Force applied to the mass, or `none` [default: by name and unit; none if the base moves]
+    /// Force applied to the mass, or `none` [default: by name and unit]
     ///
-    /// Positive in the direction of a positive displacement. Without base or absolute acceleration it is needed: `none`
-    /// is a free vibration.
+    /// Positive in the direction of a positive displacement. If neither base nor absolute acceleration is measured, it is
+    /// needed: `none` is a free vibration.
     #[arg(long, value_name = "COLUMN")]
     pub applied_force: Option<String>,
     /// Do not convert units
     ///
     /// Otherwise known units are converted to kg, m, s and N. Numbers without a unit are taken as they are, as if in these.
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub same_units: bool,
     /// A further column to copy, such as a temperature; repeat for several
     #[arg(long, value_name = "COLUMN", hide_short_help = true)]

@@ -28,7 +28,7 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     let zero = arguments.reading.zero;
     let found = motion.restoring_force(&arguments.mass, arguments.window, zero)?;
     note_labelled(&understood(&table, &motion, &arguments.mass, &found));
-    motion.warnings.iter().chain(&warnings(&motion, &found)).for_each(warning);
+    motion.warnings.iter().chain(&warnings(&motion, &found, arguments.window)).for_each(warning);
     let text = [header, written.rows(&table, &motion, &found, zero)?].concat();
     let Some(out) = &out else {
         raw_results(&String::from_utf8(text)?)?;

@@ -133,26 +133,29 @@ fn force_unit(motion: &MeasuredMotion) -> String {
 }
 
 /// What the user must know of the force.
-pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce) -> Vec<String> {
+pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce, window: Option<usize>) -> Vec<String> {
     let suffix = unit::suffix(motion.units.force_unit.as_deref());
-    let is_computed = found.acceleration_filter.is_some();
+    // A chosen window has the least of both errors.
+    let (measure, of_noise, of_smoothing) = match (found.acceleration_filter, window) {
+        (None, _) => ("", "use sensors with less noise", ""),
+        (Some(_), None) => ("measure the acceleration, or ", "sample more often", "sample more often"),
+        (Some(_), Some(_)) => {
+            ("measure the acceleration, or ", "use a longer --window", "use a shorter --window")
+        }
+    };
     let mut all = Vec::new();
     if let Some(percent) = found.noise_percent().filter(|percent| *percent > LARGE) {
-        let advice = if is_computed {
-            "measure the acceleration, or displacement with less noise, or use a longer window (--window ROWS)"
-        } else {
-            "use sensors with less noise, or filter the measured channels"
-        };
         all.push(format!(
-            "the noise of the restoring force is about {:.3}{}, {percent:.0} % of its standard deviation: {advice}",
+            "the noise of the restoring force is about {:.3}{}, {percent:.0} % of its standard deviation: \
+             {measure}{of_noise}",
             Significant(found.noise),
             clipped(&suffix)
         ));
     }
     if let Some(percent) = found.smoothing_percent().filter(|percent| *percent > LARGE) {
         all.push(format!(
-            "the filter of the acceleration smooths away about {percent:.0} % of the restoring force: measure the \
-             acceleration, or sample more often, or use a shorter window (--window ROWS)"
+            "the filter of the acceleration smooths away about {percent:.0} % of the restoring force: \
+             {measure}{of_smoothing}"
         ));
     }
     all
