@@ -29,34 +29,15 @@ pub fn understood(
     let name = |name: &String| clipped(name).into_owned();
     let rows: usize = motion.records.iter().map(|record| record.rows.len()).sum();
     let records = count(motion.records.len(), "record");
-    let velocity_source = || format!("the derivative of {}", name(&names.displacement));
     let mut lines = vec![
         ("file", clipped(&table.file).into_owned()),
         ("read as", table.described()),
         ("samples", format!("{rows} in {records}")),
         ("time", name(&names.time)),
         ("y", format!("{}: displacement relative to the base", name(&names.displacement))),
+        ("y'", velocity(motion, found)),
+        acceleration(motion, found),
     ];
-    lines.push((
-        "y'",
-        match (&names.velocity, found.velocity_filter) {
-            (Some(velocity), _) => format!("{}: velocity relative to the base", name(velocity)),
-            (None, filter) => by(velocity_source(), filter, motion),
-        },
-    ));
-    lines.push((
-        "y''",
-        match (&names.acceleration, found.acceleration_filter) {
-            (Some(measured), _) if names.is_absolute => {
-                format!("{} is y'' + a, against the ground", name(measured))
-            }
-            (Some(measured), _) => format!("{}: acceleration relative to the base", name(measured)),
-            (None, filter) => match &names.velocity {
-                Some(velocity) => by(format!("the derivative of {}", name(velocity)), filter, motion),
-                None => by(format!("the second derivative of {}", name(&names.displacement)), filter, motion),
-            },
-        },
-    ));
     if let Some(base) = &names.base_acceleration {
         lines.push(("a", format!("{}: acceleration of the base", name(base))));
     }
@@ -79,8 +60,28 @@ pub fn understood(
     lines.into_iter().map(|(label, text)| (label.to_string(), text)).collect()
 }
 
+fn velocity(motion: &MeasuredMotion, found: &RestoringForce) -> String {
+    match &motion.names.velocity {
+        Some(velocity) => format!("{}: velocity relative to the base", clipped(velocity)),
+        None => by("the derivative", &motion.names.displacement, found.velocity_filter, motion),
+    }
+}
+
+fn acceleration(motion: &MeasuredMotion, found: &RestoringForce) -> (&'static str, String) {
+    let (names, filter) = (&motion.names, found.acceleration_filter);
+    match (&names.acceleration, &names.velocity) {
+        (Some(measured), _) if names.is_absolute => {
+            ("y''+a", format!("{}: acceleration against the ground", clipped(measured)))
+        }
+        (Some(measured), _) => ("y''", format!("{}: acceleration relative to the base", clipped(measured))),
+        (None, Some(velocity)) => ("y''", by("the derivative", velocity, filter, motion)),
+        (None, None) => ("y''", by("the second derivative", &names.displacement, filter, motion)),
+    }
+}
+
 /// How a derivative was computed.
-fn by(what: String, filter: Option<Filter>, motion: &MeasuredMotion) -> String {
+fn by(derivative: &str, column: &str, filter: Option<Filter>, motion: &MeasuredMotion) -> String {
+    let what = format!("{derivative} of {}", clipped(column));
     let Some(filter) = filter else { return what };
     let steps = |record: &super::MotionRecord| {
         let time = record.column(MotionColumn::Time)?;
