@@ -64,18 +64,17 @@ impl MotionColumns {
         table.require_columns()?;
         let named = Named::of(table, options)?;
         let mut guessed = Vec::new();
-        let time = match named.of_option("--time").cloned() {
+        let time = match named.of_option("--time") {
             Some(time) => time,
             None => time_of(table, &named)?,
         };
-        let is_free = |name: &String| *name != time && !named.has(name);
-        let record = named
-            .of_option("--record")
-            .cloned()
-            .or_else(|| table.header.iter().find(|name| is_record(name)).cloned());
-        let is_free = |name: &String| is_free(name) && record.as_ref() != Some(name);
+        let record =
+            named.of_option("--record").or_else(|| table.header.iter().find(|name| is_record(name)).cloned());
+        let is_kept = |name: &String| options.keep.iter().any(|kept| table.full_name(kept) == Some(name));
+        let has_role = |name: &String| *name == time || record.as_ref() == Some(name) || named.has(name);
+        let is_free = |name: &String| !has_role(name) && !is_kept(name);
         let free: Vec<&String> = table.header.iter().filter(|name| is_free(name)).collect();
-        let displacement = match named.of_option("--displacement").cloned() {
+        let displacement = match named.of_option("--displacement") {
             Some(displacement) => displacement,
             None => {
                 guessed.push("displacement, from its name or unit (change: --displacement)");
@@ -84,10 +83,10 @@ impl MotionColumns {
                 only(table, found.map(|name| (*name).clone()).collect(), "displacement", "--displacement")?
             }
         };
-        let absolute = named.of_option("--absolute-acceleration").cloned();
-        let base_acceleration = named.of_option("--base-acceleration").cloned();
+        let absolute = named.of_option("--absolute-acceleration");
+        let base_acceleration = named.of_option("--base-acceleration");
         let has_inertia = absolute.is_some() || base_acceleration.is_some();
-        let applied_force = match (&options.applied_force, named.of_option("--applied-force").cloned()) {
+        let applied_force = match (&options.applied_force, named.of_option("--applied-force")) {
             (Some(none), _) if none == NONE => None,
             (_, Some(force)) => Some(force),
             (_, None) => {
@@ -100,13 +99,13 @@ impl MotionColumns {
             }
         };
         let is_absolute = absolute.is_some();
-        let acceleration = absolute.or_else(|| named.of_option("--acceleration").cloned());
+        let acceleration = absolute.or_else(|| named.of_option("--acceleration"));
         let unused = free.iter().filter(|name| acceleration.is_none() && may_be_acceleration(name));
         Ok(Self {
             unused_accelerations: unused.map(|name| (*name).clone()).collect(),
             record,
             time,
-            velocity: named.of_option("--velocity").cloned(),
+            velocity: named.of_option("--velocity"),
             acceleration,
             is_absolute,
             base_acceleration,
@@ -174,8 +173,8 @@ impl Named {
         Ok(Self(named))
     }
 
-    fn of_option(&self, option: &str) -> Option<&String> {
-        self.0.iter().find(|(known, _)| *known == option).map(|(_, name)| name)
+    fn of_option(&self, option: &str) -> Option<String> {
+        self.0.iter().find(|(known, _)| *known == option).map(|(_, name)| name.clone())
     }
 
     fn has(&self, name: &String) -> bool {
