@@ -2,7 +2,9 @@
 
 mod cycles;
 mod examples;
+mod force;
 mod limits;
+mod mass;
 mod model_options;
 mod plan;
 mod plot;
@@ -30,7 +32,9 @@ pub use hysid_records::RateOption;
 use crate::reproduction::Experiment;
 pub use cycles::Cycles;
 use examples::*;
+pub use force::{Force, MotionOptions};
 pub use limits::Preview;
+pub use mass::Mass;
 pub use model_options::{ModelOptions, flag};
 pub use plan::Plan;
 pub use plot::{Plot, PlotKind};
@@ -54,7 +58,7 @@ pub struct Arguments {
 }
 
 /// What stands for a number in the usage of an option.
-const NUMBERS: [&str; 12] = [
+const NUMBERS: [&str; 13] = [
     "N",
     "SHARE",
     "ROWS",
@@ -67,6 +71,7 @@ const NUMBERS: [&str; 12] = [
     "TIME",
     "MM",
     "POINTS",
+    "MASS",
 ];
 
 impl Arguments {
@@ -120,6 +125,8 @@ pub enum Command {
     Diagnose(Diagnose),
     /// Tables of cycles: energy, damping, coercive field, losses, width, creep
     Cycles(Cycles),
+    /// Compute the restoring force of an element from measured motion and force
+    Force(Box<Force>),
     /// Draw a figure for a paper: loops, histories, errors, cycles, backbone, energy
     Plot(Box<Plot>),
     /// Fit and judge models in the browser; everything runs on this machine

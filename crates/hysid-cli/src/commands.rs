@@ -9,6 +9,7 @@ pub mod diagnose;
 pub mod evaluate;
 pub mod export;
 pub mod fit;
+pub mod force;
 pub mod generate;
 pub mod invert;
 pub mod look;

@@ -18,6 +18,7 @@ mod inspection;
 mod interrupt;
 mod inversion;
 mod messages;
+mod motion;
 mod planning;
 mod plotting;
 mod progress;
@@ -61,6 +62,7 @@ pub fn run() -> ExitCode {
         Command::Look(arguments) => commands::look::run(&arguments),
         Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Cycles(arguments) => commands::cycles::run(&arguments),
+        Command::Force(arguments) => commands::force::run(&arguments),
         Command::Plot(arguments) => commands::plot::run(&arguments),
         Command::Studio(arguments) => commands::studio::run(&arguments),
         Command::Plan(arguments) => commands::plan::run(&arguments),

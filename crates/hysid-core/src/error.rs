@@ -15,6 +15,9 @@ pub enum Error {
     /// A record cannot be used as it is.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A column of a measured motion cannot be used.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
     /// Data that a model was not fitted to, where only those tell.
     #[error(
         "record {0:?} is not among those that the model was fitted to: intervals of parameters need the training data"
@@ -189,6 +192,25 @@ pub enum DataProblem {
         /// Rows of this column.
         found: usize,
     },
+    /// A column of another length than the displacement.
+    #[error("has {found} values where the displacement has {expected}")]
+    LengthOf {
+        /// Rows of the displacement.
+        expected: usize,
+        /// Rows of this column.
+        found: usize,
+    },
+    /// Fewer rows than the window of a filter has.
+    #[error(
+        "has {}: at least {needed} rows are needed, the window of the filter that differentiates it",
+        if *.found == 1 { "1 row".to_string() } else { format!("{} rows", .found) }
+    )]
+    TooFewForWindow {
+        /// Rows of the record.
+        found: usize,
+        /// Rows of the window.
+        needed: usize,
+    },
     /// NaN or infinity where a number is needed.
     #[error("{0} is not a finite number")]
     NotFinite(f64),
@@ -272,6 +294,57 @@ impl fmt::Display for DataError {
 }
 
 impl std::error::Error for DataError {}
+
+/// A defect in the measured motion of a mass, with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionError {
+    /// Place of the record, counted from 0.
+    pub record: usize,
+    /// Row within the record, counted from 0; `None` if the whole record is meant.
+    pub row: Option<usize>,
+    /// The column meant.
+    pub column: MotionColumn,
+    /// What is wrong.
+    pub problem: DataProblem,
+}
+
+/// A column of the measured motion of a mass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say all")]
+pub enum MotionColumn {
+    Time,
+    Displacement,
+    Velocity,
+    Acceleration,
+    BaseAcceleration,
+    AppliedForce,
+}
+
+impl MotionColumn {
+    /// What it is, in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::BaseAcceleration => "base acceleration",
+            Self::AppliedForce => "applied force",
+        }
+    }
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "record {}", self.record + 1)?;
+        if let Some(row) = self.row {
+            write!(f, ", row {}", row + 1)?;
+        }
+        write!(f, ", {}: {}", self.column.name(), self.problem)
+    }
+}
+
+impl std::error::Error for MotionError {}
 
 /// A sample that a model cannot take.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

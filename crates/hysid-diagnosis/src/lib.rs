@@ -54,6 +54,7 @@ use hysid_core::data::record::{Dataset, Record};
 use hysid_core::error::Result;
 pub use hysid_core::property::Property;
 pub use model::ModelDiagnosis;
+pub use noise::resolution;
 pub use rate_dependence::delay::{self, Delay};
 pub use reversal_curves::{ReversalCurveOptions, ReversalCurves};
 

@@ -11,7 +11,7 @@ mod resolution;
 use std::f64::consts::TAU;
 
 pub(crate) use differences::{Run, roughness};
-pub(crate) use resolution::resolution;
+pub use resolution::resolution;
 
 /// Share of the variance above which noise is hum.
 const MOSTLY: f64 = 0.7;

@@ -13,6 +13,7 @@ mod minimiser;
 mod model;
 mod plan;
 mod progress;
+mod restoring_force;
 mod specimens;
 
 use pyo3::prelude::*;
@@ -42,6 +43,8 @@ mod _hysid {
     use crate::plan::plan;
     #[pymodule_export]
     use crate::progress::ProgressLine;
+    #[pymodule_export]
+    use crate::restoring_force::restoring_force;
     #[pymodule_export]
     use crate::specimens::{specimen, specimens};
 

@@ -31,7 +31,8 @@
 //! [`Fit::time_limit`] reads a clock. Each of these modules uses only those before it: [`data`] holds
 //! measured records, [`operator`] the operators with memory, [`network`] the family of networks, [`law`] the
 //! classical models, [`options`] the options of a fit, [`model`] the fitted model, [`validation`] the folds,
-//! [`mod@fit`] the identification, [`plan`] what to measure next. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
+//! [`mod@fit`] the identification, [`plan`] what to measure next.
+//! [`mod@restoring_force`] computes the force of an element from the motion of a mass. [`diagnosis`] finds properties of hysteresis, and [`specimens`] generates
 //! synthetic data.
 //!
 //! `theory.md (1.5)` on these pages is the number of an equation in `docs/theory.md` of the repository.
@@ -40,6 +41,7 @@ mod builder;
 pub mod fit;
 pub mod optimise;
 pub mod plan;
+pub mod restoring_force;
 pub mod validation;
 
 pub use builder::{Compared, Fit, compare};
@@ -56,6 +58,7 @@ pub use hysid_core::{
 pub use hysid_diagnosis as diagnosis;
 pub use hysid_diagnosis::Diagnosis;
 pub use hysid_specimens as specimens;
+pub use restoring_force::restoring_force;
 pub use validation::CrossValidation;
 
 /// Fits a model to data with the defaults: cross-validates networks and classical models and combines the

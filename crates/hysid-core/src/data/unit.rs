@@ -90,6 +90,13 @@ impl Conversion {
     }
 }
 
+/// The factor from numbers in one unit to those in another; `None` if a unit is unknown, or if they are units of
+/// different quantities.
+pub fn factor(from: &str, to: &str) -> Option<f64> {
+    let (from, to) = (Quantity::of(from)?, Quantity::of(to)?);
+    (from.dimension == to.dimension).then(|| rounded(from.factor / to.factor))
+}
+
 /// The power of ten that a number is, but for roundings; otherwise the number.
 fn rounded(factor: f64) -> f64 {
     let power = 10f64.powi(factor.log10().round() as i32);
@@ -170,7 +177,7 @@ pub fn split(name: &str) -> (&str, Option<String>) {
     (name, None)
 }
 
-/// `A_per_m` is A/m, `V_us` is V us, `mm_s` is mm/s.
+/// `A_per_m` is A/m, `V_us` is V us, `mm_s` is mm/s, `m_s2` is m/s2.
 fn from_words(text: &str) -> Option<String> {
     if let Some((above, below)) = text.split_once("_per_") {
         return (is_known(above) && is_known(below)).then(|| format!("{above}/{below}"));
@@ -180,6 +187,7 @@ fn from_words(text: &str) -> Option<String> {
         Some((length, time)) if is_length(length) && is_in_unit_of_time(Some(time)) => {
             Some(format!("{length}/{time}"))
         }
+        Some((length, "s2")) if is_length(length) => Some(format!("{length}/s2")),
         Some((force, arm)) if ["N", "kN"].contains(&force) && is_length(arm) => {
             Some(format!("{force} {arm}"))
         }
@@ -216,6 +224,7 @@ mod tests {
             ("V_V", "V"),
             ("stress_true_MPa", "MPa"),
             ("v_mm_s", "mm/s"),
+            ("acc_m_s2", "m/s2"),
             ("M_kN_m", "kN m"),
             ("t_µs", "µs"),
             ("Force, kN", "kN"),
@@ -245,6 +254,14 @@ mod tests {
         for name in ["temperature", "x_mm", "v_mm_s", "index", "Zeit [mm]"] {
             assert!(!may_be_time(name), "{name}");
         }
+    }
+
+    #[test]
+    fn units_of_one_quantity_have_a_factor() {
+        assert_eq!(factor("kN s2/m", "kg"), Some(1e3));
+        assert_eq!(factor("mm/s^2", "m/s2"), Some(1e-3));
+        assert_eq!(factor("mm", "N"), None);
+        assert_eq!(factor("ticks", "mm"), None);
     }
 
     #[test]

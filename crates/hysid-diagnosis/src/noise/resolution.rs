@@ -7,7 +7,7 @@ const ON_THE_GRID: f64 = 0.02;
 const MOST: usize = 50_000;
 
 /// The step of which all differences between values are multiples; 0 where there is none.
-pub(crate) fn resolution<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+pub fn resolution<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     let mut values: Vec<f64> = values.copied().filter(|value| !value.is_nan()).collect();
     let stride = values.len().div_ceil(MOST).max(1);
     values = values.into_iter().step_by(stride).collect();

@@ -2,9 +2,10 @@
 
 `fit` identifies a `Model`, `validate` cross-validates it, `diagnose` determines properties of the hysteresis in data,
 `cycles` reads energy, damping, coercive field and the like from its loops, and `compare` fits all models to the same
-data. `operators` and `classical` contain the operators and laws of the field as functions on arrays, `specimens` gives
-synthetic data. `HysteresisRegressor` is the estimator for scikit-learn and `RecordSplit` divides data for it; `plot` draws
-with matplotlib. The estimator and the plots are imported when they are first used.
+data. `restoring_force` computes the force of an element from the motion of a mass. `operators` and `classical` contain the
+operators and laws of the field as functions on arrays, `specimens` gives synthetic data. `HysteresisRegressor` is the
+estimator for scikit-learn and `RecordSplit` divides data for it; `plot` draws with matplotlib. The estimator and the plots
+are imported when they are first used.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from hysid._plan import Plan, Segment, plan
 from hysid._progress import Progress
 from hysid._record_split import RecordSplit
 from hysid._residuals import ParameterInterval, ResidualFinding, Residuals
+from hysid._restoring_force import RestoringForce, restoring_force
 from hysid._summary import Summary
 from hysid._validation import FoldErrors, Validation, validate
 from hysid._warning import HysidWarning
@@ -65,6 +67,7 @@ __all__ = [
     "Records",
     "ResidualFinding",
     "Residuals",
+    "RestoringForce",
     "Segment",
     "Specimen",
     "Stepper",
@@ -80,6 +83,7 @@ __all__ = [
     "operators",
     "plan",
     "plot",
+    "restoring_force",
     "specimen",
     "specimens",
     "tqdm_progress",

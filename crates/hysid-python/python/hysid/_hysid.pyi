@@ -30,6 +30,7 @@ __all__ = [
     "play",
     "relaxation",
     "relay",
+    "restoring_force",
     "specimen",
     "specimens",
     "stop",
@@ -186,6 +187,17 @@ def plan(
     wave: str | None,
     seed: int,
 ) -> str: ...
+def restoring_force(
+    records: Sequence[Sequence[_Column | None]],
+    mass: float,
+    is_absolute: bool,
+    window: int | None,
+) -> tuple[
+    list[tuple[_Column, _Column]],
+    tuple[int, int] | None,
+    tuple[int, int] | None,
+    tuple[float, float, float],
+]: ...
 def diagnose(data: Dataset, smallest_reversal: float, smoothing: bool) -> str: ...
 def identify(
     data: Dataset,

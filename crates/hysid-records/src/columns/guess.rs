@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use anyhow::{Result, bail};
-use hysid_core::data::column::{Course, Part, one_signal};
+use hysid_core::data::column::{Course, Domain, Part, one_signal};
 use hysid_core::data::unit;
 
 use hysid_document::visible::{clipped, listed};
@@ -47,6 +47,7 @@ impl Guess<'_> {
             self.refuse_the_inverse()?;
         }
         if !self.has_inputs {
+            self.set_aside_velocity();
             self.refuse_many()?;
             self.refuse_alike()?;
         }
@@ -112,6 +113,24 @@ impl Guess<'_> {
             ),
             _ => Ok(()),
         }
+    }
+
+    /// Sets aside the velocity beside a displacement and a force, as `hysid force` writes it: it is the rate of the input, and
+    /// no second input.
+    fn set_aside_velocity(&mut self) {
+        if self.output.as_deref().and_then(Part::of) != Some(Part::Follows(Domain::Mechanics)) {
+            return;
+        }
+        let is_velocity = |name: &str| unit::split(name).0 == "velocity";
+        let drives = |name: &&&String| !is_velocity(name) && Part::of(name) != Some(Part::Accompanies);
+        if !self.free.iter().any(|name| drives(&name)) {
+            return;
+        }
+        let (velocities, others) = self.free.iter().partition(|name| is_velocity(name));
+        self.free = others;
+        let velocities: Vec<&String> = velocities;
+        let reason = "a rate, not an input (use it with --rate)";
+        self.set_aside.extend(velocities.into_iter().map(|name| (name.clone(), reason)));
     }
 
     fn is_first_nameless(&self, name: &str) -> bool {

@@ -1,0 +1,116 @@
+//! Arguments of `hysid force`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use hysid::restoring_force::SMALLEST_WINDOW;
+
+use super::mass::Mass;
+use super::{Overwriting, RUN, ReadingOptions};
+
+const FORCE_EXAMPLES: &str = "\
+Examples:
+  hysid force rig.csv --mass 2           force and displacement: rig.force.csv
+  hysid force rig.csv --mass 2 --acceleration acc
+  hysid force floor.csv --mass \"25 t\" --absolute-acceleration acc
+  hysid force floor.csv --mass \"25 t\" --base-acceleration ag
+
+The method, signs and units: docs/how-to/restoring-force.md";
+
+/// Arguments of `force`.
+#[derive(Debug, Args)]
+#[command(after_help = FORCE_EXAMPLES)]
+pub struct Force {
+    /// Table of the measured motion of a mass
+    #[arg(value_name = "DATA.csv")]
+    pub data: PathBuf,
+    /// Mass that moves, in kg or with a unit, such as "2 t"
+    ///
+    /// The result is the restoring force u - m (y'' + a) with the applied force u, the mass m, the acceleration y'' relative
+    /// to the base and the acceleration a of the base. It pulls the mass back where it is positive.
+    ///
+    /// Units: g, kg, t, lb. Without a unit it is in kg; if no column has a known unit, in the unit that is consistent
+    /// with the other numbers.
+    #[arg(long, value_name = "MASS", value_parser = mass)]
+    pub mass: Mass,
+    /// Table to write [default: name of DATA with `.force.csv`]; `-` is stdout
+    ///
+    /// Its columns are record, time, displacement, velocity and restoring force. `hysid fit`, `diagnose`, `cycles` and
+    /// `plot` take the displacement as input and the restoring force as output.
+    #[arg(short, long, value_name = "FORCE.csv")]
+    pub out: Option<PathBuf>,
+    /// Which files may be replaced.
+    #[command(flatten)]
+    pub overwriting: Overwriting,
+    /// Which columns are what.
+    #[command(flatten)]
+    pub columns: MotionOptions,
+    /// How the tables are read.
+    #[command(flatten)]
+    pub reading: ReadingOptions,
+    /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]
+    ///
+    /// A longer window lets less noise through and smooths more of the motion away.
+    #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method", hide_short_help = true)]
+    pub window: Option<usize>,
+    /// Print the result as one JSON object
+    #[arg(long, help_heading = RUN)]
+    pub json: bool,
+}
+
+/// Which column is what.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Columns")]
+pub struct MotionOptions {
+    /// Record of each row [default: `record` or `segment`]
+    #[arg(long, value_name = "COLUMN", hide_short_help = true)]
+    pub record: Option<String>,
+    /// Time stamps [default: `t` or `time`, also with a unit]
+    #[arg(long, value_name = "COLUMN", hide_short_help = true)]
+    pub time: Option<String>,
+    /// Displacement relative to the base [default: by name and unit]
+    #[arg(long, value_name = "COLUMN")]
+    pub displacement: Option<String>,
+    /// Velocity relative to the base [default: computed]
+    #[arg(long, value_name = "COLUMN")]
+    pub velocity: Option<String>,
+    /// Acceleration relative to the base [default: computed]
+    ///
+    /// The second derivative of the displacement. Without one, it is the derivative of the velocity, or the second one of the
+    /// displacement, by a Savitzky-Golay filter.
+    #[arg(long, value_name = "COLUMN")]
+    pub acceleration: Option<String>,
+    /// Acceleration that an accelerometer on the mass measures
+    ///
+    /// It is against the ground at rest: the acceleration relative to the base plus that of the base.
+    #[arg(long, value_name = "COLUMN", conflicts_with = "acceleration")]
+    pub absolute_acceleration: Option<String>,
+    /// Acceleration of the base, such as a shaking table
+    ///
+    /// Without one, the base is at rest.
+    #[arg(long, value_name = "COLUMN", conflicts_with = "absolute_acceleration")]
+    pub base_acceleration: Option<String>,
+    /// Force applied to the mass, or `none` [default: by name and unit]
+    ///
+    /// Positive in the direction of a positive displacement. If neither base nor absolute acceleration is measured, it is
+    /// needed: `none` is a free vibration.
+    #[arg(long, value_name = "COLUMN")]
+    pub applied_force: Option<String>,
+    /// Do not convert units
+    ///
+    /// Otherwise known units are converted to kg, m, s and N. Numbers without a unit are taken as they are, as if in these.
+    #[arg(long, hide_short_help = true)]
+    pub same_units: bool,
+    /// A further column to copy, such as a temperature; repeat for several
+    #[arg(long, value_name = "COLUMN", hide_short_help = true)]
+    pub keep: Vec<String>,
+}
+
+fn mass(text: &str) -> Result<Mass, String> {
+    text.parse()
+}
+
+fn window(text: &str) -> Result<usize, String> {
+    let rows = text.parse().ok().filter(|rows: &usize| *rows >= SMALLEST_WINDOW && rows % 2 == 1);
+    rows.ok_or_else(|| format!("an odd number of rows is needed, {SMALLEST_WINDOW} or more"))
+}

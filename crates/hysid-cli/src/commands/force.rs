@@ -1,0 +1,44 @@
+//! `hysid force`: the restoring force of an element from the measured motion of a mass and the force on it.
+
+use std::path::Path;
+
+use anyhow::Result;
+use hysid_files::{Destination, Kind};
+use hysid_tables::Table;
+
+use crate::Outcome;
+use crate::arguments::Force;
+use crate::files::{self, check_outputs};
+use crate::messages::{json_results, note_labelled, raw_results, results, warning};
+use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
+
+/// Runs the command.
+pub fn run(arguments: &Force) -> Result<Outcome> {
+    let path = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.data, ".force.csv"));
+    let to_stdout = path == Path::new("-");
+    files::check_stdout(to_stdout, arguments.json)?;
+    let table = Table::read(&arguments.data, &arguments.reading.reading())?;
+    let motion = MeasuredMotion::of(&table, arguments)?;
+    let written = Written::of(&table, &motion)?;
+    let header = written.header()?;
+    let out = (!to_stdout)
+        .then(|| Destination::new(path, Kind::Beginning(header.clone()), arguments.overwriting.force));
+    check_outputs(&out.iter().collect::<Vec<_>>(), &[&arguments.data])?;
+
+    let zero = arguments.reading.zero;
+    let found = motion.restoring_force(&arguments.mass, arguments.window, zero)?;
+    note_labelled(&understood(&table, &motion, &arguments.mass, &found));
+    motion.warnings.iter().chain(&warnings(&motion, &found, arguments.window)).for_each(warning);
+    let text = [header, written.rows(&table, &motion, &found, zero)?].concat();
+    let Some(out) = &out else {
+        raw_results(&String::from_utf8(text)?)?;
+        return Ok(Outcome::Done);
+    };
+    files::write(out, &text)?;
+    match arguments.json {
+        true => json_results(&Printed::of(&motion, &found, Some(out.path())))?,
+        false => results(&summary(&motion, &found, Some(out.path())))?,
+    }
+    files::say_written([("table", Some(out.path()))]);
+    Ok(Outcome::Done)
+}

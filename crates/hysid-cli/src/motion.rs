@@ -1,0 +1,190 @@
+//! The measured motion of a mass in a table, and the restoring force that follows from it.
+
+mod columns;
+mod table;
+mod text;
+mod units;
+
+use std::ops::Range;
+
+use anyhow::{Result, anyhow};
+use hysid::error::{DataProblem, MotionColumn, MotionError};
+use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
+use hysid_document::visible::clipped;
+use hysid_records::{Kind, Usage, column_of, equal_stamps, offset_of, places_of};
+use hysid_tables::{CellReader, DecimalSign, Table, spread_equal};
+
+use columns::COLUMNS;
+pub use columns::MotionColumns;
+pub use table::Written;
+pub use text::{Printed, summary, understood, warnings};
+pub use units::Units;
+
+use crate::arguments::{Force, Mass};
+
+/// The motion in a table.
+pub struct MeasuredMotion {
+    /// Which column is what.
+    pub names: MotionColumns,
+    /// Their units.
+    pub units: Units,
+    /// The records.
+    pub records: Vec<MotionRecord>,
+    /// How the numbers of the table are written.
+    pub sign: DecimalSign,
+    /// What was changed on the way, in words.
+    pub warnings: Vec<String>,
+    file: String,
+    lines: Vec<u64>,
+}
+
+/// The motion of a record, in the units of the table.
+pub struct MotionRecord {
+    /// Its name.
+    pub name: String,
+    /// Its rows in the table.
+    pub rows: Range<usize>,
+    columns: [Option<Vec<f64>>; 6],
+}
+
+impl MotionRecord {
+    /// Values of a column; none if it is not there.
+    pub fn column(&self, column: MotionColumn) -> Option<&[f64]> {
+        let place = COLUMNS.iter().position(|known| *known == column)?;
+        self.columns[place].as_deref()
+    }
+}
+
+impl MeasuredMotion {
+    /// Reads the columns of a motion.
+    ///
+    /// # Errors
+    /// Columns that are not found, units of another quantity, a cell that is no number, with its line.
+    pub fn of(table: &Table, arguments: &Force) -> Result<Self> {
+        let names = MotionColumns::find(table, &arguments.columns)?;
+        let units = Units::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
+        let mut cells = CellReader::new(table.numbers());
+        let mut read = |column: MotionColumn| -> Result<Option<Vec<f64>>> {
+            let kind = match column {
+                MotionColumn::Time | MotionColumn::Displacement | MotionColumn::Velocity => Kind::Given,
+                _ => Kind::Output,
+            };
+            names.name_of(column).map(|name| column_of(table, name, kind, &mut cells)).transpose()
+        };
+        let mut columns: Vec<Option<Vec<f64>>> = Vec::with_capacity(COLUMNS.len());
+        for column in COLUMNS {
+            columns.push(read(column)?);
+        }
+        let places = places_of(table, &names.roles(), columns[0].as_deref())?;
+        let time = columns[0].as_mut().expect("there is a time");
+        let spread: usize =
+            places.iter().map(|place| spread_equal(&mut time[place.rows.clone()], None, &mut None)).sum();
+        let record = |place: hysid_records::Place| MotionRecord {
+            columns: std::array::from_fn(|at| {
+                columns[at].as_ref().map(|values| values[place.rows.clone()].to_vec())
+            }),
+            name: place.record,
+            rows: place.rows,
+        };
+        Ok(Self {
+            records: places.into_iter().map(record).collect(),
+            warnings: (spread > 0).then(|| equal_stamps(&table.file, spread)).into_iter().collect(),
+            sign: cells.sign().unwrap_or(DecimalSign::Point),
+            file: table.file.clone(),
+            lines: table.lines.clone(),
+            names,
+            units,
+        })
+    }
+
+    /// The restoring force, in the unit of the result. `zero` is over how many rows at the beginning of each record it is
+    /// to be zero in the mean.
+    ///
+    /// # Errors
+    /// A motion that has no restoring force, with its line.
+    pub fn restoring_force(
+        &self,
+        mass: &Mass,
+        window: Option<usize>,
+        zero: Option<usize>,
+    ) -> Result<RestoringForce> {
+        let in_si = |record: &MotionRecord| {
+            COLUMNS.map(|column| {
+                let factor = self.units.factor(column);
+                record
+                    .column(column)
+                    .map(|values| values.iter().map(|value| factor * value).collect::<Vec<f64>>())
+            })
+        };
+        let columns: Vec<[Option<Vec<f64>>; 6]> = self.records.iter().map(in_si).collect();
+        let motions: Vec<Motion<'_>> = columns.iter().map(|columns| self.motion(columns)).collect();
+        let mass = mass.number * self.units.mass;
+        let mut found = restoring_force(&motions, mass, window).map_err(|error| self.explained(error))?;
+        let (force, velocity) = (self.units.force, self.units.velocity());
+        for record in &mut found.records {
+            record.force.iter_mut().for_each(|r| *r /= force);
+            record.velocity.iter_mut().for_each(|v| *v /= velocity);
+            if let Some(rows) = zero {
+                let offset = offset_of(&record.force, rows);
+                record.force.iter_mut().for_each(|r| *r -= offset);
+            }
+        }
+        for number in [&mut found.deviation, &mut found.noise, &mut found.smoothing] {
+            *number /= force;
+        }
+        Ok(found)
+    }
+
+    /// A record as the library takes it.
+    fn motion<'c>(&self, columns: &'c [Option<Vec<f64>>; 6]) -> Motion<'c> {
+        let [time, displacement, velocity, acceleration, base, force] =
+            std::array::from_fn(|at| columns[at].as_deref());
+        Motion {
+            time: time.unwrap_or_default(),
+            displacement: displacement.unwrap_or_default(),
+            velocity,
+            acceleration: match acceleration {
+                None => Acceleration::Computed,
+                Some(values) if self.names.is_absolute => Acceleration::Absolute(values),
+                Some(values) => Acceleration::Relative(values),
+            },
+            base_acceleration: base,
+            applied_force: force,
+        }
+    }
+
+    /// An error of the library in the user's words: file, line, column.
+    fn explained(&self, error: hysid::Error) -> anyhow::Error {
+        let file = &self.file;
+        match error {
+            hysid::Error::Motion(MotionError { record, row, column, problem }) => {
+                let name = clipped(self.names.name_of(column).unwrap_or_else(|| column.name())).into_owned();
+                let problem = in_units_of_table(problem, self.units.factor(column));
+                let record = &self.records[record];
+                match row {
+                    Some(row) => {
+                        let line = self.lines[record.rows.start + row];
+                        anyhow!("{file}, line {line}, column \"{name}\": {problem}")
+                    }
+                    None if self.records.len() > 1 => {
+                        anyhow!("{file}, record \"{}\": column \"{name}\" {problem}", clipped(&record.name))
+                    }
+                    None => anyhow!("{file}: column \"{name}\" {problem}"),
+                }
+            }
+            hysid::Error::Option(error) => Usage(error.to_string()).into(),
+            other => anyhow!("{file}: {other}"),
+        }
+    }
+}
+
+/// A problem with its numbers as they are in the table, not in SI units.
+fn in_units_of_table(problem: DataProblem, factor: f64) -> DataProblem {
+    match problem {
+        DataProblem::ConstantInput(value) => DataProblem::ConstantInput(value / factor),
+        DataProblem::TimeNotIncreasing { before, now } => {
+            DataProblem::TimeNotIncreasing { before: before / factor, now: now / factor }
+        }
+        other => other,
+    }
+}

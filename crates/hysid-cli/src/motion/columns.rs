@@ -1,0 +1,254 @@
+//! Which column of a table is which quantity of a motion. Options decide; displacement and applied force may be found by
+//! name and unit, accelerations never: only their user knows what they are relative to.
+
+use anyhow::{Result, anyhow, bail, ensure};
+use hysid::data::column::{Domain, Part};
+use hysid::data::unit;
+use hysid::error::MotionColumn;
+use hysid_document::visible::{clipped, listed};
+use hysid_records::{Roles, Usage};
+use hysid_tables::{Table, is_record};
+
+use super::units;
+use crate::arguments::MotionOptions;
+
+/// All columns of a motion, in the order in which records keep them.
+pub const COLUMNS: [MotionColumn; 6] = [
+    MotionColumn::Time,
+    MotionColumn::Displacement,
+    MotionColumn::Velocity,
+    MotionColumn::Acceleration,
+    MotionColumn::BaseAcceleration,
+    MotionColumn::AppliedForce,
+];
+
+/// Parts of words for an acceleration.
+const ACCELERATION: [&str; 6] = ["acc", "beschl", "accél", "aceler", "ускор", "加速度"];
+
+/// The value of `--applied-force` for none.
+const NONE: &str = "none";
+
+/// The columns of a motion, by name.
+#[derive(Debug, Clone)]
+pub struct MotionColumns {
+    /// Tells the records apart.
+    pub record: Option<String>,
+    /// Time stamps.
+    pub time: String,
+    /// Displacement relative to the base.
+    pub displacement: String,
+    /// Velocity relative to the base.
+    pub velocity: Option<String>,
+    /// Acceleration of the mass.
+    pub acceleration: Option<String>,
+    /// The acceleration is that against the ground, not relative to the base.
+    pub is_absolute: bool,
+    /// Acceleration of the base.
+    pub base_acceleration: Option<String>,
+    /// Applied force.
+    pub applied_force: Option<String>,
+    /// Columns that are copied.
+    pub keep: Vec<String>,
+    /// What was found by name and unit, with the option that decides otherwise.
+    pub guessed: Vec<&'static str>,
+    /// Columns that may be an acceleration of the mass, if none is used.
+    pub unused_accelerations: Vec<String>,
+}
+
+impl MotionColumns {
+    /// The columns that options name, and those that are found.
+    ///
+    /// # Errors
+    /// A column that is not there or named twice; none or several that may be meant.
+    pub fn find(table: &Table, options: &MotionOptions) -> Result<Self> {
+        table.require_columns()?;
+        let named = Named::of(table, options)?;
+        let mut guessed = Vec::new();
+        let time = match named.of_option("--time") {
+            Some(time) => time,
+            None => time_of(table, &named)?,
+        };
+        let record =
+            named.of_option("--record").or_else(|| table.header.iter().find(|name| is_record(name)).cloned());
+        let is_kept = |name: &String| options.keep.iter().any(|kept| table.full_name(kept) == Some(name));
+        let has_role = |name: &String| *name == time || record.as_ref() == Some(name) || named.has(name);
+        let is_free = |name: &String| !has_role(name) && !is_kept(name);
+        let free: Vec<&String> = table.header.iter().filter(|name| is_free(name)).collect();
+        let displacement = match named.of_option("--displacement") {
+            Some(displacement) => displacement,
+            None => {
+                guessed.push("displacement, from its name or unit (change: --displacement)");
+                let found =
+                    free.iter().filter(|name| Part::of(name) == Some(Part::Drives(Domain::Mechanics)));
+                only(table, found.map(|name| (*name).clone()).collect(), "displacement", "--displacement")?
+            }
+        };
+        let absolute = named.of_option("--absolute-acceleration");
+        let base_acceleration = named.of_option("--base-acceleration");
+        let has_inertia = absolute.is_some() || base_acceleration.is_some();
+        let applied_force = match (&options.applied_force, named.of_option("--applied-force")) {
+            (Some(none), _) if none == NONE => None,
+            (_, Some(force)) => Some(force),
+            (_, None) => {
+                let forces = free.iter().filter(|name| **name != &displacement && is_force(name));
+                let force = applied_force(table, forces.map(|name| (*name).clone()).collect(), has_inertia)?;
+                force.iter().for_each(|_| {
+                    guessed.push("applied force, from its name or unit (change: --applied-force)")
+                });
+                force
+            }
+        };
+        let is_absolute = absolute.is_some();
+        let acceleration = absolute.or_else(|| named.of_option("--acceleration"));
+        let unused = free.iter().filter(|name| acceleration.is_none() && may_be_acceleration(name));
+        Ok(Self {
+            unused_accelerations: unused.map(|name| (*name).clone()).collect(),
+            record,
+            time,
+            velocity: named.of_option("--velocity"),
+            acceleration,
+            is_absolute,
+            base_acceleration,
+            applied_force,
+            keep: options.keep.iter().map(|name| full_name(table, name, "--keep")).collect::<Result<_>>()?,
+            displacement,
+            guessed,
+        })
+    }
+
+    /// The name of a column.
+    pub fn name_of(&self, column: MotionColumn) -> Option<&str> {
+        match column {
+            MotionColumn::Time => Some(&self.time),
+            MotionColumn::Displacement => Some(&self.displacement),
+            MotionColumn::Velocity => self.velocity.as_deref(),
+            MotionColumn::Acceleration => self.acceleration.as_deref(),
+            MotionColumn::BaseAcceleration => self.base_acceleration.as_deref(),
+            MotionColumn::AppliedForce => self.applied_force.as_deref(),
+        }
+    }
+
+    /// As roles, by which records are told apart.
+    pub fn roles(&self) -> Roles {
+        Roles {
+            record: self.record.clone(),
+            time: Some(self.time.clone()),
+            inputs: vec![self.displacement.clone()],
+            rate: self.velocity.clone(),
+            output: self.displacement.clone(),
+            guessed: None,
+            set_aside: Vec::new(),
+        }
+    }
+}
+
+/// The columns that options name, with their options.
+struct Named(Vec<(&'static str, String)>);
+
+impl Named {
+    fn of(table: &Table, options: &MotionOptions) -> Result<Self> {
+        let applied_force = options.applied_force.as_ref().filter(|name| *name != NONE);
+        let all = [
+            ("--record", options.record.as_ref()),
+            ("--time", options.time.as_ref()),
+            ("--displacement", options.displacement.as_ref()),
+            ("--velocity", options.velocity.as_ref()),
+            ("--acceleration", options.acceleration.as_ref()),
+            ("--absolute-acceleration", options.absolute_acceleration.as_ref()),
+            ("--base-acceleration", options.base_acceleration.as_ref()),
+            ("--applied-force", applied_force),
+        ];
+        let mut named: Vec<(&'static str, String)> = Vec::new();
+        for (option, name) in all {
+            let Some(name) = name else { continue };
+            let name = full_name(table, name, option)?;
+            if let Some((other, _)) = named.iter().find(|(_, known)| *known == name) {
+                let name = clipped(&name);
+                return Err(
+                    Usage(format!("column \"{name}\" is named twice, by {other} and {option}")).into()
+                );
+            }
+            named.push((option, name));
+        }
+        Ok(Self(named))
+    }
+
+    fn of_option(&self, option: &str) -> Option<String> {
+        self.0.iter().find(|(known, _)| *known == option).map(|(_, name)| name.clone())
+    }
+
+    fn has(&self, name: &String) -> bool {
+        self.0.iter().any(|(_, known)| known == name)
+    }
+}
+
+fn full_name(table: &Table, name: &str, option: &str) -> Result<String> {
+    let found = table.full_name(name).map(str::to_string);
+    found.ok_or_else(|| {
+        let columns = listed(&table.header);
+        anyhow!("{}: there is no column \"{}\" for {option} (columns: {columns})", table.file, clipped(name))
+    })
+}
+
+fn time_of(table: &Table, named: &Named) -> Result<String> {
+    let free = || table.header.iter().filter(|name| !named.has(name));
+    let found =
+        free().find(|name| unit::is_time(name)).or_else(|| free().find(|name| unit::may_be_time(name)));
+    found.cloned().ok_or_else(|| {
+        let columns = listed(&table.header);
+        anyhow!("{}: there is no column of time (columns: {columns}; name it with --time)", table.file)
+    })
+}
+
+/// The only column that may be meant.
+fn only(table: &Table, mut found: Vec<String>, what: &str, option: &str) -> Result<String> {
+    let (file, columns) = (&table.file, listed(&table.header));
+    match found.len() {
+        0 => bail!(
+            "{file}: no column is a {what} by its name or unit (columns: {columns}; name it with {option})"
+        ),
+        1 => Ok(found.remove(0)),
+        _ => bail!("{file}: several columns may be the {what}: {} (choose with {option})", listed(&found)),
+    }
+}
+
+/// The applied force, where no option tells. A force that is left out would be missing in the result.
+fn applied_force(table: &Table, mut found: Vec<String>, has_inertia: bool) -> Result<Option<String>> {
+    let (file, columns) = (&table.file, listed(&table.header));
+    match (found.len(), has_inertia) {
+        (0, true) => Ok(None),
+        (0, false) => bail!(
+            "{file}: what drives the mass? Name a force with --applied-force, the acceleration of the base with \
+             --base-acceleration, or that of the mass with --absolute-acceleration; a free vibration has --applied-force \
+             none (columns: {columns})"
+        ),
+        (1, false) => Ok(Some(found.remove(0))),
+        (_, true) => bail!(
+            "{file}: column \"{}\" may be a force on the mass: name it with --applied-force, or use --applied-force none",
+            clipped(&found[0])
+        ),
+        (_, false) => {
+            ensure!(
+                found.is_empty(),
+                "{file}: several columns may be the applied force: {} (choose with --applied-force)",
+                listed(&found)
+            );
+            Ok(None)
+        }
+    }
+}
+
+fn is_force(name: &str) -> bool {
+    match Part::of(name) {
+        Some(Part::Follows(Domain::Mechanics)) => true,
+        Some(Part::Excites) => unit::of_column(name).is_none_or(|unit| unit::factor(&unit, "N").is_some()),
+        _ => false,
+    }
+}
+
+fn may_be_acceleration(name: &str) -> bool {
+    let (quantity, unit) = unit::split(name);
+    let lower = quantity.to_lowercase();
+    ACCELERATION.iter().any(|word| lower.contains(word))
+        || unit.is_some_and(|unit| unit != "g" && units::of_acceleration(&unit).is_some())
+}

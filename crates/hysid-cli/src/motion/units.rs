@@ -1,0 +1,165 @@
+//! Units of a motion: numbers in known units become kg, m, s and N, and the restoring force gets the unit of the applied
+//! force. A number without a known unit is taken as it is.
+
+use anyhow::{Result, bail};
+use hysid::data::unit;
+use hysid::error::MotionColumn;
+use hysid_document::visible::clipped;
+
+use super::columns::{COLUMNS, MotionColumns};
+use crate::arguments::Mass;
+
+/// Units of acceleration that mean other things elsewhere, and their factors to m/s². Standard gravity is exact (ISO
+/// 80000-3).
+const ACCELERATIONS: [(&str, f64); 6] =
+    [("g", 9.806_65), ("G", 9.806_65), ("gn", 9.806_65), ("g0", 9.806_65), ("Gal", 1e-2), ("gal", 1e-2)];
+
+/// The factor from a unit of acceleration to m/s².
+pub fn of_acceleration(unit: &str) -> Option<f64> {
+    let own = ACCELERATIONS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| *factor);
+    own.or_else(|| unit::factor(unit, "m/s2"))
+}
+
+/// Factors to SI units, and what the result is in.
+#[derive(Debug, Clone)]
+pub struct Units {
+    /// Factor and unit of each column; no unit if it has none that is known.
+    columns: Vec<(MotionColumn, f64, Option<String>)>,
+    /// Factor of the mass to kg.
+    pub mass: f64,
+    /// N in the unit of the restoring force.
+    pub force: f64,
+    /// Unit of the restoring force, if it is known.
+    pub force_unit: Option<String>,
+    /// Columns without a known unit, each with the SI unit that it is taken to be in.
+    pub without: Vec<(String, &'static str)>,
+    /// Nothing was converted because an option says so.
+    pub is_same: bool,
+}
+
+impl Units {
+    /// The units in the names of columns.
+    ///
+    /// # Errors
+    /// A unit of another quantity than that of the column.
+    pub fn of(file: &str, names: &MotionColumns, mass: &Mass, is_same: bool) -> Result<Self> {
+        if is_same {
+            let force_unit = names.applied_force.as_deref().and_then(unit::of_column);
+            let columns =
+                COLUMNS.map(|column| (column, 1.0, names.name_of(column).and_then(unit::of_column)));
+            let columns = columns.to_vec();
+            return Ok(Self { columns, mass: 1.0, force: 1.0, force_unit, without: Vec::new(), is_same });
+        }
+        let (mut columns, mut without) = (Vec::new(), Vec::new());
+        for column in COLUMNS {
+            let Some(name) = names.name_of(column) else { continue };
+            let (factor, unit) = known(file, column, name)?;
+            if unit.is_none() {
+                without.push((name.to_string(), in_si(column)));
+            }
+            columns.push((column, factor, unit));
+        }
+        let force = columns.iter().find(|(column, ..)| *column == MotionColumn::AppliedForce);
+        let (force, force_unit) = match force {
+            Some((_, factor, unit)) => (*factor, unit.clone()),
+            None if !without.is_empty() => (1.0, None),
+            None if mass.factor == 1e3 => (1e3, Some("kN".to_string())),
+            None => (1.0, Some("N".to_string())),
+        };
+        Ok(Self { columns, mass: mass.factor, force, force_unit, without, is_same })
+    }
+
+    /// Factor of a column to SI units; 1 for one that is not there.
+    pub fn factor(&self, column: MotionColumn) -> f64 {
+        self.columns.iter().find(|(known, ..)| *known == column).map_or(1.0, |(_, factor, _)| *factor)
+    }
+
+    fn unit(&self, column: MotionColumn) -> Option<&str> {
+        self.columns.iter().find(|(known, ..)| *known == column)?.2.as_deref()
+    }
+
+    /// m/s in the unit of the velocity that is written: that of the displacement over that of time.
+    pub fn velocity(&self) -> f64 {
+        self.factor(MotionColumn::Displacement) / self.factor(MotionColumn::Time)
+    }
+
+    /// The unit of the velocity that is written, if it is known.
+    pub fn velocity_unit(&self) -> Option<String> {
+        let (above, below) = (self.unit(MotionColumn::Displacement)?, self.unit(MotionColumn::Time)?);
+        Some(unit::quotient(above, below))
+    }
+
+    /// The units that are known.
+    pub fn known(&self) -> Vec<&str> {
+        self.columns.iter().filter_map(|(_, _, unit)| unit.as_deref()).collect()
+    }
+}
+
+/// The SI unit of a column.
+fn in_si(column: MotionColumn) -> &'static str {
+    match column {
+        MotionColumn::Time => "s",
+        MotionColumn::Displacement => "m",
+        MotionColumn::Velocity => "m/s",
+        MotionColumn::Acceleration | MotionColumn::BaseAcceleration => "m/s2",
+        MotionColumn::AppliedForce => "N",
+    }
+}
+
+/// The factor of a column to SI units and its unit, if it is known.
+fn known(file: &str, column: MotionColumn, name: &str) -> Result<(f64, Option<String>)> {
+    let Some(found) = unit::of_column(name) else { return Ok((1.0, None)) };
+    let (of_si, wanted) = (
+        unit::factor(&found, in_si(column)),
+        match column {
+            MotionColumn::Time => "a time",
+            MotionColumn::Displacement => "a length",
+            MotionColumn::Velocity => "a velocity, such as mm/s",
+            MotionColumn::Acceleration | MotionColumn::BaseAcceleration => {
+                "an acceleration, such as m/s2 or g"
+            }
+            MotionColumn::AppliedForce => "a force",
+        },
+    );
+    let is_acceleration = matches!(column, MotionColumn::Acceleration | MotionColumn::BaseAcceleration);
+    match if is_acceleration { of_acceleration(&found) } else { of_si } {
+        Some(factor) => Ok((factor, Some(found))),
+        None if unit::is_unit(&found) => bail!(
+            "{file}: column \"{}\" is in {}, which is not {wanted} (name another column, or convert nothing with \
+             --same-units)",
+            clipped(name),
+            clipped(&found)
+        ),
+        None => Ok((1.0, None)),
+    }
+}
+
+/// The name of a column with a unit: with an underscore where that reads back, otherwise in brackets.
+pub fn named(quantity: &str, unit: Option<&str>) -> String {
+    let Some(unit) = unit else { return quantity.into() };
+    let plain = format!("{quantity}_{}", unit.replace(['/', ' '], "_"));
+    if unit::of_column(&plain).as_deref() == Some(unit) { plain } else { format!("{quantity} [{unit}]") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_read_back_with_their_units() {
+        for (unit, expected) in
+            [("kN", "v_kN"), ("mm/s", "v_mm_s"), ("N", "v_N"), ("in/s", "v [in/s]"), ("кН", "v_кН")]
+        {
+            assert_eq!(named("v", Some(unit)), expected);
+            assert_eq!(unit::of_column(expected).as_deref(), Some(unit));
+        }
+        assert_eq!(named("v", None), "v");
+    }
+
+    #[test]
+    fn gravity_is_a_unit_of_acceleration() {
+        assert_eq!(of_acceleration("g"), Some(9.80665));
+        assert_eq!(of_acceleration("mm/s²"), Some(1e-3));
+        assert_eq!(of_acceleration("kg"), None);
+    }
+}
