@@ -66,6 +66,12 @@ CASES = {
         "auto",
         None,
     ),
+    "deteriorating model with inertia": (
+        "shear-building",
+        {"model": "hysteretic-oscillator", "degradation": True, "operators": 2, "starts": 1, "epochs": 2},
+        "auto",
+        None,
+    ),
 }
 
 

@@ -11,6 +11,7 @@ use hysid::law::hysteretic_oscillator::HystereticOscillator;
 use hysid::law::hysteretic_state_space::HystereticStateSpace;
 use hysid::law::series::{Series, run};
 use hysid::law::{Law, Sample};
+use hysid::operator::{DeterioratingStop, Operator};
 use hysid::options::ModelName;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
 use hysid::specimens::BoucWenOscillator;
@@ -50,6 +51,35 @@ fn record(seed: u64, rows: usize, is_linear: bool) -> Record {
     Record::new("r", vec![at_rows(&forces)], at_rows(&motion)).unwrap().with_time(time).unwrap()
 }
 
+/// A record of a mass of 2 kg on a spring and two deteriorating stops in parallel, integrated by central differences in
+/// steps of 1/24000 s.
+fn deteriorating_record(seed: u64, rows: usize) -> Record {
+    let (mass, damping, stiffness) = (2.0, 10.0, 3e4);
+    let mut stops = [(4e4, 4e-4), (3e4, 1.2e-3)]
+        .map(|(stiffness, threshold)| (stiffness, DeterioratingStop::new(threshold, 60.0).unwrap()));
+    let parts = 32;
+    let step = 1.0 / (RATE * f64::from(parts));
+    let (mut before, mut displacement) = (0.0, 0.0);
+    let (mut forces, mut displacements) = (Vec::new(), Vec::new());
+    for row in 0..rows {
+        forces.push(force(seed, row as f64 / RATE));
+        displacements.push(displacement);
+        for part in 0..parts {
+            let restoring: f64 = stops.iter_mut().map(|(k, stop)| *k * stop.step(displacement)).sum();
+            let pushed = force(seed, (row as f64 + f64::from(part) / f64::from(parts)) / RATE);
+            let inertia = mass / (step * step);
+            let drag = damping / (2.0 * step);
+            let next = (pushed - stiffness * displacement - restoring
+                + inertia * (2.0 * displacement - before)
+                + drag * before)
+                / (inertia + drag);
+            (before, displacement) = (displacement, next);
+        }
+    }
+    let time = (0..rows).map(|k| k as f64 / RATE).collect();
+    Record::new("r", vec![forces], displacements).unwrap().with_time(time).unwrap()
+}
+
 fn data(records: Vec<Record>) -> Dataset {
     let names = ColumnNames { time: Some("t".into()), ..ColumnNames::plain(1) };
     Dataset::new(names, records).unwrap()
@@ -84,6 +114,24 @@ fn the_bouc_wen_oscillator_is_identified_and_simulated_on_unseen_forces() {
         HystereticStateSpace::fit(&seen, &options(ClassicalModel::HystereticStateSpace), &mut go_on).unwrap();
     let of_state_space = error(&found.law, &unseen);
     assert!(of_state_space < 0.15, "{of_state_space}");
+}
+
+#[test]
+fn stops_that_deteriorate_are_identified() {
+    let (seen, unseen) =
+        (data(vec![deteriorating_record(1, 1500)]), data(vec![deteriorating_record(2, 1500)]));
+    let fitted = |degradation: bool| {
+        let few = ClassicalOptions {
+            operators: Some(2),
+            hidden: Some(1),
+            states: Some(0),
+            degradation,
+            ..options(ClassicalModel::HystereticOscillator)
+        };
+        error(&HystereticOscillator::fit(&seen, &few, &mut go_on).unwrap().law, &unseen)
+    };
+    let (deteriorating, plain) = (fitted(true), fitted(false));
+    assert!(deteriorating < 0.04 && deteriorating < 0.2 * plain, "{deteriorating} {plain}");
 }
 
 #[test]
@@ -164,6 +212,7 @@ fn what_cannot_be_fitted_is_refused() {
         (|o| o.hidden = Some(61), "hidden 61"),
         (|o| o.states = Some(11), "states 11"),
         (|o| o.operators = Some(61), "operators 61"),
+        (|o| (o.operators, o.degradation) = (Some(0), true), "nothing deteriorates"),
     ] {
         let mut wrong = options(ClassicalModel::HystereticOscillator);
         change(&mut wrong);

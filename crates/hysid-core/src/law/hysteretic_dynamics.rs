@@ -248,7 +248,7 @@ impl Dynamics {
             let least = f64::MIN_POSITIVE;
             let of_path = [
                 ("ρ", "threshold of a stop", &element.thresholds, least),
-                ("κ", "strength that a stop loses per unit of slip", &element.strength_losses, 0.0),
+                ("λ", "strength that a stop loses per unit of slip", &element.strength_losses, 0.0),
                 ("c", "leak along the path", &element.path_leaks, least),
             ];
             for (symbol, meaning, values, least) in of_path {

@@ -110,8 +110,8 @@ pub struct ClassicalOptions {
     /// True if the thresholds of a rate-dependent Prandtl-Ishlinskii model grow with the logarithm of the
     /// rate.
     pub logarithmic_thresholds: bool,
-    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori, and for a peak-oriented
-    /// law that softens and deteriorates.
+    /// True for a Bouc-Wen law with the degradation and pinching of Baber and Noori, for a peak-oriented
+    /// law that softens and deteriorates, and for hysteretic elements of deteriorating stops.
     pub degradation: bool,
     /// True for a peak-oriented or Menegotto-Pinto law with different strengths upwards and downwards.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -339,8 +339,9 @@ pub const OPTIONS: [FitOption; 31] = [
     FitOption {
         name: "degradation",
         group: Classical,
-        meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, or peak-oriented with softening \
-                  and deterioration",
+        meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening \
+                  and deterioration, or hysteretic-oscillator and hysteretic-state-space with elements of 6 \
+                  deteriorating stops and 4 tanh neurons without states",
         values: Values::Flag,
         default: "off",
         used_by: of_none,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! a_i   = δ + τ_i ν,   f_i = e_i,0 + a_i - a_i,0,   e_i = max(-ρ_i, min(ρ_i, f_i))
-//! S_i   = S_i,0 + |f_i - e_i|,   z_i = e_i max(0, 1 - κ_i S_i)                 theory.md (15.6)
+//! S_i   = S_i,0 + |f_i - e_i|,   z_i = e_i max(0, 1 - λ_i S_i)                 theory.md (15.6)
 //! h     = tanh(A [1, δ, ν, z, s])                                              theory.md (15.7)
 //! T     = W↑ h  where δ rises,  W↓ h  where it falls                           theory.md (15.8)
 //! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   l = c |δ - δ_0|                         theory.md (15.9)
@@ -43,7 +43,7 @@ pub struct Element {
     pub thresholds: Vec<f64>,
     /// `τ`: share of the velocity in what drives each stop.
     pub stop_velocities: Vec<f64>,
-    /// `κ ≥ 0`: the strength that each stop loses per unit of its slip. Empty for stops that do not deteriorate.
+    /// `λ ≥ 0`: the strength that each stop loses per unit of its slip. Empty for stops that do not deteriorate.
     pub strength_losses: Vec<f64>,
     /// `A`: for each input of the layer (1, `δ`, `ν`, stops, states) its weight in every neuron.
     pub layer: Vec<f64>,
@@ -129,7 +129,7 @@ pub(super) struct Way {
     pub moved: f64,
     /// Of each stop that ends at its threshold its elongation, otherwise 0.
     pub at_threshold: Vec<f64>,
-    /// `max(0, 1 - κ S)` of each stop.
+    /// `max(0, 1 - λ S)` of each stop.
     pub strengths: Vec<f64>,
 }
 
