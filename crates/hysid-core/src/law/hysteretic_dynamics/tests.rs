@@ -289,7 +289,8 @@ fn a_stop_deteriorates_as_the_operator_does() {
     let (mut place, mut way) = (element::Place::virgin(&element), element::Way::new(&element));
     let stop = |i: usize| DeterioratingStop::new(element.thresholds[i], capacity).unwrap();
     let (mut plain, mut of_rate) = (stop(0), stop(1));
-    (plain.step(0.0), of_rate.step(0.0));
+    plain.step(0.0);
+    of_rate.step(0.0);
     let mut numbers = Numbers::new(4);
     for _ in 0..40 {
         let (displacement, velocity) = (numbers.next(), numbers.next());

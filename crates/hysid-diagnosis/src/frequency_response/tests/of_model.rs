@@ -82,6 +82,8 @@ fn a_slider_moves_the_resonance_with_the_amplitude() {
         in_output: 0.0,
         thresholds: vec![20.0],
         layer: vec![0.0; 4],
+        stop_velocities: vec![0.0],
+        strength_losses: Vec::new(),
         rising: Vec::new(),
         falling: Vec::new(),
         path_leaks: Vec::new(),
