@@ -122,6 +122,11 @@ fn columns() {
                 "simulated.csv: there is already a column \"y_model\" (rename or remove it)",
             ),
             (
+                "compare good.csv --test blank.csv",
+                1,
+                "blank.csv: column \"y\" is blank in every row: there is nothing to compare with",
+            ),
+            (
                 "evaluate model.json blank.csv",
                 1,
                 "blank.csv: column \"y\" is blank in every row: there is nothing to compare with",

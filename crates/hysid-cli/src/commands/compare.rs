@@ -28,7 +28,10 @@ pub fn run(arguments: &Compare) -> Result<Outcome> {
         Some(test) => {
             let unseen = read_tables(std::slice::from_ref(test), &arguments.columns.reading)?;
             roles.check_against(&unseen[0], &tables[0].file)?;
-            Some(data_with(unseen, roles.clone(), arguments.columns.reading.zero)?)
+            let test = data_with(unseen, roles.clone(), arguments.columns.reading.zero)?;
+            // Now rather than after all fits.
+            test.set.check_scored().map_err(|error| test.explain(error))?;
+            Some(test)
         }
         None => None,
     };

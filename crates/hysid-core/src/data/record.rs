@@ -479,16 +479,23 @@ impl Dataset {
         Some((kept, held))
     }
 
+    /// Checks that some row has an output.
+    ///
+    /// # Errors
+    /// An output that is blank throughout.
+    pub fn check_scored(&self) -> Result<()> {
+        let blank = || self.records[0].defect(None, Some(Channel::Output), DataProblem::NothingToScore);
+        if self.scored() > 0 { Ok(()) } else { Err(blank()) }
+    }
+
     /// Checks that a model can be identified.
     ///
     /// # Errors
     /// A constant input, a constant or blank output, fewer than `needed` scored rows.
     pub fn check_identifiable(&self, needed: usize) -> Result<()> {
+        self.check_scored()?;
         let first = &self.records[0];
         let found = self.scored();
-        if found == 0 {
-            return Err(first.defect(None, Some(Channel::Output), DataProblem::NothingToScore));
-        }
         if found < needed {
             let problem = DataProblem::TooFewRows { found, needed };
             return Err(first.defect(None, Some(Channel::Output), problem));
