@@ -46,7 +46,7 @@ fn a_value_that_a_model_cannot_have_is_refused_before_the_fit() {
         ("--model preisach --operators 0", "operators 0: preisach has at least 1"),
         ("--model duhem-nn --operators 101", "operators 101: duhem-nn has at most 100"),
         ("--model duhem-nn --hidden 101", "hidden 101: duhem-nn has at most 100"),
-        ("--model duhem-nn --states 0", "--states"),
+        ("--model duhem-nn --states 0", "states 0: duhem-nn has at least 1"),
     ] {
         let ran = bench.run(&format!("fit good.csv {options} -o model.json"));
         assert_eq!(ran.status, Some(2), "{}", ran.stderr);
