@@ -21,7 +21,7 @@ const POINTS: usize = 2000;
 /// A line is interrupted where frequencies are further apart than this multiple of their usual distance.
 const GAP: f64 = 5.0;
 
-/// Width of the lines of models, in pixels: there are several, which must be told apart.
+/// Width of the lines of models, in pixels: thin, because several curves overlap.
 const WIDTH: f64 = 1.6;
 
 /// Colours of the model, by falling amplitude.
@@ -30,11 +30,12 @@ const AMPLITUDES: [Colour; 3] = [Colour::Simulated, Colour::Series(2), Colour::S
 /// The section; `None` for a model without inertia.
 pub fn section(report: &Report) -> Option<Part> {
     let parts = match report.frequency_response.as_ref()? {
-        Err(why) => vec![Part::note(format!("The training data have no frequency response: {why}."))],
+        Err(why) => vec![Part::note(format!("The frequency response was not computed: {why}."))],
         Ok(responses) if responses.measured.points.len() < FEWEST_POINTS => {
             let found = count(responses.measured.points.len(), "spectral line");
             vec![Part::note(format!(
-                "No response is drawn, because the input has power at {found} only; noise or a multisine excites many."
+                "The frequency response is not drawn: only {found} had enough input power and coherence. Excite the system \
+                 with noise or a multisine, or record longer."
             ))]
         }
         Ok(responses) => Section::of(report, responses).parts(),
@@ -108,9 +109,9 @@ impl<'a> Section<'a> {
         let of_phases = Axis::linear("phase (degrees)", ordinates(&phases).into_iter());
         vec![
             Part::paragraph(
-                "A linear system has the same response at every amplitude. Where the curves of the model differ, the \
-                 system is nonlinear: a resonance that falls in frequency as the input grows shows a softening \
-                 stiffness, one that rises a hardening stiffness, and a lower peak more dissipation.",
+                "A linear system has the same response at every amplitude. Differences between the curves of the model \
+                 show its nonlinearity. If the resonance frequency falls as the input grows, the stiffness softens; if it \
+                 rises, the stiffness hardens. A lower and wider peak indicates more damping.",
             ),
             Part::chart(self.chart("Magnitude", of_magnitudes, magnitudes).with_height(330.0)),
             Part::chart(self.chart("Phase", of_phases, phases).with_height(240.0)),
@@ -148,7 +149,7 @@ impl<'a> Section<'a> {
     fn table(&self) -> Table {
         let mut table = Table::new([
             "response".into(),
-            format!("input, RMS ({})", unit::of(self.input)),
+            format!("input, std ({})", unit::of(self.input)),
             format!("resonance ({})", self.hertz),
             format!("magnitude there ({})", self.gain_unit()),
             "coherence there".into(),
@@ -175,16 +176,19 @@ impl<'a> Section<'a> {
         format!("{} per {}", unit::of(self.output), unit::of(self.input))
     }
 
-    /// How the responses came about.
+    /// The note on the method.
     fn method(&self) -> String {
         let segments = &self.responses.segments;
         let oscillator = self.responses.oscillator.as_ref();
         let oscillator = oscillator.map_or_else(String::new, |(oscillator, _)| self.oscillator(oscillator));
         format!(
-            "Measured and model: the linear system that explains most of the output for this very input, without a \
-             parametric form (best linear approximation), {}; resolution {} {}, finer for the model where its resonance is sharper. Frequencies without power of the \
-             input are left out. Coherence is the share of the output's power that such a linear system explains. {oscillator}Model: free runs over the measured input, and over the same input \
-             multiplied about its mean by smaller factors; larger ones would leave the trained range.",
+            "Measured and model: the linear system that explains most of the output for this input, without a parametric \
+             form (best linear approximation), {}. Frequencies within {} {} are averaged; at smaller amplitudes, where the \
+             resonance of the model may be sharper, within less. Frequencies with little input power, or with a coherence \
+             that noise alone could give, are left out. Coherence: share of the output power that this linear system \
+             explains. {oscillator}Model: free runs over the measured input, and over the input with its deviation from \
+             the mean multiplied by smaller factors; larger ones would leave the trained range. Resonance: frequency of \
+             the largest magnitude.",
             divided(segments),
             number(self.responses.resolution.max(segments.distance()), 2),
             self.hertz
@@ -193,7 +197,7 @@ impl<'a> Section<'a> {
 
     fn oscillator(&self, oscillator: &LinearOscillator) -> String {
         format!(
-            "Best linear oscillator: the mass on a spring and a damper that fits best in a free run, natural frequency \
+            "Best linear oscillator: mass, spring and damper plus a constant gain, fitted in a free run; natural frequency \
              {} {}, damping ratio {} %. ",
             number(oscillator.natural_frequency, 4),
             self.hertz,
@@ -204,7 +208,7 @@ impl<'a> Section<'a> {
 
 fn model_name(at: &AtAmplitude, input: &str) -> String {
     let rms = unit::with(&number(at.input_deviation, 3), input);
-    let measured = if at.factor == 1.0 { " RMS as measured" } else { "" };
+    let measured = if at.factor == 1.0 { " std as measured" } else { "" };
     format!("model, {rms}{measured}")
 }
 
@@ -213,10 +217,13 @@ fn divided(segments: &Segments) -> String {
     let rows = count(segments.length(), "row");
     match segments.window() {
         Window::WholePeriods => {
-            format!("from {} of {rows}, without the first", count(segments.count(), "period"))
+            format!(
+                "averaged over {} of {rows}; the first period is left out",
+                count(segments.count(), "period")
+            )
         }
         Window::Hann => format!(
-            "from {} of {rows} that overlap by half, with a Hann window (Welch)",
+            "averaged over {} of {rows} that overlap by half, with a Hann window (Welch)",
             count(segments.count(), "segment")
         ),
     }
@@ -226,7 +233,7 @@ fn magnitudes(line: &Line) -> Vec<f64> {
     line.response.points.iter().map(ResponsePoint::magnitude).collect()
 }
 
-/// The points with one that is not a number where the next is far away.
+/// The points, with a NaN inserted at each gap.
 fn with_gaps(points: &[Point]) -> Vec<Point> {
     let mut distances: Vec<f64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     distances.sort_by(f64::total_cmp);

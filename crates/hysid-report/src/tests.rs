@@ -183,7 +183,7 @@ fn frequency_responses_are_drawn_and_their_resonances_told() {
             format!(">{}</td>", hysid_document::number(peak.frequency, 4)),
             format!(">{}</td>", hysid_document::number(peak.magnitude(), 3)),
             "best linear oscillator".into(),
-            " kN RMS as measured".into(),
+            " kN std as measured".into(),
             "Hann window".into(),
         ] {
             assert!(section.contains(&told), "{told}: {section}");

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! `m` is the mass, `y` its displacement relative to the base, `a` the acceleration of the base and `u` the force on the
-//! mass. `r` is the force with which the element (spring, damper, isolator, column) pulls the mass back: positive for a
-//! positive displacement of a spring. Over `y` it shows the hysteresis of the element, without inertia.
+//! mass. `r` is the force of the element (spring, damper, isolator, column) on the mass, positive in the direction of
+//! negative `y`: a spring has `r = k y`. Over `y` it shows the hysteresis of the element, without inertia.
 //!
 //! All numbers are in consistent units: mass times acceleration is a force, such as kg, m, s and N.
 
@@ -48,7 +48,7 @@ pub enum Acceleration<'a> {
     Computed,
     /// Measured relative to the base: `y''`.
     Relative(&'a [f64]),
-    /// Measured against the ground at rest, as by an accelerometer on the mass: `y'' + a`.
+    /// Measured as absolute acceleration `y'' + a`, as by an accelerometer on the mass.
     Absolute(&'a [f64]),
 }
 

@@ -27,7 +27,8 @@ pub struct Force {
     /// Mass that moves, in kg or with a unit, such as "2 t"
     ///
     /// The result is the restoring force u - m (y'' + a) with the applied force u, the mass m, the acceleration y'' relative
-    /// to the base and the acceleration a of the base. It pulls the mass back where it is positive.
+    /// to the base and the acceleration a of the base. It is positive where it acts on the mass in the direction of negative
+    /// displacement: a spring of stiffness k has k y.
     ///
     /// Units: g, kg, t, lb. Without a unit it is in kg; if no column has a known unit, in the unit that is consistent
     /// with the other numbers.
@@ -82,7 +83,8 @@ pub struct MotionOptions {
     pub acceleration: Option<String>,
     /// Acceleration that an accelerometer on the mass measures
     ///
-    /// It is against the ground at rest: the acceleration relative to the base plus that of the base.
+    /// The acceleration relative to the base plus that of the base. Not together with `--acceleration` or
+    /// `--base-acceleration`.
     #[arg(long, value_name = "COLUMN", conflicts_with = "acceleration")]
     pub absolute_acceleration: Option<String>,
     /// Acceleration of the base, such as a shaking table

@@ -41,7 +41,7 @@ pub struct MotionColumns {
     pub velocity: Option<String>,
     /// Acceleration of the mass.
     pub acceleration: Option<String>,
-    /// The acceleration is that against the ground, not relative to the base.
+    /// The acceleration is absolute, not relative to the base.
     pub is_absolute: bool,
     /// Acceleration of the base.
     pub base_acceleration: Option<String>,

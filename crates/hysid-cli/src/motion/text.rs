@@ -47,7 +47,7 @@ pub fn understood(
     lines.push(("m", shown_mass(mass, motion)));
     let is_base_moving = names.is_absolute || names.base_acceleration.is_some();
     let inertia = if is_base_moving { "(y'' + a)" } else { "y''" };
-    lines.push(("r", format!("u - m {inertia}: pulls the mass back where it is positive")));
+    lines.push(("r", format!("u - m {inertia}: of a spring, positive where y is positive")));
     lines.push(units(motion));
     if !names.guessed.is_empty() {
         lines.push(("guessed", names.guessed.join("; ")));
@@ -71,7 +71,7 @@ fn acceleration(motion: &MeasuredMotion, found: &RestoringForce) -> (&'static st
     let (names, filter) = (&motion.names, found.acceleration_filter);
     match (&names.acceleration, &names.velocity) {
         (Some(measured), _) if names.is_absolute => {
-            ("y''+a", format!("{}: acceleration against the ground", clipped(measured)))
+            ("y''+a", format!("{}: absolute acceleration", clipped(measured)))
         }
         (Some(measured), _) => ("y''", format!("{}: acceleration relative to the base", clipped(measured))),
         (None, Some(velocity)) => ("y''", by("the derivative", velocity, filter, motion)),

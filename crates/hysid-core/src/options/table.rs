@@ -123,7 +123,7 @@ pub const OPTIONS: [FitOption; 31] = [
         meaning: "Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each \
                   hysteretic element (at most 60)",
         values: NEURONS,
-        default: "10; neuro-madelung, duhem-nn and hysteretic elements 8, random-stops none",
+        default: "10; neuro-madelung, duhem-nn and hysteretic elements 8, or 4 with degradation; random-stops none",
         used_by: |model, _| network_or_auto(model, |family| family.has_tanh_layer()),
     },
     FitOption {
@@ -273,17 +273,17 @@ pub const OPTIONS: [FitOption; 31] = [
                   duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none)",
         values: Values::Count(0, 1000),
         default: "10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii, 300 for \
-                  random-stops, 6 for duhem-nn, none for hysteretic elements, otherwise 30",
+                  random-stops, 6 for duhem-nn and for hysteretic elements with degradation, none for others, otherwise 30",
         used_by: of_auto,
     },
     FitOption {
         name: "states",
         group: Classical,
-        meaning: "States of duhem-nn, which move with the input and with time (1 to 20), or of each element of \
-                  hysteretic-oscillator and hysteretic-state-space, which move along its path (0 to 10; an element \
-                  without states and stops has no hysteresis)",
+        meaning: "States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic \
+                  element, which change only when its displacement changes (0 to 10; an element without memory states \
+                  and stops has no hysteresis)",
         values: Values::Count(0, MOST_STATES),
-        default: "3; 2 for hysteretic elements",
+        default: "3; 2 for hysteretic elements, or 0 with degradation",
         used_by: of_none,
     },
     FitOption {
@@ -340,8 +340,7 @@ pub const OPTIONS: [FitOption; 31] = [
         name: "degradation",
         group: Classical,
         meaning: "Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening \
-                  and deterioration, or hysteretic-oscillator and hysteretic-state-space with elements of 6 \
-                  deteriorating stops and 4 tanh neurons without states",
+                  and deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate",
         values: Values::Flag,
         default: "off",
         used_by: of_none,

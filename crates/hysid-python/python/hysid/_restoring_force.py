@@ -88,7 +88,7 @@ def restoring_force(
     acceleration : array of shape (n,), optional
         Acceleration relative to the base, NaN where it was not measured; computed by default.
     absolute_acceleration : array of shape (n,), optional
-        In the place of `acceleration`: that against the ground at rest, as an accelerometer on the mass measures it.
+        Absolute acceleration in the place of `acceleration`, as an accelerometer on the mass measures it.
     base_acceleration : array of shape (n,), optional
         Acceleration of the base; at rest by default.
     records : array of shape (n,), optional

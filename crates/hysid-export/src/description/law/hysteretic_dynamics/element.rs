@@ -17,8 +17,35 @@ const FORGOTTEN: usize = 1;
 const VELOCITY: usize = 1;
 const MEMORY: usize = 2;
 
-/// Numbers of each stop: its elongation and its slip.
-const OF_STOP: usize = 2;
+/// The arrays of the stops of an element.
+struct StopParts {
+    thresholds: Array,
+    velocities: Array,
+    /// Those of stops that deteriorate.
+    strength_losses: Option<Array>,
+    /// All `e`, then all `S` of stops that deteriorate, where the element is and where it goes.
+    place: Array,
+    ahead: Array,
+    length: usize,
+}
+
+impl StopParts {
+    /// `None` for an element without stops.
+    fn new(builder: &mut Builder, name: &impl Fn(&str) -> String, element: &Element) -> Option<Self> {
+        let Shape { stops, deteriorates, .. } = element.shape();
+        if stops == 0 {
+            return None;
+        }
+        let mut constants = |what: &str, values: &[f64]| builder.constants(&name(what), values.to_vec());
+        let thresholds = constants("threshold", &element.thresholds);
+        let velocities = constants("stop_velocity", &element.stop_velocities);
+        let strength_losses = deteriorates.then(|| constants("strength_loss", &element.strength_losses));
+        let length = if deteriorates { 2 * stops } else { stops };
+        let place = builder.state(&name("stop"), vec![0.0; length]);
+        let ahead = builder.scratch(&name("stop_ahead"), length);
+        Some(Self { thresholds, velocities, strength_losses, place, ahead, length })
+    }
+}
 
 /// The arrays of an element.
 pub(super) struct ElementParts<'l> {
@@ -28,9 +55,7 @@ pub(super) struct ElementParts<'l> {
     /// How its displacement follows from displacement and velocity of each mode.
     of_displacements: Array,
     of_velocities: Array,
-    thresholds: Array,
-    stop_velocities: Array,
-    strength_losses: Array,
+    stops: Option<StopParts>,
     /// `W↑`, then `W↓`.
     targets: Array,
     leaks: Array,
@@ -40,13 +65,9 @@ pub(super) struct ElementParts<'l> {
     /// `δ, ν, z, s` and the neurons, where the element is.
     place: Array,
     place_neurons: Array,
-    /// `e` and `S` of each stop there.
-    stops: Array,
     /// `1, δ, ν, z, s` and the neurons, where it goes.
     inputs: Array,
     neurons: Array,
-    /// `e` and `S` of each stop there.
-    stops_ahead: Array,
     /// `a`, `w_0`, `w_1` and `T_0` of each state.
     way: Array,
     sums: Array,
@@ -71,13 +92,11 @@ impl<'l> ElementParts<'l> {
     ) -> Self {
         let shape = element.shape();
         let name = |what: &str| format!("{name}_element_{}_{what}", index + 1);
+        let stops = StopParts::new(builder, &name, element);
         let mut constants = |what: &str, values: &[f64]| builder.constants(&name(what), values.to_vec());
         let targets = [element.rising.as_slice(), &element.falling].concat();
         let of_displacements = constants("of_displacement", &element.of_displacements);
         let of_velocities = constants("of_velocity", &element.of_velocities);
-        let thresholds = constants("threshold", &element.thresholds);
-        let stop_velocities = constants("stop_velocity", &element.stop_velocities);
-        let strength_losses = constants("strength_loss", &element.strength_losses);
         let targets = constants("target", &targets);
         let leaks = constants("leak", &element.path_leaks);
         let layer = constants("layer", &element.layer);
@@ -90,19 +109,15 @@ impl<'l> ElementParts<'l> {
             index,
             of_displacements,
             of_velocities,
-            thresholds,
-            stop_velocities,
-            strength_losses,
+            stops,
             targets,
             leaks,
             layer,
             weights,
             place: builder.state(&name("place"), place),
             place_neurons: builder.state(&name("neuron"), vec![0.0; shape.neurons]),
-            stops: builder.state(&name("stop"), vec![0.0; OF_STOP * shape.stops]),
             inputs: builder.scratch(&name("input"), shape.inputs()),
             neurons: builder.scratch(&name("neuron_ahead"), shape.neurons),
-            stops_ahead: builder.scratch(&name("stop_ahead"), OF_STOP * shape.stops),
             way: builder.scratch(&name("way"), 4 * shape.states),
             sums,
             following,
@@ -120,9 +135,10 @@ impl<'l> ElementParts<'l> {
         builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
             builder.set(self.inputs, &i + FORGOTTEN, self.place.at(&i));
         });
-        builder.each(0_usize, OF_STOP * self.shape.stops, |builder, i| {
-            builder.set(self.stops_ahead, &i, self.stops.at(&i));
-        });
+        if let Some(stops) = &self.stops {
+            builder
+                .each(0_usize, stops.length, |builder, i| builder.set(stops.ahead, &i, stops.place.at(&i)));
+        }
         self.finish(builder);
         self.arrive(builder);
     }
@@ -132,9 +148,10 @@ impl<'l> ElementParts<'l> {
         builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
             builder.set(self.place, &i, self.inputs.at(&i + FORGOTTEN));
         });
-        builder.each(0_usize, OF_STOP * self.shape.stops, |builder, i| {
-            builder.set(self.stops, &i, self.stops_ahead.at(&i));
-        });
+        if let Some(stops) = &self.stops {
+            builder
+                .each(0_usize, stops.length, |builder, i| builder.set(stops.place, &i, stops.ahead.at(&i)));
+        }
         builder.each(0_usize, self.shape.neurons, |builder, i| {
             builder.set(self.place_neurons, &i, self.neurons.at(&i));
         });
@@ -163,25 +180,24 @@ impl<'l> ElementParts<'l> {
     }
 
     fn stops(&self, builder: &mut Builder, moved: &Real, velocity: &Real) {
-        let Shape { stops, deteriorates, .. } = self.shape;
-        if stops == 0 {
-            return;
-        }
+        let Some(parts) = &self.stops else { return };
+        let stops = self.shape.stops;
         let of_velocity = builder.value(velocity - self.place.at(VELOCITY));
         builder.each(0_usize, stops, |builder, i| {
-            let driven = builder.value(self.stop_velocities.at(&i) * &of_velocity + moved);
-            let free = builder.value(self.stops.at(&i) + driven);
-            let threshold = builder.value(self.thresholds.at(&i));
+            let driven = builder.value(parts.velocities.at(&i) * &of_velocity + moved);
+            let free = builder.value(parts.place.at(&i) + driven);
+            let threshold = builder.value(parts.thresholds.at(&i));
             let elongation = builder.value(free.clone().clamp(-&threshold, &threshold));
-            builder.set(self.stops_ahead, &i, &elongation);
-            if deteriorates {
-                let slip = builder.value(self.stops.at(&i + stops) + (free - &elongation).abs());
-                builder.set(self.stops_ahead, &i + stops, &slip);
-                let strength = (1.0 - self.strength_losses.at(&i) * slip).max(0.0);
-                builder.set(self.inputs, &i + 3_usize, elongation * strength);
-            } else {
-                builder.set(self.inputs, &i + 3_usize, elongation);
-            }
+            builder.set(parts.ahead, &i, &elongation);
+            let output = match parts.strength_losses {
+                Some(losses) => {
+                    let slip = builder.value(parts.place.at(&i + stops) + (free - &elongation).abs());
+                    builder.set(parts.ahead, &i + stops, &slip);
+                    elongation * (1.0 - losses.at(&i) * slip).max(0.0)
+                }
+                None => elongation,
+            };
+            builder.set(self.inputs, &i + 3_usize, output);
         });
     }
 
