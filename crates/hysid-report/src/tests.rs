@@ -199,7 +199,7 @@ fn a_response_that_cannot_be_drawn_is_explained() {
         data.records().iter().map(|record| model.simulate(record).unwrap()).collect();
     let sine = ModelResponses::of(&model, &data, &simulated).unwrap();
     let cases = [
-        (sine, "the input has power at 2 spectral lines only"),
+        (sine, "only 2 spectral lines had enough input power"),
         (Err(NoResponse::UnevenTime("a".into())), "record &quot;a&quot; are not evenly spaced"),
     ];
     for (responses, told) in cases {
