@@ -100,8 +100,8 @@ def fit(
         Stop neurons of a network. Default: 10.
     hidden : int, optional
         Tanh neurons of a network, of neuro-madelung or duhem-nn (at most 100), of random-stops, or of each
-        hysteretic element (at most 60). Default: 10; neuro-madelung, duhem-nn and hysteretic elements 8,
-        random-stops none.
+        hysteretic element (at most 60). Default: 10; neuro-madelung, duhem-nn and hysteretic elements 8, or 4
+        with degradation; random-stops none.
     relaxation : int, optional
         Relaxation neurons of each input of xpnn+, for data with time stamps; 0 for none. Default: 4.
     no_deterioration : bool, optional
@@ -157,11 +157,12 @@ def fit(
         Plays, breakpoints, intervals of each axis of a Preisach plane (at most 200), random stops, stops of
         duhem-nn (at most 100, 0 for none), or stops of each hysteretic element (at most 60, 0 for none).
         Default: 10 for generalized- and rate-dependent-prandtl-ishlinskii, 20 for modified-prandtl-ishlinskii,
-        300 for random-stops, 6 for duhem-nn, none for hysteretic elements, otherwise 30.
+        300 for random-stops, 6 for duhem-nn and for hysteretic elements with degradation, none for others,
+        otherwise 30.
     states : int, optional
-        States of duhem-nn, which move with the input and with time, or of each hysteretic element of
-        hysteretic-oscillator and hysteretic-state-space, which move along its path (at most 10). Default: 3; 2
-        for hysteretic elements.
+        States of duhem-nn, driven by the input and by time (1 to 20), or memory states of each hysteretic
+        element, which change only when its displacement changes (0 to 10; an element without memory states and
+        stops has no hysteresis). Default: 3; 2 for hysteretic elements, or 0 with degradation.
     modes : int, optional
         Modes of vibration of hysteretic-oscillator and hysteretic-state-space. Default: 1; 2 for
         hysteretic-state-space.
@@ -179,8 +180,9 @@ def fit(
         Let the thresholds of rate-dependent-prandtl-ishlinskii grow with the logarithm of the rate. Default:
         linear.
     degradation : bool, optional
-        Use bouc-wen with the degradation and pinching of Baber and Noori, or peak-oriented with softening and
-        deterioration. Default: off.
+        Use bouc-wen with the degradation and pinching of Baber and Noori, peak-oriented with softening and
+        deterioration, or hysteretic-oscillator and hysteretic-state-space with stops that deteriorate. Default:
+        off.
     asymmetric : bool, optional
         Use peak-oriented or menegotto-pinto with different strengths upwards and downwards. Default: off.
     differential_form : bool, optional
