@@ -38,7 +38,7 @@ pub mod resonance;
 pub mod reversal_curves;
 mod saturation;
 pub mod serial;
-mod significance;
+pub mod significance;
 mod smoothing;
 mod static_hysteresis;
 mod wiping_out;

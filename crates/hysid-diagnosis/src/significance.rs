@@ -1,10 +1,10 @@
 //! Quantiles of the normal distribution: what is noise, and what is not.
 
 /// Median of the magnitude of a standard normal number.
-pub(crate) const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+pub const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 
 /// Median, of the upper two where there is no middle one; NaN for no value.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
+pub fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return f64::NAN;
     }

@@ -12,7 +12,7 @@ use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, numbe
 use crate::Report;
 use crate::figures::MEASURED_WIDTH;
 
-/// Fewer frequencies make no curve.
+/// Fewest frequencies of a chart.
 const FEWEST_POINTS: usize = 5;
 
 /// Points of a curve, at most.
@@ -155,14 +155,9 @@ impl<'a> Section<'a> {
             "coherence there".into(),
         ]);
         for line in &self.lines {
-            let name = if line.input_deviation.is_some() && line.colour != Colour::Measured {
-                "model"
-            } else {
-                &line.name
-            };
             let peak = line.response.peak();
             table.push([
-                name.into(),
+                line.name.as_str().into(),
                 Cell::number(line.input_deviation, 3),
                 Cell::number(peak.map(|peak| peak.frequency), 4),
                 Cell::number(peak.map(|peak| peak.magnitude()), 3),
@@ -207,9 +202,9 @@ impl<'a> Section<'a> {
 }
 
 fn model_name(at: &AtAmplitude, input: &str) -> String {
-    let rms = unit::with(&number(at.input_deviation, 3), input);
+    let deviation = unit::with(&number(at.input_deviation, 3), input);
     let measured = if at.factor == 1.0 { " std as measured" } else { "" };
-    format!("model, {rms}{measured}")
+    format!("model, {deviation}{measured}")
 }
 
 /// How rows were divided, in words.

@@ -134,14 +134,15 @@ pub fn restoring_force(records: &[Motion<'_>], mass: f64, window: Option<usize>)
         records.iter().map(|motion| (motion.time, motion.displacement)).collect();
     let velocities: Option<Vec<Channel<'_>>> =
         records.iter().map(|motion| Some((motion.time, motion.velocity?))).collect();
-    let velocity = match velocities {
-        Some(_) => None,
-        None => Some(derivative(&displacements, 1, noise::deviation(&displacements), window)),
+    // The channel that is differentiated, once for the velocity if that is not measured.
+    let (channel, order) = match &velocities {
+        Some(velocities) => (velocities, 0),
+        None => (&displacements, 1),
     };
-    let acceleration = is_computed(records).then(|| match &velocities {
-        Some(velocities) => derivative(velocities, 1, noise::deviation(velocities), window),
-        None => derivative(&displacements, 2, noise::deviation(&displacements), window),
-    });
+    let is_accelerated = is_computed(records);
+    let noise = if order > 0 || is_accelerated { noise::deviation(channel) } else { 0.0 };
+    let velocity = (order > 0).then(|| derivative(channel, order, noise, window));
+    let acceleration = is_accelerated.then(|| derivative(channel, order + 1, noise, window));
     let force_of = |(record, motion): (usize, &Motion<'_>)| {
         let computed =
             acceleration.as_ref().map(|computed| (computed.values[record].as_slice(), computed.filter));
@@ -277,23 +278,22 @@ fn deviation(values: impl Iterator<Item = f64> + Clone) -> Option<f64> {
 
 /// Standard deviation of the noise of the restoring force, in its unit: the root of the sum of the squares of what each
 /// measured channel adds.
-fn noise_of(records: &[Motion<'_>], mass: f64, computed: Option<&Derivative>) -> f64 {
-    let measured = |of: &dyn Fn(&Motion<'_>) -> Option<Vec<f64>>| {
-        let columns: Vec<(&[f64], Vec<f64>)> =
-            records.iter().filter_map(|motion| Some((motion.time, of(motion)?))).collect();
-        let channels: Vec<Channel<'_>> =
-            columns.iter().map(|(time, values)| (*time, values.as_slice())).collect();
+fn noise_of<'a>(records: &[Motion<'a>], mass: f64, computed: Option<&Derivative>) -> f64 {
+    // An absolute acceleration has that of the base in it.
+    let is_used = |motion: &Motion<'a>, column: MotionColumn| {
+        column != MotionColumn::BaseAcceleration || !matches!(motion.acceleration, Acceleration::Absolute(_))
+    };
+    let of_channel = |wanted: MotionColumn| {
+        let values = |motion: &Motion<'a>| {
+            let (_, values) = columns(motion).find(|(column, _)| *column == wanted)?;
+            is_used(motion, wanted).then_some((motion.time, values))
+        };
+        let channels: Vec<Channel<'a>> = records.iter().filter_map(values).collect();
         if channels.is_empty() { 0.0 } else { noise::deviation(&channels) }
     };
-    let acceleration = measured(&|motion| match motion.acceleration {
-        Acceleration::Computed => None,
-        Acceleration::Relative(values) | Acceleration::Absolute(values) => Some(values.to_vec()),
-    });
-    let base = measured(&|motion| match motion.acceleration {
-        Acceleration::Absolute(_) => None,
-        _ => Some(motion.base_acceleration?.to_vec()),
-    });
-    let force = measured(&|motion| Some(motion.applied_force?.to_vec()));
+    let acceleration = of_channel(MotionColumn::Acceleration);
+    let base = of_channel(MotionColumn::BaseAcceleration);
+    let force = of_channel(MotionColumn::AppliedForce);
     let from_filter = computed.map_or(0.0, |computed| computed.noise);
     (mass * acceleration.hypot(base).hypot(from_filter)).hypot(force)
 }

@@ -281,6 +281,11 @@ impl Dynamics {
         if !self.elements.iter().all(is_sound) {
             return refuse("the parts of an element have lengths that do not go together");
         }
+        if self.elements.iter().any(Element::has_forbidden_constant) {
+            return refuse(
+                "the tanh neurons beside stops that deteriorate have a constant, whose weights must be 0",
+            );
+        }
         self.parameters(Form::StateSpace).iter().try_for_each(|parameter| parameter.check(law))
     }
 

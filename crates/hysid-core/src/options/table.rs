@@ -416,6 +416,23 @@ pub fn check<'a>(values: impl IntoIterator<Item = (&'a str, Value)>) -> Result<(
     Ok(())
 }
 
+/// Checks the numbers of the parts of a law against its limits: the name of an option, its least and its largest value.
+///
+/// # Errors
+/// The first number that is out of its limits.
+pub fn check_counts(
+    limits: &[(&'static str, usize, usize)],
+    count_of: impl Fn(&'static str) -> usize,
+) -> Result<()> {
+    for &(option, least, most) in limits {
+        let count = count_of(option);
+        if !(least..=most).contains(&count) {
+            return Err(OptionError::value(option, count, format!("choose {least} to {most}")).into());
+        }
+    }
+    Ok(())
+}
+
 impl FitOption {
     /// The option of this name.
     pub fn named(name: &str) -> Option<&'static Self> {

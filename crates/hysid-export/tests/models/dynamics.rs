@@ -38,7 +38,12 @@ fn element(numbers: &mut Numbers, shape: Shape, modes: usize) -> Element {
             .iter()
             .map(|k| k.abs())
             .collect(),
-        layer: numbers.many(shape.inputs() * neurons, 0.6),
+        layer: numbers
+            .many(shape.inputs() * neurons, 0.6)
+            .into_iter()
+            .enumerate()
+            .map(|(place, weight)| if deteriorates && place < neurons { 0.0 } else { weight })
+            .collect(),
         rising: numbers.many(states * neurons, 0.6),
         falling: numbers.many(states * neurons, 0.6),
         path_leaks: numbers.many(states, 1.0).iter().map(|c| 2.0 * c.exp()).collect(),

@@ -2,6 +2,7 @@
 //! those of a high order, whatever the time steps, and noise adds to all of them.
 
 use hysid_diagnosis::resolution;
+use hysid_diagnosis::significance::{MEDIAN_OF_NORMAL, median};
 
 /// Orders of the differences: the course adds less to the higher ones, and its kinks are in fewer of the lower ones.
 const ORDERS: [usize; 5] = [2, 3, 4, 6, 8];
@@ -9,21 +10,11 @@ const ORDERS: [usize; 5] = [2, 3, 4, 6, 8];
 /// Differences of an order that are taken at most.
 const MOST: usize = 20_000;
 
-/// Median magnitude of a normal number of deviation 1.
-const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
-
 /// Standard deviation of the noise of a channel, in its unit, if it is independent from row to row; with the rounding of
 /// its numbers to the steps of an instrument. Time and values of each record; NaN for a missing value.
 pub fn deviation(records: &[(&[f64], &[f64])]) -> f64 {
-    let of_order = |&order: &usize| {
-        let mut sizes = differences(records, order);
-        if sizes.is_empty() {
-            return f64::INFINITY;
-        }
-        let middle = sizes.len() / 2;
-        let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-        *median / MEDIAN_OF_NORMAL
-    };
+    // Without differences it is NaN, which is no minimum.
+    let of_order = |&order: &usize| median(&mut differences(records, order)) / MEDIAN_OF_NORMAL;
     let least = ORDERS.iter().map(of_order).fold(f64::INFINITY, f64::min);
     // Where the values rest between two steps of the instrument, the median does not show its rounding.
     let step = resolution(records.iter().flat_map(|(_, values)| values.iter()));

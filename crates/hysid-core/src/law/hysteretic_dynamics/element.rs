@@ -77,6 +77,12 @@ impl Element {
             && self.force.len() == stops + states + neurons
     }
 
+    /// True if the tanh neurons have a constant where they may have none.
+    pub(super) fn has_forbidden_constant(&self) -> bool {
+        let shape = self.shape();
+        self.layer[..shape.first_free_input() * shape.neurons].iter().any(|weight| *weight != 0.0)
+    }
+
     /// Numbers of its parts.
     pub fn shape(&self) -> Shape {
         let (stops, states) = (self.thresholds.len(), self.path_leaks.len());

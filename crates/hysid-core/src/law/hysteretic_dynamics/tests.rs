@@ -333,7 +333,8 @@ fn what_does_not_fit_together_is_refused() {
     let sound = model(1, 2, 1, SHAPE, 0.5);
     assert!(sound.check("test").is_ok());
     type Change = fn(&mut Dynamics);
-    let broken: [(&str, Change); 7] = [
+    let broken: [(&str, Change); 8] = [
+        ("have a constant", |d| d.elements[0].layer[2] = 0.1),
         ("not positive", |d| d.longest_step = 0.0),
         ("or none", |d| d.modes.clear()),
         ("go together", |d| d.elements[0].force.truncate(3)),

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use crate::data::FEWEST_ROWS;
 use crate::data::record::Dataset;
-use crate::error::{Error, LARGEST_VALUE, OptionError, Result};
+use crate::error::{Error, LARGEST_VALUE, Result};
 use crate::fit::law::Identify;
 use crate::fit::law::grids::spaced;
 use crate::fit::law::search::{
@@ -27,7 +27,7 @@ use crate::fit::law::search::{
 };
 use crate::fit::network::least_squares::{OutputProblem, OutputSolution};
 use crate::law::Law;
-use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, MOST_NEURONS, MOST_STATES, Run, Shape};
+use crate::law::duhem_nn::{DuhemNn, Input, LARGEST_WEIGHT, Layout, Run, Shape};
 use crate::law::series::Series;
 use crate::linear_algebra::{Gram, Symmetric};
 use crate::model::input_transform::common_magnitude;
@@ -35,6 +35,7 @@ use crate::optimise::levenberg_marquardt::{LevenbergMarquardt, Problem, Rules, S
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
+use crate::options::table::check_counts;
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 
@@ -182,17 +183,12 @@ pub(crate) fn shape_of(options: &ClassicalOptions, has_time: bool) -> Shape {
 
 /// Rejects numbers that no network can have.
 fn check_shape(shape: Shape) -> Result<()> {
-    let counts = [
-        ("hidden", shape.neurons, 1, MOST_NEURONS),
-        ("operators", shape.stops, 0, MOST_NEURONS),
-        ("states", shape.states, 1, MOST_STATES),
-    ];
-    match counts.into_iter().find(|(_, count, least, most)| !(*least..=*most).contains(count)) {
-        Some((option, count, least, most)) => {
-            Err(OptionError::value(option, count, format!("choose {least} to {most}")).into())
-        }
-        None => Ok(()),
-    }
+    check_counts(DuhemNn::FACTS.limits, |option| match option {
+        "hidden" => shape.neurons,
+        "operators" => shape.stops,
+        "states" => shape.states,
+        _ => unreachable!("a network consists of neurons, stops and states"),
+    })
 }
 
 /// The scales of the data, and what the network consists of.

@@ -30,7 +30,7 @@ use crate::optimise::levenberg_marquardt::LevenbergMarquardt;
 use crate::optimise::multi_start::{MultiStart, Plan, Start};
 use crate::optimise::random::{generator, normal};
 use crate::options::classical::ClassicalOptions;
-use crate::options::table::check;
+use crate::options::table::{check, check_counts};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use records::Records;
@@ -100,17 +100,12 @@ impl Asked {
             return Err(OptionError::value("operators", 0, needed).into());
         }
         check([("modes", json!(modes))])?;
-        for &(option, least, most) in LIMITS {
-            let count = match option {
-                "hidden" => shape.neurons,
-                "operators" => shape.stops,
-                "states" => shape.states,
-                _ => unreachable!("an element consists of neurons, stops and states"),
-            };
-            if !(least..=most).contains(&count) {
-                return Err(OptionError::value(option, count, format!("choose {least} to {most}")).into());
-            }
-        }
+        check_counts(LIMITS, |option| match option {
+            "hidden" => shape.neurons,
+            "operators" => shape.stops,
+            "states" => shape.states,
+            _ => unreachable!("an element consists of neurons, stops and states"),
+        })?;
         // An element of a state space model may be driven by all of its modes.
         let elements = if form == Form::Oscillator { modes } else { 1 };
         Ok(Self { form, modes, elements, shape })
