@@ -58,6 +58,9 @@ pub struct Layout {
     pub modes: Vec<ModeLayout>,
     /// Of each element.
     pub elements: Vec<ElementLayout>,
+    /// Displacement and velocity of each mode at the first sample of a record; empty if records begin at rest. No part
+    /// of the model.
+    pub beginning: Range<usize>,
     count: usize,
 }
 
@@ -103,7 +106,13 @@ impl Layout {
             force: next(shape.stops + shape.states + shape.neurons),
         };
         let of_elements = (0..elements).map(of_element).collect();
-        Self { shape, modes: of_modes, elements: of_elements, count: end }
+        Self { shape, modes: of_modes, elements: of_elements, beginning: end..end, count: end }
+    }
+
+    /// The same for a record that may begin in mid-motion.
+    pub fn with_beginning(&self) -> Self {
+        let end = self.count + 2 * self.modes.len();
+        Self { beginning: self.count..end, count: end, ..self.clone() }
     }
 
     /// Number of parameters.
@@ -118,6 +127,16 @@ impl Layout {
                 .into_iter()
                 .any(|range| range.contains(&index))
         })
+    }
+
+    /// True for a gain or a compliance of a mode after the first. Where all of them are 0, only the first mode moves.
+    pub fn excites_later_modes(&self, index: usize) -> bool {
+        let modes = self.modes.len();
+        self.modes[1..].iter().any(|mode| mode.gain == index)
+            || self.elements.iter().any(|element| {
+                let compliances = &element.compliances;
+                compliances.contains(&index) && (index - compliances.start) % modes > 0
+            })
     }
 
     /// True for what is a logarithm.

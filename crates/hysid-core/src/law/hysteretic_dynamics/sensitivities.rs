@@ -38,6 +38,14 @@ pub struct Drive {
     pub weights: Vec<f64>,
 }
 
+impl Drive {
+    /// Number of rows that are compared, with those that they stand for.
+    pub fn rows(&self) -> f64 {
+        let compared = self.targets.iter().zip(&self.weights).filter(|(target, _)| !target.is_nan());
+        compared.map(|(_, weight)| weight * weight).sum()
+    }
+}
+
 /// A model and the records that it is run over.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
@@ -45,6 +53,10 @@ pub struct Run<'a> {
     pub dynamics: &'a Dynamics,
     /// The records.
     pub drives: &'a [Drive],
+    /// Of each record the displacements of the modes at its first row, beside those at rest, and then the velocities;
+    /// empty if all begin at rest. Where records begin in motion, the rows of each are preceded by the forces of the
+    /// virgin elements on the modes, as errors: without input the model is in equilibrium.
+    pub beginnings: &'a [f64],
     /// Stops the computation early.
     pub stop: StopCheck<'a>,
 }
@@ -57,7 +69,7 @@ impl Run<'_> {
     }
 
     /// The Gram matrix of the derivatives by the parameters of the layout and of the error, each row weighted; `None`
-    /// once stopped.
+    /// once stopped. The columns of the beginning are those of each record in turn.
     pub fn gram(self, layout: &Layout) -> Option<Gram> {
         let mut rows = GramOfRows::new(layout.count() + 1, self.stop);
         self.sweep(Some(layout), &mut rows).then_some(rows.gram)
@@ -100,18 +112,31 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Run { dynamics, drives, stop } = self.run;
+        let Run { dynamics, drives, beginnings, stop } = self.run;
         let mut pace = Pace::new(stop);
         let offset = dynamics.output_offset / dynamics.output_scale;
         let mut sensitivities = self.layout.map(|layout| Sensitivities::new(dynamics, layout));
         let columns = self.layout.map_or(0, Layout::count);
         let per_step = 400 + 40 * columns;
         let mut row = vec![0.0; columns + 1];
-        for drive in drives {
+        let modes = dynamics.modes.len();
+        for (index, drive) in drives.iter().enumerate() {
+            let beginning = beginnings.get(2 * modes * index..2 * modes * (index + 1));
             let mut motion = Motion::virgin(dynamics);
             motion.start::<S>(dynamics);
             if let Some(sensitivities) = &mut sensitivities {
                 sensitivities.begin::<S>(dynamics, &motion);
+            }
+            if beginning.is_some() && !dynamics.begins_under_input {
+                // One row counts as much as all that are compared.
+                let weight = drive.rows().sqrt();
+                for mode in 0..modes {
+                    if let Some(sensitivities) = &mut sensitivities {
+                        sensitivities.of_rest::<S>(dynamics, &motion, mode, weight, &mut row[..columns]);
+                    }
+                    row[columns] = weight * motion.force_on::<S>(dynamics, mode);
+                    self.rows.take(simd, &row);
+                }
             }
             for k in 0..drive.x.len() {
                 let steps = motion.begin_row::<S>(dynamics, drive.x[k], drive.steps[k]);
@@ -126,6 +151,14 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
                     motion.advance::<S>(dynamics, input, steps.length);
                     if let Some(sensitivities) = &mut sensitivities {
                         sensitivities.advance::<S>(dynamics, &motion);
+                    }
+                }
+                if k == 0
+                    && let Some((displacements, velocities)) = beginning.map(|both| both.split_at(modes))
+                {
+                    motion.displace::<S>(dynamics, displacements, velocities);
+                    if let Some(sensitivities) = &mut sensitivities {
+                        sensitivities.displace::<S>(dynamics, &motion, displacements, velocities);
                     }
                 }
                 let (target, weight) = (drive.targets[k], drive.weights[k]);
@@ -261,9 +294,56 @@ impl<'l> Sensitivities<'l> {
             for (i, place) in layout.initial.clone().enumerate() {
                 element.place[(2 + shape.stops + i) * width + place] = 1.0;
             }
+        }
+        self.forces_of_places::<S>(dynamics, motion);
+    }
+
+    /// After [`Motion::displace`].
+    #[inline(always)]
+    fn displace<S: Simd>(
+        &mut self,
+        dynamics: &Dynamics,
+        motion: &Motion,
+        displacements: &[f64],
+        velocities: &[f64],
+    ) {
+        let (width, modes) = (self.width, dynamics.modes.len());
+        for (row, place) in self.layout.beginning.clone().enumerate() {
+            self.modes[row * width + place] += 1.0;
+        }
+        for (e, own) in self.elements.iter_mut().enumerate() {
+            let (element, layout) = (&dynamics.elements[e], &self.layout.elements[e]);
+            let (displacement, rest) = own.place.split_at_mut(width);
+            let velocity = &mut rest[..width];
+            for i in 0..modes {
+                let (by_displacement, by_velocity) = (element.of_displacements[i], element.of_velocities[i]);
+                if let Some(place) = layout.of_displacements.clone().nth(i) {
+                    displacement[place] += displacements[i];
+                    velocity[place] += velocities[i];
+                }
+                if let Some(place) = layout.of_velocities.clone().nth(i) {
+                    displacement[place] += velocities[i];
+                }
+                if let Some(place) = self.layout.beginning.clone().nth(i) {
+                    displacement[place] += by_displacement;
+                    displacement[place + modes] += by_velocity;
+                    velocity[place + modes] += by_displacement;
+                }
+            }
+        }
+        self.forces_of_places::<S>(dynamics, motion);
+    }
+
+    /// `∂r` where the elements are, from what describes the places.
+    #[inline(always)]
+    fn forces_of_places<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+        let width = self.width;
+        for (e, own) in self.elements.iter_mut().enumerate() {
             let force = &mut self.forces[e * width..(e + 1) * width];
-            element.force::<S>(&dynamics.elements[e], layout, &motion.places[e], force);
-            add_multiples::<S>(force, &element.of_force.by_memory, &element.place[2 * width..]);
+            own.force::<S>(&dynamics.elements[e], &self.layout.elements[e], &motion.places[e], force);
+            let Local { by_displacement, by_velocity, .. } = own.of_force;
+            add_multiples::<S>(force, &[by_displacement, by_velocity], &own.place);
+            add_multiples::<S>(force, &own.of_force.by_memory, &own.place[2 * width..]);
         }
     }
 
@@ -453,6 +533,29 @@ impl<'l> Sensitivities<'l> {
                 let row = &mut self.modes[(offset + i) * width..][..width];
                 add_multiples::<S>(row, &factors[..count], &self.forces);
             }
+        }
+    }
+
+    /// The derivative of [`Motion::force_on`] a mode, weighted.
+    #[inline(always)]
+    fn of_rest<S: Simd>(
+        &mut self,
+        dynamics: &Dynamics,
+        motion: &Motion,
+        mode: usize,
+        weight: f64,
+        jacobian: &mut [f64],
+    ) {
+        let row = &mut self.of_output;
+        row.fill(0.0);
+        for (e, element) in dynamics.elements.iter().enumerate() {
+            if let Some(place) = self.layout.elements[e].compliances.clone().nth(mode) {
+                row[place] -= motion.forces[e];
+            }
+            add_multiple::<S>(row, -element.compliances[mode], &self.forces[e * self.width..][..self.width]);
+        }
+        for (to, value) in jacobian.iter_mut().zip(row) {
+            *to = weight * *value;
         }
     }
 

@@ -112,18 +112,27 @@ fn derivatives_equal_differences() {
         (Form::Oscillator, 2, 0, SHAPE, false, Hold::Cubic),
         (Form::Oscillator, 1, 1, Shape { states: 0, deteriorates: false, ..SHAPE }, false, Hold::Cubic),
     ] {
-        let layout = Layout::new(form, modes, elements, shape);
+        let layout = Layout::new(form, modes, elements, shape).with_beginning();
         let mut template = model(7, modes, elements, shape, 0.7);
         (template.begins_under_input, template.hold) = (begins_under_input, hold);
         let drives = [drive(3, 40, 0.11), drive(5, 25, 0.2)];
-        let parameters = layout.parameters(&template);
+        let mut parameters = layout.parameters(&template);
+        parameters[layout.beginning.clone()].copy_from_slice(&Numbers::new(11).many(2 * modes, 1.0));
+        // Both records begin alike, so that one column serves both.
+        let beginnings = |parameters: &[f64]| parameters[layout.beginning.clone()].repeat(2);
         let errors = |parameters: &[f64]| -> Vec<f64> {
-            let dynamics = layout.dynamics(parameters, &template);
-            let run = Run { dynamics: &dynamics, drives: &drives, stop: StopCheck::never() };
+            let (dynamics, beginnings) = (layout.dynamics(parameters, &template), beginnings(parameters));
+            let run = Run {
+                dynamics: &dynamics,
+                drives: &drives,
+                beginnings: &beginnings,
+                stop: StopCheck::never(),
+            };
             run.rows(&layout).unwrap().iter().map(|row| row[layout.count()]).collect()
         };
-        let dynamics = layout.dynamics(&parameters, &template);
-        let run = Run { dynamics: &dynamics, drives: &drives, stop: StopCheck::never() };
+        let (dynamics, beginnings) = (layout.dynamics(&parameters, &template), beginnings(&parameters));
+        let run =
+            Run { dynamics: &dynamics, drives: &drives, beginnings: &beginnings, stop: StopCheck::never() };
         let rows = run.rows(&layout).unwrap();
         for place in 0..layout.count() {
             let by = 4e-6;

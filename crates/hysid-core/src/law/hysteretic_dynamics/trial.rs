@@ -111,6 +111,29 @@ impl Motion {
         }
     }
 
+    /// Moves the modes by displacements and velocities, without a way from there to here: a record that begins in
+    /// mid-motion.
+    #[inline(always)]
+    pub(super) fn displace<S: Simd>(
+        &mut self,
+        dynamics: &Dynamics,
+        displacements: &[f64],
+        velocities: &[f64],
+    ) {
+        for i in 0..dynamics.modes.len() {
+            self.displacements[i] += displacements[i];
+            self.velocities[i] += velocities[i];
+        }
+        for (e, (place, element)) in self.places.iter_mut().zip(&dynamics.elements).enumerate() {
+            for (i, (q, p)) in displacements.iter().zip(velocities).enumerate() {
+                place.inputs[1] += element.of_displacements[i] * q + element.of_velocities[i] * p;
+                place.inputs[2] += element.of_displacements[i] * p;
+            }
+            place.finish::<S>(element);
+            (self.forces[e], self.forces_before[e]) = (place.force, place.force);
+        }
+    }
+
     /// Takes the next sample of the input, and returns into which steps its row is divided.
     #[inline(always)]
     pub(super) fn begin_row<S: Simd>(&mut self, dynamics: &Dynamics, x: f64, row: f64) -> RowSteps {
@@ -179,6 +202,16 @@ impl Motion {
         y
     }
 
+    /// The force of the elements on a mode, as the displacement that it would hold at rest.
+    #[inline(always)]
+    pub(super) fn force_on<S: Simd>(&self, dynamics: &Dynamics, mode: usize) -> f64 {
+        let mut force = 0.0;
+        for (element, r) in dynamics.elements.iter().zip(&self.forces) {
+            force = multiply_add::<S>(-element.compliances[mode], *r, force);
+        }
+        force
+    }
+
     /// One step of a row, to the scaled input at its end.
     #[inline(always)]
     pub(super) fn advance<S: Simd>(&mut self, dynamics: &Dynamics, input: f64, step: f64) {
@@ -217,10 +250,7 @@ impl Motion {
     #[inline(always)]
     fn move_modes<S: Simd>(&mut self, dynamics: &Dynamics) {
         for (i, by) in self.propagations.iter().enumerate() {
-            let mut force = 0.0;
-            for (element, r) in dynamics.elements.iter().zip(&self.forces) {
-                force = multiply_add::<S>(-element.compliances[i], *r, force);
-            }
+            let force = self.force_on::<S>(dynamics, i);
             self.displacements[i] = multiply_add::<S>(by.displacement[3], force, self.displacements_alone[i]);
             self.velocities[i] = multiply_add::<S>(by.velocity[3], force, self.velocities_alone[i]);
         }

@@ -33,11 +33,12 @@ use crate::options::classical::ClassicalOptions;
 use crate::options::table::{check, check_counts};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
+use linear_start::LinearStarts;
 use records::Records;
 use task::{Task, Value};
 
 /// Default number of starts of the search.
-pub(crate) const STARTS: usize = 2;
+pub(crate) const STARTS: usize = 4;
 
 /// Default number of iterations of each start.
 const EPOCHS: usize = 110;
@@ -52,10 +53,24 @@ const MODES_OF_STATE_SPACE: usize = 2;
 /// After so many epochs half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
 
-/// Stages: the epoch after which each ends, of [`EPOCHS`]; its penalty κ; and whether it sees only the beginning of the
-/// records. After the last the penalty follows from the error.
-const STAGES: [(usize, f64, bool); 4] =
-    [(12, 1e-4, true), (24, 1e-5, true), (36, 1e-6, true), (50, 1e-7, false)];
+/// Stages of the training. After the last the penalty follows from the error.
+const STAGES: [Stage; 4] = [
+    Stage { end: 12, penalty: 1e-4, is_early: true, has_one_mode: true },
+    Stage { end: 24, penalty: 1e-5, is_early: true, has_one_mode: true },
+    Stage { end: 36, penalty: 1e-6, is_early: true, has_one_mode: false },
+    Stage { end: 50, penalty: 1e-7, is_early: false, has_one_mode: false },
+];
+
+struct Stage {
+    /// The epoch after which it ends, of [`EPOCHS`].
+    end: usize,
+    /// κ.
+    penalty: f64,
+    /// True if it sees only the beginnings of the records.
+    is_early: bool,
+    /// True if starts of one mode still have one.
+    has_one_mode: bool,
+}
 
 /// Epochs after which the penalty follows the error again.
 const EPOCHS_OF_PENALTY: usize = 20;
@@ -66,6 +81,9 @@ const EXPECTED_SQUARE: f64 = 9.0;
 
 /// First leaks along the path, in standard deviations of the displacement.
 const FIRST_LEAKS: (f64, f64) = (0.4, 4.0);
+
+/// First share of each displacement in what drives an element, where the input drives it.
+const SHARE_BESIDE_INPUT: f64 = 0.1;
 
 /// First thresholds of stops, in the same unit.
 const FIRST_THRESHOLDS: (f64, f64) = (0.1, 2.0);
@@ -129,15 +147,19 @@ pub(super) fn identify(
     data.check_identifiable(FEWEST_ROWS)?;
     let effort = Effort::of(options, STARTS, EPOCHS).validated()?;
     let records = Records::of(data)?;
-    let linear = linear_start::find(&records, asked, stop).ok_or(Error::Stopped)?;
+    let linear = LinearStarts::find(&records, asked, stop).ok_or(Error::Stopped)?;
     let layout = asked.layout();
-    let beginnings = |start| with_elements(&linear, asked, options.seed, start);
-    let template = beginnings(0);
-    let early = records.beginning();
-    let task = |drives| Task::new(&layout, &template, drives, stop);
-    let (early, whole) = (task(&early), task(&records.drives));
+    let beginning = |start| {
+        let kind = Kind::of(start, asked);
+        with_elements(linear.of(kind), asked, options.seed, start, kind, records.input_deviation())
+    };
+    let template = beginning(0);
+    let early = linear.begun(records.beginning());
+    let whole = linear.begun(records.drives.clone());
+    let task = |records| Task::new(&layout, &template, records, stop);
+    let (early, whole) = (task(&early), task(&whole));
 
-    let begin = |start: usize| Walk::new(&early, layout.parameters(&beginnings(start)));
+    let begin = |start: usize| Walk::new(&early, &beginning(start), Kind::of(start, asked));
     let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
     walks.sort();
     if walks.best().value().objective == f64::INFINITY {
@@ -171,26 +193,61 @@ pub(super) fn identify(
     })
 }
 
+/// What sets a start apart, beside its random weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Kind {
+    /// True if the elements are driven by the input, false if by the displacement: hysteresis of an actuator or of a
+    /// structure.
+    is_driven_by_input: bool,
+    /// True if only the first mode moves in the first stages. All modes together may end in a worse minimum than one
+    /// mode alone.
+    has_one_mode_first: bool,
+}
+
+impl Kind {
+    /// All kinds in turn; the second differs from the first in both.
+    fn of(start: usize, asked: &Asked) -> Self {
+        Self {
+            is_driven_by_input: asked.form == Form::StateSpace && start % 2 == 1,
+            has_one_mode_first: asked.modes > 1 && matches!(start % 4, 1 | 2),
+        }
+    }
+}
+
 /// A linear system with hysteretic elements whose forces are small, different for each start.
-fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> Dynamics {
+fn with_elements(
+    linear: &Dynamics,
+    asked: &Asked,
+    seed: u64,
+    start: usize,
+    kind: Kind,
+    input_deviation: f64,
+) -> Dynamics {
     let mut generator = generator(seed, start);
     let mut random =
         |count: usize, size: f64| -> Vec<f64> { (0..count).map(|_| size * normal(&mut generator)).collect() };
     let Asked { form, modes, elements, shape } = *asked;
     let Shape { stops, states, neurons, deteriorates } = shape;
     let mut element = |e: usize| {
-        let mut of_displacements = if modes == 1 { vec![1.0] } else { random(modes, 0.4) };
-        of_displacements[e % modes] = 1.0;
+        let mut compliances = if modes == 1 { vec![1.0] } else { random(modes, 0.4) };
+        compliances[e % modes] = 1.0;
+        let mut of_displacements = compliances.clone();
+        if kind.is_driven_by_input {
+            of_displacements.iter_mut().for_each(|share| *share *= SHARE_BESIDE_INPUT);
+        }
+        if kind.has_one_mode_first {
+            compliances[1..].fill(0.0);
+        }
         let of_velocities = if form == Form::StateSpace { random(modes, 0.1) } else { vec![0.0; modes] };
         let mut layer = random(shape.inputs() * neurons, 1.2 / (shape.inputs() as f64).sqrt());
         if deteriorates {
             layer[..neurons].fill(0.0);
         }
         Element {
-            compliances: of_displacements.clone(),
             of_displacements,
             of_velocities,
-            of_input: 0.0,
+            of_input: if kind.is_driven_by_input { 1.0 / input_deviation } else { 0.0 },
+            compliances,
             in_output: 0.0,
             thresholds: (0..stops).map(|i| spaced(FIRST_THRESHOLDS, i, stops)).collect(),
             stop_velocities: vec![0.0; stops],
@@ -208,6 +265,7 @@ fn with_elements(linear: &Dynamics, asked: &Asked, seed: u64, start: usize) -> D
 
 /// A start on its way.
 struct Walk {
+    kind: Kind,
     search: LevenbergMarquardt<Value>,
     stage: usize,
     /// True in the last stage, which alone may end the search.
@@ -218,9 +276,10 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(task: &Task<'_>, parameters: Vec<f64>) -> Self {
-        let search = LevenbergMarquardt::new(&task.with_penalty(STAGES[0].1), parameters);
-        Self { search, stage: 0, is_in_last: false, ended: None, earlier: 0 }
+    fn new(task: &Task<'_>, beginning: &Dynamics, kind: Kind) -> Self {
+        let search =
+            LevenbergMarquardt::new(&task.with_penalty(STAGES[0].penalty), task.parameters(beginning));
+        Self { kind, search, stage: 0, is_in_last: false, ended: None, earlier: 0 }
     }
 
     fn value(&self) -> &Value {
@@ -231,10 +290,12 @@ impl Walk {
     fn advance(&mut self, epoch: usize, epochs: usize, early: &Task<'_>, whole: &Task<'_>) {
         let stage = stage(epoch, epochs);
         self.is_in_last = stage == self::stage(epochs, epochs);
-        let is_early = STAGES.get(stage).is_some_and(|stage| stage.2);
-        let task = if is_early { early } else { whole };
-        let penalty = |mean_square: f64| match STAGES.get(stage) {
-            Some(&(_, penalty, _)) => penalty,
+        let known = STAGES.get(stage);
+        let task = if known.is_some_and(|stage| stage.is_early) { early } else { whole };
+        let has_one_mode = self.kind.has_one_mode_first && known.is_some_and(|stage| stage.has_one_mode);
+        let task = task.of_one_mode(has_one_mode);
+        let penalty = |mean_square: f64| match known {
+            Some(stage) => stage.penalty,
             None => mean_square / (EXPECTED_SQUARE * task.rows),
         };
         if stage != self.stage {
@@ -254,9 +315,9 @@ impl Walk {
 /// The stage of an epoch; fewer epochs than [`EPOCHS`] pass through all stages more quickly.
 fn stage(epoch: usize, epochs: usize) -> usize {
     let scaled = if epochs < EPOCHS { epoch * EPOCHS / epochs } else { epoch };
-    match STAGES.iter().position(|(end, ..)| scaled <= *end) {
+    match STAGES.iter().position(|stage| scaled <= stage.end) {
         Some(stage) => stage,
-        None => STAGES.len() + (scaled - STAGES[STAGES.len() - 1].0) / EPOCHS_OF_PENALTY,
+        None => STAGES.len() + (scaled - STAGES[STAGES.len() - 1].end) / EPOCHS_OF_PENALTY,
     }
 }
 

@@ -3,9 +3,9 @@
 
 use rayon::prelude::*;
 
-use super::Asked;
 use super::records::Records;
-use super::task::{Task, Value};
+use super::task::{Begun, Task, Value};
+use super::{Asked, Kind};
 use crate::law::hysteretic_dynamics::{
     DAMPING_RATIOS, Drive, Dynamics, Form, Hold, Layout, Mode, Run, Shape,
 };
@@ -40,11 +40,56 @@ const OF_RANDOM_SEQUENCE: f64 = 70.0;
 /// Rows at most that tell how a motion began.
 const MOST_FIRST_ROWS: f64 = 1000.0;
 
+/// Distance of the first rows from a motion from rest, in standard deviations of the output, up to which a record
+/// begins at rest.
+const LEAST_MOTION: f64 = 0.1;
+
 /// A small penalty that keeps coefficients without influence at 0.
 const RIDGE: f64 = 1e-10;
 
-/// The linear system; `None` once stopped.
-pub(super) fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<Dynamics> {
+/// The linear systems that starts begin with, and how each record begins.
+pub(super) struct LinearStarts {
+    all_modes: Dynamics,
+    /// One mode that moves, and the others, which do not.
+    one_mode: Dynamics,
+    are_in_motion: Vec<bool>,
+}
+
+impl LinearStarts {
+    /// `None` once stopped.
+    pub fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<Self> {
+        let (all_modes, are_in_motion) = find(records, asked, stop)?;
+        let mut one_mode = all_modes.clone();
+        if asked.modes > 1 {
+            one_mode = find(records, &Asked { modes: 1, ..*asked }, stop)?.0;
+            let first = one_mode.modes[0].frequency.ln();
+            // The mode that is nearest to it is left out.
+            let distance = |mode: &Mode| (mode.frequency.ln() - first).abs();
+            let mut others = all_modes.modes.clone();
+            others.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            one_mode.modes.extend(others[1..].iter().map(|mode| Mode { gain: 0.0, ..*mode }));
+        }
+        Some(Self { all_modes, one_mode, are_in_motion })
+    }
+
+    /// The system that a start of this kind begins with.
+    pub fn of(&self, kind: Kind) -> &Dynamics {
+        if kind.has_one_mode_first { &self.one_mode } else { &self.all_modes }
+    }
+
+    /// Records with how they begin.
+    pub fn begun(&self, drives: Vec<Drive>) -> Vec<Begun> {
+        begun(drives, &self.are_in_motion)
+    }
+}
+
+fn begun(drives: Vec<Drive>, are_in_motion: &[bool]) -> Vec<Begun> {
+    let records = drives.into_iter().zip(are_in_motion);
+    records.map(|(drive, &is_in_motion)| Begun { drive, is_in_motion }).collect()
+}
+
+/// The linear system, and which records begin in mid-motion; `None` once stopped.
+fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<(Dynamics, Vec<bool>)> {
     let holds: &[Hold] =
         if is_smooth(&records.drives) { &[Hold::Cubic] } else { &[Hold::Linear, Hold::Constant] };
     let rows: usize = records.drives.iter().map(|drive| drive.x.len()).sum();
@@ -60,17 +105,18 @@ pub(super) fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Opt
         modes: Vec::new(),
         elements: Vec::new(),
     };
+    // Until it is known how the records begin, all may be in motion.
+    let few = begun(few, &vec![true; records.drives.len()]);
     for _ in 0..asked.modes {
         system.modes.push(best_of_grid(&system, &few, records, asked, stop)?);
         system = improved(system, asked, &few, stop)?.0;
     }
-    let fastest = system.modes.iter().filter(|mode| mode.damping < 1.0).map(|mode| mode.frequency);
-    let fastest = fastest.fold(0.0, f64::max);
-    if fastest > 0.0 {
-        system.longest_step = std::f64::consts::TAU / (STEPS_PER_PERIOD * fastest);
-    } else {
-        system.longest_step = records.step;
-    }
+    let vibrating = system.modes.iter().filter(|mode| mode.damping < 1.0);
+    let fastest = vibrating.map(|mode| mode.frequency).fold(0.0, f64::max);
+    system.longest_step = match fastest > 0.0 {
+        true => std::f64::consts::TAU / (STEPS_PER_PERIOD * fastest),
+        false => records.step,
+    };
     let mut best: Option<(Dynamics, f64)> = None;
     for &hold in holds {
         let found = improved(Dynamics { hold, ..system.clone() }, asked, &few, stop)?;
@@ -78,18 +124,40 @@ pub(super) fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Opt
             best = Some(found);
         }
     }
-    let at_rest = best?.0;
+    let (at_rest, half_square) = best?;
     let under_input = Dynamics { begins_under_input: true, ..at_rest.clone() };
     let first = records.first_rows(first_rows(&at_rest, records.step));
-    let square = |dynamics: &Dynamics| Run { dynamics, drives: &first, stop }.half_square();
+    let square = |dynamics: &Dynamics| Run { dynamics, drives: &first, beginnings: &[], stop }.half_square();
     let begins = if square(&under_input)? < square(&at_rest)? { under_input } else { at_rest };
-    improved(begins, asked, &records.drives, stop).map(|found| found.0)
+    let are_in_motion = are_in_motion(&begins, records, (2.0 * half_square).sqrt(), stop)?;
+    let (system, _) = improved(begins, asked, &begun(records.drives.clone(), &are_in_motion), stop)?;
+    Some((system, are_in_motion))
+}
+
+/// Which records begin in mid-motion: those whose first rows are further from a motion from rest than the linear system
+/// is from the records, whose error is given; `None` once stopped.
+fn are_in_motion(system: &Dynamics, records: &Records, error: f64, stop: StopCheck<'_>) -> Option<Vec<bool>> {
+    let vibrating = system.modes.iter().filter(|mode| mode.damping < 1.0);
+    let slowest = vibrating.map(|mode| mode.frequency).fold(f64::INFINITY, f64::min);
+    let rows = match slowest.is_finite() {
+        true => rows_of_quarter(slowest, records.step),
+        false => first_rows(system, records.step),
+    };
+    let of_record = |drive: &Drive| {
+        let run = Run { dynamics: system, drives: std::slice::from_ref(drive), beginnings: &[], stop };
+        let mean_square = 2.0 * run.half_square()? / drive.rows().max(1.0);
+        Some(mean_square.sqrt() > error.max(LEAST_MOTION))
+    };
+    records.first_rows(rows).iter().map(of_record).collect()
 }
 
 /// Rows of a quarter of a period, in which a motion is still as it began.
 fn first_rows(system: &Dynamics, step: f64) -> usize {
-    let fastest = system.modes.iter().map(|mode| mode.frequency).fold(0.0, f64::max);
-    let quarter = 0.25 * std::f64::consts::TAU / (fastest * step);
+    rows_of_quarter(system.modes.iter().map(|mode| mode.frequency).fold(0.0, f64::max), step)
+}
+
+fn rows_of_quarter(frequency: f64, step: f64) -> usize {
+    let quarter = 0.25 * std::f64::consts::TAU / (frequency * step);
     quarter.clamp(2.0, MOST_FIRST_ROWS).ceil() as usize
 }
 
@@ -109,11 +177,12 @@ fn is_smooth(drives: &[Drive]) -> bool {
 /// The mode that lowers the error most beside those that there are.
 fn best_of_grid(
     system: &Dynamics,
-    drives: &[Drive],
+    few: &[Begun],
     records: &Records,
     asked: &Asked,
     stop: StopCheck<'_>,
 ) -> Option<Mode> {
+    let drives: Vec<Drive> = few.iter().map(|record| record.drive.clone()).collect();
     let longest = drives.iter().map(|drive| drive.steps.iter().filter(|step| step.is_finite()).sum::<f64>());
     let lowest = std::f64::consts::TAU / longest.fold(records.step, f64::max);
     let highest = std::f64::consts::TAU * HIGHEST / records.step;
@@ -129,7 +198,7 @@ fn best_of_grid(
     let of_point = |&(frequency, damping): &(f64, f64)| {
         let mut tried = system.clone();
         tried.modes.push(Mode { frequency, damping, gain: 1.0, velocity_in_output: 0.0 });
-        let run = Run { dynamics: &tried, drives, stop };
+        let run = Run { dynamics: &tried, drives: &drives, beginnings: &[], stop };
         let (square, gain, velocity) = linear_part(&run.gram(&layout)?, &layout)?;
         Some((square, Mode { gain, velocity_in_output: velocity, ..tried.modes[system.modes.len()] }))
     };
@@ -168,7 +237,7 @@ fn linear_part(gram: &Gram, layout: &Layout) -> Option<(f64, f64, f64)> {
 fn improved(
     system: Dynamics,
     asked: &Asked,
-    drives: &[Drive],
+    records: &[Begun],
     stop: StopCheck<'_>,
 ) -> Option<(Dynamics, f64)> {
     let mut system = system;
@@ -176,8 +245,8 @@ fn improved(
         mode.damping = mode.damping.clamp(DAMPING_RATIOS.0, DAMPING_RATIOS.1);
     }
     let layout = Layout::new(asked.form, system.modes.len(), 0, NO_ELEMENT);
-    let task = Task::new(&layout, &system, drives, stop);
-    let mut search: LevenbergMarquardt<Value> = LevenbergMarquardt::new(&task, layout.parameters(&system));
+    let task = Task::new(&layout, &system, records, stop);
+    let mut search: LevenbergMarquardt<Value> = LevenbergMarquardt::new(&task, task.parameters(&system));
     for _ in 0..EPOCHS {
         if search.advance(&task).is_some() {
             break;

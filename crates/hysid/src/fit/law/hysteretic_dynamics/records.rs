@@ -59,6 +59,12 @@ impl Records {
         Ok(Self { drives, input_scale, output_mean, output_scale, step })
     }
 
+    /// Standard deviation of the scaled input.
+    pub fn input_deviation(&self) -> f64 {
+        let inputs = self.drives.iter().flat_map(|drive| drive.x.iter().map(|x| x / self.input_scale));
+        spread(&inputs.collect::<Vec<f64>>()).1
+    }
+
     /// The beginnings of the records.
     pub fn beginning(&self) -> Vec<Drive> {
         let rows: usize = self.drives.iter().map(|drive| drive.x.len()).sum();

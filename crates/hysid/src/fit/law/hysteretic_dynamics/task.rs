@@ -1,8 +1,12 @@
 //! What a start is trained on: the error of the free run over records, with a penalty on weights.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::error::LARGEST_VALUE;
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Drive, Dynamics, LARGEST_WEIGHT, Layout, Run};
-use crate::linear_algebra::Symmetric;
+use crate::linear_algebra::{Gram, Symmetric};
 use crate::optimise::levenberg_marquardt::{Problem, Rules, Slope, step_within};
 use crate::stop_check::StopCheck;
 
@@ -13,17 +17,28 @@ const PATH_LEAKS: (f64, f64) = (0.13, 1e3);
 /// A model may change its frequencies by this factor.
 const LARGEST_SHIFT: f64 = 30.0;
 
-/// Records, and the parameters that are searched.
+/// Records, and the parameters that are searched: those of the model, and then of each record that begins in
+/// mid-motion the displacements and velocities of the modes at its first row.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub layout: &'a Layout,
     /// What is not searched.
     pub template: &'a Dynamics,
-    pub drives: &'a [Drive],
+    pub records: &'a [Begun],
     /// `N`.
     pub rows: f64,
     penalty: f64,
+    /// True while only the first mode moves: what excites the others is 0 and stays so.
+    is_of_one_mode: bool,
     stop: StopCheck<'a>,
+}
+
+/// A record, and how it begins.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Begun {
+    pub drive: Drive,
+    /// True in mid-motion, false at rest.
+    pub is_in_motion: bool,
 }
 
 /// The objective at a point; infinite if it was broken off.
@@ -42,28 +57,65 @@ impl Value {
 }
 
 impl<'a> Task<'a> {
-    pub fn new(layout: &'a Layout, template: &'a Dynamics, drives: &'a [Drive], stop: StopCheck<'a>) -> Self {
-        let rows = |drive: &Drive| -> f64 {
-            let compared = drive.targets.iter().zip(&drive.weights).filter(|(target, _)| !target.is_nan());
-            compared.map(|(_, weight)| weight * weight).sum()
-        };
-        let rows = drives.iter().map(rows).sum::<f64>().max(1.0);
-        Self { layout, template, drives, rows, penalty: 0.0, stop }
+    pub fn new(
+        layout: &'a Layout,
+        template: &'a Dynamics,
+        records: &'a [Begun],
+        stop: StopCheck<'a>,
+    ) -> Self {
+        let rows = records.iter().map(|record| record.drive.rows()).sum::<f64>().max(1.0);
+        Self { layout, template, records, rows, penalty: 0.0, is_of_one_mode: false, stop }
     }
 
     pub fn with_penalty(self, penalty: f64) -> Self {
         Self { penalty, ..self }
     }
 
+    pub fn of_one_mode(self, is_of_one_mode: bool) -> Self {
+        Self { is_of_one_mode, ..self }
+    }
+
+    /// The parameters of a model, with the modes at rest at the first row of each record.
+    pub fn parameters(&self, dynamics: &Dynamics) -> Vec<f64> {
+        let mut parameters = self.layout.parameters(dynamics);
+        parameters.resize(self.count(), 0.0);
+        parameters
+    }
+
     /// Mean square of the scaled error; `None` once stopped.
     pub fn mean_square(&self, parameters: &[f64]) -> Option<f64> {
         let dynamics = self.layout.dynamics(parameters, self.template);
-        let run = Run { dynamics: &dynamics, drives: self.drives, stop: self.stop };
-        run.half_square().map(|half| 2.0 * half / self.rows)
+        let runs = self.runs(&dynamics, parameters);
+        let halves: Vec<f64> =
+            runs.into_par_iter().map(|(run, _)| run.half_square()).collect::<Option<_>>()?;
+        Some(2.0 * halves.iter().sum::<f64>() / self.rows)
     }
 
+    /// A run over each record, and where its own parameters are.
+    fn runs<'r>(&'r self, dynamics: &'r Dynamics, parameters: &'r [f64]) -> Vec<(Run<'r>, Range<usize>)> {
+        let mut end = self.layout.count();
+        let run = |record: &'r Begun| {
+            let own = end..end + if record.is_in_motion { self.per_motion() } else { 0 };
+            end = own.end;
+            let drives = std::slice::from_ref(&record.drive);
+            (Run { dynamics, drives, beginnings: &parameters[own.clone()], stop: self.stop }, own)
+        };
+        self.records.iter().map(run).collect()
+    }
+
+    fn per_motion(&self) -> usize {
+        2 * self.layout.modes.len()
+    }
+
+    fn count(&self) -> usize {
+        let in_motion = self.records.iter().filter(|record| record.is_in_motion).count();
+        self.layout.count() + in_motion * self.per_motion()
+    }
+
+    /// Weights of the elements, and how records begin.
     fn penalised(&self) -> impl Iterator<Item = usize> {
-        (0..self.layout.count()).filter(|&index| self.layout.has_decay(index))
+        let of_model = self.layout.count();
+        (0..self.count()).filter(move |&index| index >= of_model || self.layout.has_decay(index))
     }
 
     fn bounds(&self, index: usize) -> (f64, f64) {
@@ -107,11 +159,25 @@ impl Problem for Task<'_> {
 
     fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
         let dynamics = self.layout.dynamics(parameters, self.template);
-        let run = Run { dynamics: &dynamics, drives: self.drives, stop: self.stop };
-        let gram = run.gram(self.layout)?;
-        let count = self.layout.count();
-        let mut gradient: Vec<f64> = (0..count).map(|i| gram.at(count, i) / self.rows).collect();
-        let mut curvature = Symmetric::from_fn(count, |i, j| gram.at(i, j) / self.rows);
+        let in_motion = self.layout.with_beginning();
+        let (of_model, count) = (self.layout.count(), self.count());
+        let of_record = |(run, own): (Run<'_>, Range<usize>)| {
+            let layout = if own.is_empty() { self.layout } else { &in_motion };
+            run.gram(layout).map(|gram| (gram, own))
+        };
+        let runs = self.runs(&dynamics, parameters).into_par_iter();
+        let grams: Vec<(Gram, Range<usize>)> = runs.map(of_record).collect::<Option<_>>()?;
+        let mut gradient = vec![0.0; count];
+        let mut curvature = Symmetric::from_fn(count, |_, _| 0.0);
+        for (gram, own) in &grams {
+            let places: Vec<usize> = (0..of_model).chain(own.clone()).collect();
+            for (i, &place) in places.iter().enumerate() {
+                gradient[place] += gram.at(places.len(), i) / self.rows;
+                for (j, &other) in places[..=i].iter().enumerate() {
+                    curvature.add_at(place, other, gram.at(i, j) / self.rows);
+                }
+            }
+        }
         for index in self.penalised() {
             gradient[index] += self.penalty * parameters[index];
             curvature.add_to_diagonal(index, self.penalty);
@@ -122,6 +188,9 @@ impl Problem for Task<'_> {
 
     fn step(&self, slope: &Slope<Symmetric>, parameters: &[f64], damping: &[f64]) -> Option<Vec<f64>> {
         let leaves = |i: usize, by: f64| {
+            if self.is_of_one_mode && self.layout.excites_later_modes(i) {
+                return true;
+            }
             let (low, high) = self.bounds(i);
             parameters[i] <= low && by < 0.0 || parameters[i] >= high && by > 0.0
         };
