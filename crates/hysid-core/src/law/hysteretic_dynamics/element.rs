@@ -108,9 +108,9 @@ impl Element {
     }
 }
 
-/// An element at a point of its path.
+/// An element at a point of its path: displacement, velocity, memory and force.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PathPoint {
     /// `1, δ, ν, z, s`.
     pub inputs: Vec<f64>,
     pub neurons: Vec<f64>,
@@ -120,10 +120,10 @@ pub(super) struct Place {
     pub slips: Vec<f64>,
 }
 
-/// A way from one place to another, with what its derivatives need.
+/// A step of an element along its path, from one point to another, with what its derivatives need.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
-    pub to: Place,
+pub(super) struct PathStep {
+    pub end: PathPoint,
     /// The inputs of the layer for `T_1`, and the neurons there.
     pub inputs_ahead: Vec<f64>,
     pub neurons_ahead: Vec<f64>,
@@ -171,7 +171,7 @@ impl StateWeights {
     }
 }
 
-impl Place {
+impl PathPoint {
     fn zero(shape: Shape) -> Self {
         Self {
             inputs: vec![0.0; shape.inputs()],
@@ -185,10 +185,10 @@ impl Place {
     /// Where an element is before the first sample, without its force.
     pub fn virgin(element: &Element) -> Self {
         let shape = element.shape();
-        let mut place = Self::zero(shape);
-        place.inputs[0] = 1.0;
-        place.inputs[shape.first_state()..].copy_from_slice(&element.initial);
-        place
+        let mut point = Self::zero(shape);
+        point.inputs[0] = 1.0;
+        point.inputs[shape.first_state()..].copy_from_slice(&element.initial);
+        point
     }
 
     /// Neurons and force from the inputs of the layer.
@@ -208,38 +208,38 @@ impl Place {
     }
 }
 
-impl Way {
+impl PathStep {
     pub fn new(element: &Element) -> Self {
         let shape = element.shape();
-        let to = Place::zero(shape);
+        let end = PathPoint::zero(shape);
         Self {
-            inputs_ahead: to.inputs.clone(),
-            neurons_ahead: to.neurons.clone(),
+            inputs_ahead: end.inputs.clone(),
+            neurons_ahead: end.neurons.clone(),
             targets: vec![0.0; shape.states],
             targets_ahead: vec![0.0; shape.states],
             weights: vec![StateWeights::default(); shape.states],
             moved: 0.0,
             at_threshold: vec![0.0; shape.stops],
             strengths: vec![1.0; shape.stops],
-            to,
+            end,
         }
     }
 
-    /// The weights of the targets in the direction of this way.
+    /// The weights of the targets in the direction of this step.
     #[inline(always)]
     pub fn targets_of<'e>(&self, element: &'e Element) -> &'e [f64] {
         if self.moved < 0.0 { &element.falling } else { &element.rising }
     }
 
-    /// The way to a displacement and velocity.
+    /// Takes the step from a point to a displacement and velocity.
     #[inline(always)]
-    pub fn go<S: Simd>(&mut self, element: &Element, from: &Place, displacement: f64, velocity: f64) {
+    pub fn take<S: Simd>(&mut self, element: &Element, from: &PathPoint, displacement: f64, velocity: f64) {
         let shape = element.shape();
         let (stops, first_state) = (shape.stops, shape.first_state());
         self.moved = displacement - from.inputs[1];
         let rows = self.targets_of(element);
         let path = self.moved.abs();
-        let Place { inputs, elongations, slips, .. } = &mut self.to;
+        let PathPoint { inputs, elongations, slips, .. } = &mut self.end;
         (inputs[0], inputs[1], inputs[2]) = (1.0, displacement, velocity);
         let of_velocity = velocity - from.inputs[2];
         for i in 0..stops {
@@ -253,7 +253,7 @@ impl Way {
             self.at_threshold[i] = if elongation == free { 0.0 } else { elongation };
             inputs[3 + i] = elongation * self.strengths[i];
         }
-        let inputs = &mut self.to.inputs;
+        let inputs = &mut self.end.inputs;
         self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let weights = StateWeights::of::<S>(element.path_leaks[i] * path);
@@ -267,9 +267,9 @@ impl Way {
             let StateWeights { kept, first, last, .. } = self.weights[i];
             let ahead = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &self.neurons_ahead);
             self.targets_ahead[i] = ahead;
-            self.to.inputs[first_state + i] =
+            self.end.inputs[first_state + i] =
                 multiply_add::<S>(kept, *before, multiply_add::<S>(first, self.targets[i], last * ahead));
         }
-        self.to.finish::<S>(element);
+        self.end.finish::<S>(element);
     }
 }
