@@ -1,21 +1,21 @@
 //! A hysteretic element: a force that depends on the path of a displacement.
 //!
 //! ```text
-//! a_i   = δ + τ_i ν,   f_i = e_i,0 + a_i - a_i,0,   e_i = max(-ρ_i, min(ρ_i, f_i))
-//! S_i   = S_i,0 + |f_i - e_i|,   z_i = e_i max(0, 1 - λ_i S_i)                 theory.md (15.6)
-//! h     = tanh(A [1, δ, ν, z, s])                                              theory.md (15.7)
-//! T     = W↑ h  where δ rises,  W↓ h  where it falls                           theory.md (15.8)
-//! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   l = c |δ - δ_0|                         theory.md (15.9)
-//! a = e^-l,   w_1 = 1 - (1 - a)/l,   w_0 = 1 - a - w_1
-//! r     = v [z, s, h]                                                          theory.md (15.10)
+//! ε̂_i = ε_i,0 + δ - δ_0 + τ_i (ν - ν_0),   ε_i = max(-ρ_i, min(ρ_i, ε̂_i))
+//! Λ_i = Λ_i,0 + |ε̂_i - ε_i|,   z_i = ε_i max(0, 1 - λ_i Λ_i)                   theory.md (15.6)
+//! φ   = tanh(A [1, δ, ν, z, s])                                                theory.md (15.7)
+//! T   = W↑ φ  where δ rises,  W↓ φ  where it falls                             theory.md (15.8)
+//! s   = χ s_0 + w_0 T_0 + w_1 T_1,   l = γ |δ - δ_0|                           theory.md (15.9)
+//! χ   = exp(-l),   w_1 = 1 - (1 - χ)/l,   w_0 = 1 - χ - w_1
+//! r   = v [z, s, φ]                                                            theory.md (15.10)
 //! ```
 //!
-//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `r` its force; `e` is the elongation of
-//! a stop, `S` its slip, `z` its output, `s` a state and `h` a tanh neuron. Index 0 is the beginning of the step. A stop
-//! is driven by displacement and velocity and deteriorates as it slips, as the
-//! [deteriorating stop](crate::operator::deteriorating_stop) does. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
-//! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
-//! to 1, so a state stays among its targets whatever the step.
+//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `r` its force; `ε` is the elongation of
+//! a stop, `ε̂` the one that it would have without its threshold, `Λ` its slip, `z` its output, `s` a state and `φ` a
+//! tanh neuron. Index 0 is the beginning of the step. A stop is driven by displacement and velocity and deteriorates as
+//! it slips, as the [deteriorating stop](crate::operator::deteriorating_stop) does. (15.9) integrates
+//! `ds/d|δ| = γ (T - s)` to second order: `T_1` is taken at the end of the step, with the states that follow from `T_0`
+//! alone. The weights are not negative and sum to 1, so a state stays among its targets whatever the step.
 
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
@@ -29,15 +29,15 @@ use crate::simd::multiply_add;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Element {
-    /// How the displacement of the element follows from the displacement of each mode.
+    /// `D`: how the displacement of the element follows from the displacement of each mode.
     pub of_displacements: Vec<f64>,
-    /// How it follows from the velocity of each mode.
+    /// `V`: how it follows from the velocity of each mode.
     pub of_velocities: Vec<f64>,
-    /// How it follows from the input.
+    /// `U`: how it follows from the input.
     pub of_input: f64,
-    /// Displacement of each mode at rest under a unit force of the element.
+    /// `g`: displacement of each mode at rest under a unit force of the element.
     pub compliances: Vec<f64>,
-    /// Share of the force in the output.
+    /// `μ`: share of the force in the output.
     pub in_output: f64,
     /// `ρ > 0`: thresholds of the stops.
     pub thresholds: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Element {
     pub rising: Vec<f64>,
     /// `W↓`, in the same form.
     pub falling: Vec<f64>,
-    /// `c > 0` of each state: its leak along the path.
+    /// `γ > 0` of each state: its leak along the path.
     pub path_leaks: Vec<f64>,
     /// States before the first sample.
     pub initial: Vec<f64>,
@@ -115,7 +115,7 @@ pub(super) struct PathPoint {
     pub inputs: Vec<f64>,
     pub neurons: Vec<f64>,
     pub force: f64,
-    /// `e` and `S` of each stop.
+    /// `ε` and `Λ` of each stop.
     pub elongations: Vec<f64>,
     pub slips: Vec<f64>,
 }
@@ -129,13 +129,13 @@ pub(super) struct PathStep {
     pub neurons_ahead: Vec<f64>,
     pub targets: Vec<f64>,
     pub targets_ahead: Vec<f64>,
-    /// `l`, `a`, `w_0` and `w_1` of each state.
+    /// `l`, `χ`, `w_0` and `w_1` of each state.
     pub weights: Vec<StateWeights>,
     /// `δ - δ_0`.
     pub moved: f64,
     /// Of each stop that ends at its threshold its elongation, otherwise 0.
     pub at_threshold: Vec<f64>,
-    /// `max(0, 1 - λ S)` of each stop.
+    /// `max(0, 1 - λ Λ)` of each stop.
     pub strengths: Vec<f64>,
 }
 

@@ -505,8 +505,8 @@ impl OfElement {
         let first_free = element.shape().first_free_input();
         let memory = point.inputs.len() - 3;
         let (of_memory, of_neurons) = element.force.split_at(memory);
-        for ((back, weight), h) in back.iter_mut().zip(of_neurons).zip(&point.neurons) {
-            *back = weight * (1.0 - h * h);
+        for ((back, weight), phi) in back.iter_mut().zip(of_neurons).zip(&point.neurons) {
+            *back = weight * (1.0 - phi * phi);
         }
         through_layer::<S>(element, back, by_inputs);
         let local = &mut self.of_force;
@@ -575,12 +575,13 @@ impl Ends<'_> {
         row.fill(0.0);
 
         // T_1, taken with the states ahead.
-        for ((back, weight), h) in back_ahead.iter_mut().zip(&rows[k * neurons..]).zip(&step.neurons_ahead) {
-            *back = last * weight * (1.0 - h * h);
+        for ((back, weight), phi) in back_ahead.iter_mut().zip(&rows[k * neurons..]).zip(&step.neurons_ahead)
+        {
+            *back = last * weight * (1.0 - phi * phi);
         }
         through_layer::<S>(element, back_ahead, by_inputs);
-        for (to, h) in row[of_targets + k * neurons..].iter_mut().zip(&step.neurons_ahead) {
-            *to += last * h;
+        for (to, phi) in row[of_targets + k * neurons..].iter_mut().zip(&step.neurons_ahead) {
+            *to += last * phi;
         }
         add_of_layer(&step.inputs_ahead[first_free..], back_ahead, &mut row[layout.layer.clone()]);
         (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
@@ -612,9 +613,9 @@ impl Ends<'_> {
         for (j, on_target) in on_targets.iter().enumerate() {
             let own = rows[j * neurons..].iter().zip(&from.neurons);
             let places = row[of_targets + j * neurons..].iter_mut();
-            for ((back, to), (weight, h)) in back.iter_mut().zip(places).zip(own) {
-                *back += on_target * weight * (1.0 - h * h);
-                *to += on_target * h;
+            for ((back, to), (weight, phi)) in back.iter_mut().zip(places).zip(own) {
+                *back += on_target * weight * (1.0 - phi * phi);
+                *to += on_target * phi;
             }
         }
         through_layer::<S>(element, back, by_inputs);

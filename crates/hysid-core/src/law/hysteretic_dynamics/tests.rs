@@ -341,7 +341,7 @@ fn what_does_not_fit_together_is_refused() {
         ("go together", |d| d.elements[0].compliances.clear()),
         ("ζ_1", |d| d.modes[0].damping = -0.1),
         ("ω_2", |d| d.modes[1].frequency = f64::NAN),
-        ("c_1,1", |d| d.elements[0].path_leaks[0] = 0.0),
+        ("γ_1,1", |d| d.elements[0].path_leaks[0] = 0.0),
     ];
     for (words, change) in broken {
         let mut changed = sound.clone();

@@ -41,7 +41,7 @@ pub struct Motion {
     pub(super) points: Vec<PathPoint>,
     /// The last step of each element.
     pub(super) path_steps: Vec<PathStep>,
-    /// Forces of the elements at the beginning and at the end of the last step, as the modes feel them.
+    /// Forces of the elements at the beginning and at the end of the last step, as they act on the modes.
     pub(super) forces_before: Vec<f64>,
     pub(super) forces: Vec<f64>,
     /// Bounds of the forces.

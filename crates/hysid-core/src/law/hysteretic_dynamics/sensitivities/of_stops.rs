@@ -9,13 +9,13 @@ use crate::law::hysteretic_dynamics::Shape;
 pub(super) struct OfStops {
     width: usize,
     deteriorates: bool,
-    /// `∂e` and `∂S` where a step begins. Slips count only for stops that deteriorate.
+    /// `∂ε` and `∂Λ` where a step begins. Slips count only for stops that deteriorate.
     elongations: Vec<f64>,
     slips: Vec<f64>,
     /// The same at its end, without those of `δ` and `ν` there.
     elongations_ahead: Vec<f64>,
     slips_ahead: Vec<f64>,
-    /// By `δ` and `ν` at the end: of `e`, of `S` and of the output `z`.
+    /// By `δ` and `ν` at the end: of `ε`, of `Λ` and of the output `z`.
     by_end_of_elongations: Vec<[f64; 2]>,
     by_end_of_slips: Vec<[f64; 2]>,
     pub outputs: Vec<[f64; 2]>,
@@ -55,7 +55,7 @@ impl OfStops {
             let rows = i * width..(i + 1) * width;
             let (elongation, threshold) = (&mut self.elongations_ahead[rows.clone()], element.thresholds[i]);
             let (of_velocity, at_threshold) = (element.stop_velocities[i], step.at_threshold[i]);
-            // ∂f
+            // ∂ε̂
             elongation.copy_from_slice(&self.elongations[rows.clone()]);
             add_multiple::<S>(elongation, -1.0, displacement);
             add_multiple::<S>(elongation, -of_velocity, velocity);
@@ -64,7 +64,7 @@ impl OfStops {
             self.by_end_of_elongations[i] = of_free;
             let sign = if at_threshold == 0.0 { 0.0 } else { at_threshold.signum() };
             if self.deteriorates {
-                // S moves by |f| - ρ where the stop slips.
+                // Λ moves by |ε̂| - ρ where the stop slips.
                 let slip = &mut self.slips_ahead[rows.clone()];
                 slip.copy_from_slice(&self.slips[rows.clone()]);
                 if sign != 0.0 {

@@ -23,7 +23,7 @@ struct StopParts {
     velocities: Array,
     /// Those of stops that deteriorate.
     strength_losses: Option<Array>,
-    /// All `e`, then all `S` of stops that deteriorate, where the element is and where it goes.
+    /// All `ε`, then all `Λ` of stops that deteriorate, where the element is and where it goes.
     point: Array,
     ahead: Array,
     length: usize,
@@ -68,7 +68,7 @@ pub(super) struct ElementParts<'l> {
     /// `1, δ, ν, z, s` and the neurons, where it goes.
     inputs: Array,
     neurons: Array,
-    /// `a`, `w_0`, `w_1` and `T_0` of each state, in the step from one to the other.
+    /// `χ`, `w_0`, `w_1` and `T_0` of each state, in the step from one to the other.
     path_step: Array,
     sums: Array,
     /// The force of each element.
