@@ -159,10 +159,9 @@ impl<'a> Section<'a> {
         ]);
         for line in &self.lines {
             let peak = line.response.peak();
+            let known = peak.zip(line.response.peak_resolution());
             let resonance =
-                peak.zip(line.response.peak_resolution()).map_or(Cell::Missing, |(peak, resolution)| {
-                    Cell::number(peak.frequency, digits(peak.frequency, resolution))
-                });
+                known.map_or(Cell::Missing, |(peak, resolution)| resolved(peak.frequency, resolution));
             table.push([
                 line.name.as_str().into(),
                 Cell::number(line.input_deviation, 3),
@@ -208,10 +207,13 @@ impl<'a> Section<'a> {
     }
 }
 
-/// Significant digits of a value that is known to a resolution: the last one has the size of the resolution.
-fn digits(value: f64, resolution: f64) -> u8 {
+/// A positive value that is known to a resolution, with the digits that this supports: the last one has the size of the
+/// resolution.
+fn resolved(value: f64, resolution: f64) -> Cell {
     let size = |number: f64| number.log10().floor();
-    (size(value) - size(resolution) + 1.0).clamp(1.0, MOST_DIGITS) as u8
+    let digits = (size(value) - size(resolution) + 1.0).clamp(1.0, MOST_DIGITS);
+    let unit = 10f64.powf(size(value) + 1.0 - digits);
+    Cell::number(unit * (value / unit).round(), digits as u8)
 }
 
 fn model_name(at: &AtAmplitude, input: &str) -> String {
@@ -269,11 +271,13 @@ mod tests {
             (38.62, 1.5, "39"),
             (38.62, 0.1, "38.6"),
             (0.15912, 0.0027, "0.159"),
-            (1234.0, 5.0, "1234"),
+            (1234.4, 5.0, "1234"),
+            (1234.4, 20.0, "1230"),
+            (99.97, 0.3, "100"),
             (38.62, 60.0, "40"),
             (38.625, 1e-9, "38.625"),
         ] {
-            assert_eq!(number(value, digits(value, resolution).into()), expected, "{value} ± {resolution}");
+            assert_eq!(resolved(value, resolution).shown(), expected, "{value} ± {resolution}");
         }
     }
 }
