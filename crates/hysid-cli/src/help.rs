@@ -10,8 +10,12 @@ use crate::messages::Usage;
 
 /// The help of the command that was typed, or of the program if no command is recognised.
 pub fn of_typed_command() -> String {
-    let typed = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
-    of_command(typed)
+    of_command(typed())
+}
+
+/// The arguments of the program as they were typed.
+fn typed() -> impl Iterator<Item = String> {
+    std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned())
 }
 
 /// The help of the command that these arguments of the program name. No option before the command takes a value.
@@ -22,6 +26,33 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
         Some(command) => format!("hysid {} --help", command.get_name()),
         None => "hysid --help".into(),
     }
+}
+
+/// What helps if a value was typed after `--force` of `hysid force`, which takes none: it may be a column.
+pub fn hint_of_force() -> Option<String> {
+    value_of_force(typed()).map(|column| applied_force(&column))
+}
+
+/// The same if that value was taken for the table, which cannot be read.
+fn hint_of_unread_force(error: &str, typed: impl IntoIterator<Item = String>) -> Option<String> {
+    let column = value_of_force(typed)?;
+    error.starts_with(&format!("{column}: cannot be read")).then(|| applied_force(&column))
+}
+
+/// What was typed after `--force` of `hysid force`.
+fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
+    let mut typed = typed.into_iter().skip_while(|argument| argument.starts_with('-'));
+    typed.next().filter(|command| command == "force")?;
+    let mut rest = typed.skip_while(|argument| argument != "--force" && !argument.starts_with("--force="));
+    match rest.next()?.strip_prefix("--force=") {
+        Some(value) => Some(value.to_string()),
+        None => rest.next().filter(|value| !value.starts_with('-')),
+    }
+}
+
+fn applied_force(column: &str) -> String {
+    let column = shown(Path::new(column));
+    format!("--force replaces files; a column with the applied force is named by --applied-force {column}")
 }
 
 /// What follows an error of a command that names neither an option nor a command that helps: where its options are
@@ -37,8 +68,10 @@ pub fn pointer(error: &anyhow::Error) -> String {
         // In parentheses, the error says itself what helps.
         None if text.ends_with(')') => String::new(),
         None => {
-            let typed = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
-            look_at(&text, typed).map_or_else(String::new, |look| format!(" (see `{look}`)"))
+            if let Some(hint) = hint_of_unread_force(&text, typed()) {
+                return format!(" ({hint})");
+            }
+            look_at(&text, typed()).map_or_else(String::new, |look| format!(" (see `{look}`)"))
         }
     }
 }
@@ -69,6 +102,20 @@ mod tests {
         assert_eq!(help("fot data.csv"), "hysid --help");
         assert_eq!(help("--unknown"), "hysid --help");
         assert_eq!(help(""), "hysid --help");
+    }
+
+    #[test]
+    fn a_value_of_force_may_be_a_column() {
+        let value = |line: &str| value_of_force(line.split(' ').map(String::from));
+        assert_eq!(value("force a.csv --mass 2 --force F_N"), Some("F_N".into()));
+        assert_eq!(value("-q force a.csv --force=F_N"), Some("F_N".into()));
+        assert_eq!(value("force a.csv --force --mass 2"), None);
+        assert_eq!(value("force a.csv --mass 2 --force"), None);
+        assert_eq!(value("fit a.csv --force b.csv"), None);
+        let hint =
+            |error: &str| hint_of_unread_force(error, "force --force F_N".split(' ').map(String::from));
+        assert!(hint("F_N: cannot be read: no such file").unwrap().ends_with("--applied-force F_N"));
+        assert_eq!(hint("a.csv: cannot be read: no such file"), None);
     }
 
     #[test]

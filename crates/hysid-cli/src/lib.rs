@@ -29,7 +29,7 @@ mod terminal;
 
 use std::process::ExitCode;
 
-use clap::error::{ContextValue, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use arguments::{Arguments, Command};
 use messages::{StdoutClosed, Usage, insist};
@@ -101,14 +101,29 @@ fn refuse(error: clap::Error) -> ExitCode {
             ExitCode::from(error.exit_code() as u8)
         }
         _ => {
+            let hint = is_extra_value(&error).then(help::hint_of_force).flatten();
             let text = cleaned(error).render().to_string();
             let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
             let said: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage:")).collect();
             let said = said.join(" ");
             let said = said.split(" For more information").next().unwrap_or_default().replace(" tip: ", "; ");
-            insist(format_args!("{said} (see `{}`)", help::of_typed_command()));
+            let helps = hint.unwrap_or_else(|| format!("see `{}`", help::of_typed_command()));
+            insist(format_args!("{said} ({helps})"));
             ExitCode::from(2)
         }
+    }
+}
+
+/// True if the error is about a value where none is expected.
+fn is_extra_value(error: &clap::Error) -> bool {
+    let is_value = |value: Option<&ContextValue>| match value {
+        Some(ContextValue::String(text)) => !text.starts_with('-'),
+        _ => false,
+    };
+    match error.kind() {
+        ErrorKind::UnknownArgument => is_value(error.get(ContextKind::InvalidArg)),
+        ErrorKind::TooManyValues => true,
+        _ => false,
     }
 }
 

@@ -11,11 +11,11 @@ use anyhow::{Result, anyhow};
 use hysid::error::{DataProblem, MotionColumn, MotionError};
 use hysid::restoring_force::{Acceleration, Motion, RestoringForce, restoring_force};
 use hysid_document::visible::clipped;
-use hysid_records::{Kind, Usage, column_of, equal_stamps, offset_of, places_of};
+use hysid_records::{Usage, column_of, equal_stamps, offset_of, places_of};
 use hysid_tables::{CellReader, DecimalSign, Table, spread_equal};
 
-use columns::COLUMNS;
 pub use columns::MotionColumns;
+use columns::{COLUMNS, kind};
 pub use table::Written;
 pub use text::{Printed, summary, understood, warnings};
 pub use units::Units;
@@ -65,11 +65,7 @@ impl MeasuredMotion {
         let units = Units::of(&table.file, &names, &arguments.mass, arguments.columns.same_units)?;
         let mut cells = CellReader::new(table.numbers());
         let mut read = |column: MotionColumn| -> Result<Option<Vec<f64>>> {
-            let kind = match column {
-                MotionColumn::Time | MotionColumn::Displacement | MotionColumn::Velocity => Kind::Given,
-                _ => Kind::Output,
-            };
-            names.name_of(column).map(|name| column_of(table, name, kind, &mut cells)).transpose()
+            names.name_of(column).map(|name| column_of(table, name, kind(column), &mut cells)).transpose()
         };
         let mut columns: Vec<Option<Vec<f64>>> = Vec::with_capacity(COLUMNS.len());
         for column in COLUMNS {

@@ -252,7 +252,7 @@ impl<'r, 'm> TableRun<'r, 'm> {
     fn begins_record(&mut self, head: &Head, row: &Row<'_>) -> Result<bool> {
         let is_first = self.waiting.lines.is_empty() && self.simulated == 0;
         if let Some((column, name)) = self.columns.time.as_mut().zip(self.roles.time.as_ref()) {
-            let now = read(column, &mut self.numbers, head, row, (name, Kind::Given, is_first))?;
+            let now = read(column, &mut self.numbers, head, row, (name, Kind::INPUT, is_first))?;
             self.clock.previous = self.clock.now;
             self.clock.now = self.factors.time.map_or(now, |factor| factor * now);
         }
@@ -311,13 +311,13 @@ impl<'r, 'm> TableRun<'r, 'm> {
         }
         let columns = self.columns.inputs.iter_mut().zip(&self.roles.inputs).zip(&factors.inputs);
         for (input, ((column, name), &factor)) in self.block.inputs.iter_mut().zip(columns) {
-            input.push(number(column, name, Kind::Given, factor)?);
+            input.push(number(column, name, Kind::INPUT, factor)?);
         }
         if let Some((column, name)) = self.columns.rate.as_mut().zip(self.roles.rate.as_ref()) {
-            self.block.rate.push(number(column, name, Kind::Given, factors.rate)?);
+            self.block.rate.push(number(column, name, Kind::INPUT, factors.rate)?);
         }
         let output = match &mut self.columns.output {
-            Some(column) => number(column, &self.roles.output, Kind::Output, factors.output)?,
+            Some(column) => number(column, &self.roles.output, Kind::OUTPUT, factors.output)?,
             None => f64::NAN,
         };
         self.block.output.push(output);

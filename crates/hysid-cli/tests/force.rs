@@ -199,9 +199,9 @@ fn noise_is_told_and_a_longer_window_lets_less_of_it_through() {
         short > 10.0 && said.contains(warning) && said.contains("use a longer --window"),
         "{short} {said}"
     );
-    assert!(!said.contains("smooths away about"), "{said}");
+    assert!(!said.contains("smoothing error"), "{said}");
     let (_, said) = share("--window 151");
-    assert!(said.contains("warning: the filter of the acceleration smooths away about"), "{said}");
+    assert!(said.contains("warning: the smoothing error of the restoring force is about"), "{said}");
     assert!(said.contains("use a shorter --window"), "{said}");
 }
 
@@ -231,6 +231,26 @@ fn blanks_leave_blanks_and_a_force_goes_to_stdout() {
     assert_eq!(said.stdout.lines().count(), ROWS + 1);
 }
 
+/// What helps if `--force` is given a value.
+const HINT: &str =
+    "--force replaces files; a column with the applied force is named by --applied-force force)";
+
+#[test]
+fn the_help_speaks_of_the_columns_of_a_motion() {
+    let help = Workbench::new().shell("hysid force --help").stdout;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    for told in [
+        "Subtract from the displacement and from the restoring force their means over the first ROWS rows",
+        "the restoring force is blank; time, displacement and velocity need a number in every row",
+        "are always missing values",
+    ] {
+        assert!(help.contains(told), "{told}: {help}");
+    }
+    for other in ["the first input", "scored", "--input"] {
+        assert!(!help.contains(other), "{other}: {help}");
+    }
+}
+
 #[test]
 fn what_has_no_restoring_force_is_refused_in_one_line() {
     let bench = bench();
@@ -252,6 +272,33 @@ fn what_has_no_restoring_force_is_refused_in_one_line() {
         "back.csv",
         rows("t_ms,y_mm,F_N", &|row, at| {
             format!("{},{},{}", if row == 5 { 19.0 } else { 1e3 * at[0] }, at[1], at[4])
+        }),
+    );
+    bench.put(
+        "word.csv",
+        rows("t_s,y_mm,F_N", &|row, at| {
+            if row == 0 {
+                format!("{},zero,{}", at[0], at[4])
+            } else {
+                format!("{},{},{}", at[0], at[1], at[4])
+            }
+        }),
+    );
+    bench.put(
+        "slow.csv",
+        rows("t_s,y_mm,v_mm_s,F_N", &|row, at| {
+            let v = if row == 2 { String::new() } else { at[2].to_string() };
+            format!("{},{},{v},{}", at[0], at[1], at[4])
+        }),
+    );
+    bench.put(
+        "off.csv",
+        rows("t_s,y_mm,F_N", &|row, at| {
+            if row == 0 {
+                format!("{},{},off", at[0], at[1])
+            } else {
+                format!("{},{},{}", at[0], at[1], at[4])
+            }
         }),
     );
     bench.put("one.csv", "t_s,y_mm,F_N\n0,1,2\n");
@@ -289,7 +336,24 @@ fn what_has_no_restoring_force_is_refused_in_one_line() {
         ("force rig.csv --mass 2 -o rig.csv", 2, "would be overwritten"),
         ("force rig.csv --mass 2 -o - --json", 2, "name a file for the table with -o"),
         ("force constant.csv --mass 2", 1, "column \"y_mm\" is constant (3)"),
-        ("force empty.csv --mass 2", 1, "empty.csv, line 6, column \"y_mm\": the cell is empty"),
+        (
+            "force empty.csv --mass 2",
+            1,
+            "empty.csv, line 6, column \"y_mm\": the cell is empty (time, displacement and velocity need a number in every \
+             row; choose rows with --rows)",
+        ),
+        (
+            "force slow.csv --mass 2 --velocity v_mm_s",
+            1,
+            "slow.csv, line 4, column \"v_mm_s\": the cell is empty (time, displacement and velocity need",
+        ),
+        ("force word.csv --mass 2", 1, "(not the displacement? name it with --displacement)"),
+        ("force off.csv --mass 2", 1, "(if it stands for a missing value: --missing off)"),
+        ("force rig.csv --mass 2 --force force", 2, HINT),
+        ("force --force force rig.csv --mass 2", 2, HINT),
+        ("force rig.csv --mass 2 --force=force", 2, HINT),
+        ("force --mass 2 --force force", 1, HINT),
+        ("force rig.csv --mass 2 --force --bogus", 2, "(see `hysid force --help`)"),
         ("force back.csv --mass 2", 1, "back.csv, line 7, column \"t_ms\": time 19 does not come after 20"),
         ("force one.csv --mass 2", 1, "column \"y_mm\" has 1 row: at least 5 rows are needed"),
         ("force two.csv --mass 2", 1, "several columns may be the displacement: y_mm, x_mm"),

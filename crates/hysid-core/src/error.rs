@@ -361,6 +361,12 @@ pub enum SampleError {
     /// A time stamp that does not come after the last sample's.
     #[error("time {0} does not come after the last sample's")]
     Time(f64),
+    /// No time, or one that is not a finite number, where it is needed.
+    #[error("the time of the sample is missing or not finite, and {needed_by} needs it")]
+    NoTime {
+        /// What needs it, in words.
+        needed_by: &'static str,
+    },
     /// NaN or infinity.
     #[error("an input or its rate is {0}, not a finite number")]
     NotFinite(f64),

@@ -84,9 +84,19 @@ impl FrequencyResponse {
 
     /// The point of the largest magnitude; `None` if it is the first or the last one, which is no peak.
     pub fn peak(&self) -> Option<ResponsePoint> {
+        self.peak_index().map(|peak| self.points[peak])
+    }
+
+    /// Mean distance of the frequency of the peak from those of the points beside it: to so much it is known.
+    pub fn peak_resolution(&self) -> Option<f64> {
+        let peak = self.peak_index()?;
+        Some(0.5 * (self.points[peak + 1].frequency - self.points[peak - 1].frequency))
+    }
+
+    fn peak_index(&self) -> Option<usize> {
         let magnitudes = self.points.iter().map(ResponsePoint::magnitude).enumerate();
         let (largest, _) = magnitudes.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (largest > 0 && largest + 1 < self.points.len()).then(|| self.points[largest])
+        (largest > 0 && largest + 1 < self.points.len()).then_some(largest)
     }
 
     /// Phases in degrees at the points, continuous where the response of an oscillator turns by 180 degrees: those within

@@ -407,7 +407,7 @@ def test_a_model_with_inertia_steps_in_time_as_it_simulates(name, tmp_path):
     assert loaded.step(x[0], time[0]) == own[0]
     with pytest.raises(ValueError, match="there is no time column, and the model needs one"):
         model.simulate(x)
-    with pytest.raises(ValueError, match="time"):
+    with pytest.raises(ValueError, match="the time of the sample is missing or not finite, and the model needs it"):
         model.stepper().step(x[0])
 
 

@@ -368,10 +368,10 @@ impl Columns {
     fn read(table: &Table, roles: &Roles) -> Result<Self> {
         let mut cells = CellReader::new(table.numbers());
         let mut read = |name: &String, kind: Kind| column_of(table, name, kind, &mut cells);
-        let time = roles.time.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
-        let inputs = roles.inputs.iter().map(|name| read(name, Kind::Given)).collect::<Result<_>>()?;
-        let rate = roles.rate.as_ref().map(|name| read(name, Kind::Given)).transpose()?;
-        let output = read(&roles.output, Kind::Output)?;
+        let time = roles.time.as_ref().map(|name| read(name, Kind::INPUT)).transpose()?;
+        let inputs = roles.inputs.iter().map(|name| read(name, Kind::INPUT)).collect::<Result<_>>()?;
+        let rate = roles.rate.as_ref().map(|name| read(name, Kind::INPUT)).transpose()?;
+        let output = read(&roles.output, Kind::OUTPUT)?;
         Ok(Self { time, inputs, rate, output })
     }
 
@@ -418,18 +418,34 @@ impl Columns {
     }
 }
 
-/// What the numbers of a column are, which decides about blank cells.
+/// What a command needs of the cells of a column, and what helps where one is wrong, in the words of that command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Time, an input or its rate.
-    Given,
-    /// A measured output, which may be blank.
-    Output,
-    /// A wanted output.
-    Wanted,
+    /// A cell may be blank where nothing was measured.
+    Optional,
+    /// Every row needs a number.
+    Required {
+        /// What helps where a cell is blank.
+        if_blank: &'static str,
+        /// What helps where the first cell is no number, so that the column may be the wrong one.
+        if_no_number: Option<&'static str>,
+    },
 }
 
-/// The numbers of a column; a blank output is NaN.
+impl Kind {
+    /// Time, an input or its rate.
+    pub const INPUT: Self = Self::Required {
+        if_blank: "only the output may be blank; choose rows with --rows",
+        if_no_number: Some("not an input? name the inputs with --input"),
+    };
+    /// A measured output.
+    pub const OUTPUT: Self = Self::Optional;
+    /// A wanted output.
+    pub const WANTED: Self =
+        Self::Required { if_blank: "every row needs a wanted output", if_no_number: None };
+}
+
+/// The numbers of a column; a cell that is blank and may be is NaN.
 pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) -> Result<Vec<f64>> {
     let place = place_of(table, name)?;
     let at = |line: u64, problem: &str| {
@@ -446,24 +462,21 @@ pub fn column_of(table: &Table, name: &str, kind: Kind, cells: &mut CellReader) 
     column.problem(cells).map_or(Ok(numbers), |(line, problem)| Err(at(line, &problem)))
 }
 
-/// The number of a cell, NaN for a missing output; or what is wrong with it and what helps.
+/// The number of a cell, NaN for one that is blank and may be; or what is wrong with it and what helps.
 pub fn checked(number: Result<f64, String>, cell: &str, kind: Kind, is_first: bool) -> Result<f64, String> {
     match number {
         Ok(number) if number.is_nan() => match kind {
-            Kind::Output => Ok(f64::NAN),
-            Kind::Given => {
-                Err(format!("{} (only the output may be blank; choose rows with --rows)", missing(cell)))
-            }
-            Kind::Wanted => Err(format!("{} (every row needs a wanted output)", missing(cell))),
+            Kind::Optional => Ok(f64::NAN),
+            Kind::Required { if_blank, .. } => Err(format!("{} ({if_blank})", missing(cell))),
         },
         Ok(number) => Ok(number),
         Err(problem) => {
             let hint = match (kind, problem.ends_with("number")) {
-                (Kind::Output, true) if cell.trim().len() <= LONGEST_WORD => {
+                (Kind::Optional, true) if cell.trim().len() <= LONGEST_WORD => {
                     let cell = cell.trim();
                     format!(" (if it stands for a missing value: --missing {})", shown(Path::new(cell)))
                 }
-                (Kind::Given, true) if is_first => " (not an input? name the inputs with --input)".into(),
+                (Kind::Required { if_no_number: Some(hint), .. }, true) if is_first => format!(" ({hint})"),
                 _ => String::new(),
             };
             Err(problem + &hint)

@@ -24,6 +24,9 @@ const GAP: f64 = 5.0;
 /// Width of the lines of models, in pixels: thin, because several curves overlap.
 const WIDTH: f64 = 1.6;
 
+/// Digits of a resonance, at most.
+const MOST_DIGITS: f64 = 6.0;
+
 /// Colours of the model, by falling amplitude.
 const AMPLITUDES: [Colour; 3] = [Colour::Simulated, Colour::Series(2), Colour::Series(3)];
 
@@ -156,10 +159,13 @@ impl<'a> Section<'a> {
         ]);
         for line in &self.lines {
             let peak = line.response.peak();
+            let known = peak.zip(line.response.peak_resolution());
+            let resonance =
+                known.map_or(Cell::Missing, |(peak, resolution)| resolved(peak.frequency, resolution));
             table.push([
                 line.name.as_str().into(),
                 Cell::number(line.input_deviation, 3),
-                Cell::number(peak.map(|peak| peak.frequency), 4),
+                resonance,
                 Cell::number(peak.map(|peak| peak.magnitude()), 3),
                 Cell::number(peak.and_then(|peak| peak.coherence), 3),
             ]);
@@ -201,10 +207,21 @@ impl<'a> Section<'a> {
     }
 }
 
+/// A positive value that is known to a resolution, with the digits that this supports: the last one has the size of the
+/// resolution.
+fn resolved(value: f64, resolution: f64) -> Cell {
+    let size = |number: f64| number.log10().floor();
+    let digits = (size(value) - size(resolution) + 1.0).clamp(1.0, MOST_DIGITS);
+    let unit = 10f64.powf(size(value) + 1.0 - digits);
+    Cell::number(unit * (value / unit).round(), digits as u8)
+}
+
 fn model_name(at: &AtAmplitude, input: &str) -> String {
     let deviation = unit::with(&number(at.input_deviation, 3), input);
-    let measured = if at.factor == 1.0 { " std as measured" } else { "" };
-    format!("model, {deviation}{measured}")
+    match at.factor {
+        1.0 => format!("model at {deviation} std (as measured)"),
+        factor => format!("model at {deviation} std (× {factor})"),
+    }
 }
 
 /// How rows were divided, in words.
@@ -241,4 +258,26 @@ fn with_gaps(points: &[Point]) -> Vec<Point> {
         all.push(point);
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frequency_has_the_digits_that_its_resolution_supports() {
+        for (value, resolution, expected) in [
+            (38.62, 0.73, "38.6"),
+            (38.62, 1.5, "39"),
+            (38.62, 0.1, "38.6"),
+            (0.15912, 0.0027, "0.159"),
+            (1234.4, 5.0, "1234"),
+            (1234.4, 20.0, "1230"),
+            (99.97, 0.3, "100"),
+            (38.62, 60.0, "40"),
+            (38.625, 1e-9, "38.625"),
+        ] {
+            assert_eq!(resolved(value, resolution).shown(), expected, "{value} ± {resolution}");
+        }
+    }
 }

@@ -66,8 +66,8 @@ pub struct RestoringForce {
     /// Standard deviation of its noise, in its unit: that of the acceleration times the mass, and of the applied force.
     /// Noise is taken to be independent from row to row.
     pub noise: f64,
-    /// Root mean square of what the filter of the acceleration smooths away, in the unit of the force; an estimate, and 0
-    /// for a measured acceleration.
+    /// Smoothing error of the restoring force, in its unit: the root mean square of the part of the motion that the filter
+    /// of the acceleration does not follow, times the mass. An estimate, and 0 for a measured acceleration.
     pub smoothing: f64,
 }
 
@@ -87,7 +87,7 @@ impl RestoringForce {
         self.percent(self.noise)
     }
 
-    /// What is smoothed away, in percent of the standard deviation of the force; `None` for a constant force.
+    /// Smoothing error in percent of the standard deviation of the force; `None` for a constant force.
     pub fn smoothing_percent(&self) -> Option<f64> {
         self.percent(self.smoothing)
     }
@@ -100,7 +100,7 @@ impl RestoringForce {
 /// The restoring force `u - m (y'' + a)` in records of the motion of a mass, theory.md (15.20).
 ///
 /// What is not measured comes from Savitzky-Golay filters with one window for all records; `window` sets its number of
-/// rows, an odd number from 5 on. Without it, the window is chosen that leaves least of noise and smoothing together.
+/// rows, an odd number from 5 on. Without it, the window is chosen that has the least noise and smoothing error together.
 ///
 /// ```
 /// use hysid::restoring_force::{Motion, restoring_force};

@@ -233,4 +233,12 @@ fn auto_chooses_a_model_with_inertia_for_a_resonance() {
     assert!(nrmse < 15.0, "{nrmse}");
     let selection = model.provenance().selection.as_ref().unwrap();
     assert_eq!(selection.candidates.iter().find(|c| c.members > 0).unwrap().kind, "dynamic");
+    // Its steps need a time, and time that advances.
+    let mut stepper = model.stepper();
+    let mut refused = |time: f64| stepper.step(&[0.0], time, None).map_err(|error| error.to_string());
+    let missing = "the time of the sample is missing or not finite, and the model needs it";
+    assert_eq!(refused(f64::NAN), Err(missing.into()));
+    assert!(refused(0.5).is_ok());
+    assert_eq!(refused(f64::INFINITY), Err(missing.into()));
+    assert_eq!(refused(0.5), Err("time 0.5 does not come after the last sample's".into()));
 }

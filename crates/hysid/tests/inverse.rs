@@ -173,6 +173,9 @@ fn invalid_samples_leave_the_inverse_as_it_was() {
     for slew in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         model.inverse().slew(slew).unwrap_err();
     }
+    let error = model.inverse().slew(1.0).unwrap().step(wanted(0), &[], f64::NAN).unwrap_err();
+    let expected = "the time of the sample is missing or not finite, and the model, its slew limit or its preview needs it";
+    assert_eq!(error.to_string(), expected);
 }
 
 /// Where the closed inverse is exact, one trial confirms it.

@@ -6,6 +6,7 @@ use clap::Args;
 use hysid::restoring_force::SMALLEST_WINDOW;
 
 use super::mass::Mass;
+use super::reading::missing_help;
 use super::{Overwriting, RUN, ReadingOptions};
 
 const FORCE_EXAMPLES: &str = "\
@@ -17,9 +18,18 @@ Examples:
 
 The method, signs and units: docs/how-to/restoring-force.md";
 
+const ZERO_HELP: &str = "Subtract from the displacement and from the restoring force their means over the first ROWS rows of each record";
+
+const MISSING_MEANS: &str = "Where an acceleration or the applied force is missing, the restoring force is blank; time, displacement and velocity need a number in every row.";
+
 /// Arguments of `force`.
 #[derive(Debug, Args)]
-#[command(after_help = FORCE_EXAMPLES)]
+// The columns of a motion are neither inputs nor outputs.
+#[command(
+    after_help = FORCE_EXAMPLES,
+    mut_arg("zero", |option| option.help(ZERO_HELP)),
+    mut_arg("missing", |option| option.long_help(missing_help(MISSING_MEANS)))
+)]
 pub struct Force {
     /// Table of the measured motion of a mass
     #[arg(value_name = "DATA.csv")]
@@ -51,7 +61,7 @@ pub struct Force {
     pub reading: ReadingOptions,
     /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]
     ///
-    /// A longer window lets less noise through and smooths more of the motion away.
+    /// A longer window reduces the noise and increases the smoothing error.
     #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method", hide_short_help = true)]
     pub window: Option<usize>,
     /// Print the result as one JSON object

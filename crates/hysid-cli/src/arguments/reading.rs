@@ -26,9 +26,7 @@ pub struct ReadingOptions {
     #[arg(long, hide_short_help = true, conflicts_with = "no_header")]
     pub units_row: bool,
     /// A cell that stands for a missing value, such as -999; repeat for several
-    ///
-    /// Empty cells, NaN, NA, N/A, #N/A, null and - are always missing values, in upper or lower case. A missing output is not scored; a missing input is an error.
-    #[arg(long, value_name = "CELL", allow_hyphen_values = true, hide_short_help = true)]
+    #[arg(long, value_name = "CELL", allow_hyphen_values = true, hide_short_help = true, long_help = missing_help("A missing output is not scored; a missing input is an error."))]
     pub missing: Vec<String>,
     /// Encoding of the text, such as utf-8, windows-1252 or shift_jis [default: detected]
     #[arg(long, value_name = "NAME", hide_short_help = true)]
@@ -64,6 +62,14 @@ impl ReadingOptions {
             rows: RowSelection { every: self.every, ..self.rows.unwrap_or_default() },
         }
     }
+}
+
+/// The help of `--missing`, with what a missing value means for a command.
+pub fn missing_help(meaning: &str) -> String {
+    format!(
+        "A cell that stands for a missing value, such as -999; repeat for several\n\nEmpty cells, NaN, NA, N/A, #N/A, null \
+         and - are always missing values, in upper or lower case. {meaning}"
+    )
 }
 
 fn at_least_one(text: &str) -> Result<u64, String> {

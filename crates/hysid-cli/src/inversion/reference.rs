@@ -59,11 +59,11 @@ impl Wanted {
             }
             Ok(numbers)
         };
-        let time = roles.time.as_ref().map(|name| read(name, factors.time, Kind::Given)).transpose()?;
+        let time = roles.time.as_ref().map(|name| read(name, factors.time, Kind::INPUT)).transpose()?;
         let inputs = roles.inputs.iter().zip(&factors.inputs);
         let others: Vec<Vec<f64>> =
-            inputs.map(|(name, &factor)| read(name, factor, Kind::Given)).collect::<Result<_>>()?;
-        let wanted = read(&roles.output, factors.output, Kind::Wanted)?;
+            inputs.map(|(name, &factor)| read(name, factor, Kind::INPUT)).collect::<Result<_>>()?;
+        let wanted = read(&roles.output, factors.output, Kind::WANTED)?;
         let record = |place: hysid_records::Place| {
             let cut = |column: &Vec<f64>| column[place.rows.clone()].to_vec();
             WantedRecord {

@@ -6,7 +6,7 @@ use hysid::data::column::{Domain, Part};
 use hysid::data::unit;
 use hysid::error::MotionColumn;
 use hysid_document::visible::{clipped, listed};
-use hysid_records::{Roles, Usage};
+use hysid_records::{Kind, Roles, Usage};
 use hysid_tables::{Table, is_record};
 
 use super::units;
@@ -21,6 +21,22 @@ pub const COLUMNS: [MotionColumn; 6] = [
     MotionColumn::BaseAcceleration,
     MotionColumn::AppliedForce,
 ];
+
+/// What is needed of the cells of a column.
+pub fn kind(column: MotionColumn) -> Kind {
+    let required = |if_no_number| Kind::Required {
+        if_blank: "time, displacement and velocity need a number in every row; choose rows with --rows",
+        if_no_number: Some(if_no_number),
+    };
+    match column {
+        MotionColumn::Time => required("not the time? name it with --time"),
+        MotionColumn::Displacement => required("not the displacement? name it with --displacement"),
+        MotionColumn::Velocity => required("not the velocity? name it with --velocity"),
+        MotionColumn::Acceleration | MotionColumn::BaseAcceleration | MotionColumn::AppliedForce => {
+            Kind::Optional
+        }
+    }
+}
 
 /// Parts of words for an acceleration.
 const ACCELERATION: [&str; 6] = ["acc", "beschl", "accél", "aceler", "ускор", "加速度"];

@@ -15,7 +15,7 @@ use super::MeasuredMotion;
 use crate::arguments::Mass;
 use crate::files::shown;
 
-/// Noise or smoothing above this share of the standard deviation of the force is warned of, in percent.
+/// Noise or a smoothing error above this share of the standard deviation of the force is warned of, in percent.
 const LARGE: f64 = 10.0;
 
 /// What was understood, label and text.
@@ -155,8 +155,10 @@ pub fn warnings(motion: &MeasuredMotion, found: &RestoringForce, window: Option<
     }
     if let Some(percent) = found.smoothing_percent().filter(|percent| *percent > LARGE) {
         all.push(format!(
-            "the filter of the acceleration smooths away about {percent:.0} % of the restoring force: \
-             {measure}{of_smoothing}"
+            "the smoothing error of the restoring force is about {:.3}{}, {percent:.0} % of its standard deviation: \
+             {measure}{of_smoothing}",
+            Significant(found.smoothing),
+            clipped(&suffix)
         ));
     }
     all
@@ -182,7 +184,7 @@ pub fn summary(motion: &MeasuredMotion, found: &RestoringForce, table: Option<&P
     if found.acceleration_filter.is_some() {
         let text =
             format!("{:.2}{suffix}{}", Significant(found.smoothing), percent(found.smoothing_percent()));
-        lines.push(("smoothed away", text));
+        lines.push(("smoothing error", text));
     }
     if let Some(table) = table {
         lines.push(("next", format!("hysid fit {}", shown(table))));
@@ -205,7 +207,7 @@ pub struct Printed<'a> {
     /// Standard deviation of the noise of the force, in its unit and in percent of the standard deviation.
     noise: f64,
     noise_percent: Option<f64>,
-    /// What the filter of the acceleration smooths away, likewise.
+    /// Smoothing error of the filter of the acceleration, likewise.
     smoothing: f64,
     smoothing_percent: Option<f64>,
     /// The filter of the acceleration; none if it is measured.

@@ -4,7 +4,7 @@
 //! ```text
 //! q_i'' + 2 ζ_i ω_i q_i' + ω_i² q_i = ω_i² f_i,   f_i = b_i u - Σ_e g_ei r_e             theory.md (15.1)
 //! δ_e = Σ_i (D_ei q_i + V_ei p_i) + U_e u,   ν_e = Σ_i D_ei p_i,   p_i = q_i'/ω_i        theory.md (15.2)
-//! y = y_0 + σ [d u + Σ_i (q_i + k_i p_i) + Σ_e m_e r_e]                                  theory.md (15.5)
+//! y = y_0 + σ [d u + Σ_i (q_i + η_i p_i) + Σ_e μ_e r_e]                                  theory.md (15.5)
 //! ```
 //!
 //! `u` is the input divided by its scale, `q_i` the displacement of a mode and `r_e` the force of an [`Element`],
@@ -16,7 +16,7 @@
 //!
 //! **The output is bounded** for a bounded input, any parameters and any time steps (theory.md (15.12)): the forces
 //! of elements are bounded by their weights, `r_e` is limited to that bound even where its equation is not solved, and
-//! a mode that is followed exactly under a bounded force cannot leave `|q| ≤ F ∫|S|`, which is finite because `ω` and
+//! a mode that is followed exactly under a bounded force cannot leave `|q| ≤ f̄ ∫|S|`, which is finite because `ω` and
 //! `ζ` are positive.
 
 mod element;
@@ -81,7 +81,7 @@ pub struct Mode {
     pub damping: f64,
     /// `b`: displacement at rest under a unit of scaled input.
     pub gain: f64,
-    /// `k`: share of its velocity `p` in the output.
+    /// `η`: share of its velocity `p` in the output.
     pub velocity_in_output: f64,
 }
 
@@ -217,7 +217,7 @@ impl Dynamics {
             all.push(number(format!("b_{i}"), "displacement of a mode under a unit input", mode.gain));
             if is_general {
                 let share = mode.velocity_in_output;
-                all.push(number(format!("k_{i}"), "share of its velocity in the output", share));
+                all.push(number(format!("η_{i}"), "share of its velocity in the output", share));
             }
         }
         for (e, element) in (1..).zip(&self.elements) {
@@ -233,7 +233,7 @@ impl Dynamics {
                 (is_general, "V", "share of its velocity there", &element.of_velocities),
                 (is_general, "U", "share of the input there", &[element.of_input]),
                 (is_coupled, "g", "displacement of a mode under a unit force", &element.compliances),
-                (is_general, "m", "share of a force in the output", &[element.in_output]),
+                (is_general, "μ", "share of a force in the output", &[element.in_output]),
                 (true, "τ", "share of the velocity in what drives a stop", &element.stop_velocities),
                 (true, "A", "weight of a tanh neuron", free_layer),
                 (true, "W↑", "weight of a target where the displacement rises", &element.rising),
@@ -249,7 +249,7 @@ impl Dynamics {
             let of_path = [
                 ("ρ", "threshold of a stop", &element.thresholds, least),
                 ("λ", "strength that a stop loses per unit of slip", &element.strength_losses, 0.0),
-                ("c", "leak along the path", &element.path_leaks, least),
+                ("γ", "leak along the path", &element.path_leaks, least),
             ];
             for (symbol, meaning, values, least) in of_path {
                 let numbered = (1..).zip(values);
@@ -315,10 +315,11 @@ fn largest_response(damping: f64) -> (f64, f64) {
         // S does not change its sign, rises once and falls once, to no more than 1/(2 ζ).
         return (1.0, 1.0 / damping);
     }
-    let w = (1.0 - damping * damping).sqrt();
-    let decay = (-std::f64::consts::PI * damping / w).exp();
+    // ψ of theory.md (15.12): the damped frequency over the natural one.
+    let psi = (1.0 - damping * damping).sqrt();
+    let decay = (-std::f64::consts::PI * damping / psi).exp();
     // Peaks of S, each smaller than the one before by the same ratio.
-    let peak = (-damping / w * w.atan2(damping)).exp();
+    let peak = (-damping / psi * psi.atan2(damping)).exp();
     ((1.0 + decay) / (1.0 - decay), 2.0 * peak / (1.0 - decay))
 }
 

@@ -2,12 +2,12 @@
 //! its input, and act on all of them.
 //!
 //! ```text
-//! z' = A_z z + B u + E r,   r = R(C z + U u, C_ν z),   y = y_0 + σ (C_y z + d u + m r)   theory.md (15.14)
+//! X' = Ω X + B u + G r,   r = R(C_δ X + U u, C_ν X),   y = y_0 + σ (C_y X + d u + μ r)   theory.md (15.14)
 //! ```
 //!
-//! `R` is a hysteretic element. `A_z` is in modal form with positive frequencies and damping ratios, so that it is stable for any parameters; modes
-//! with a damping ratio of more than 1 do not vibrate. The equations, their integration and the bound of the output are
-//! those of [`hysteretic_dynamics`](super::hysteretic_dynamics). A hysteretic oscillator is the case in which outputs
+//! `X` are displacements and velocities of the modes, and `R` is a hysteretic element. `Ω` is in modal form with positive
+//! frequencies and damping ratios, so that it is stable for any parameters; modes with a damping ratio of more than 1 do
+//! not vibrate. The equations, their integration and the bound of the output are those of [`hysteretic_dynamics`](super::hysteretic_dynamics). A hysteretic oscillator is the case in which outputs
 //! and displacements of elements are displacements of modes.
 
 use serde::{Deserialize, Serialize};

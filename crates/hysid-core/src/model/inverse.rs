@@ -415,7 +415,7 @@ impl<'m> Inverse<'m> {
     fn elapsed(&self, time: f64) -> Result<Option<f64>> {
         let is_needed = self.slew.is_some() || self.trained_rate.is_some() || self.preview > 0.0;
         if is_needed && !time.is_finite() {
-            return Err(SampleError::Time(time).into());
+            return Err(SampleError::NoTime { needed_by: "the model, its slew limit or its preview" }.into());
         }
         match self.last {
             Some((_, before)) if is_needed && time <= before => Err(SampleError::Time(time).into()),

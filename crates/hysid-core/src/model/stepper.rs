@@ -99,12 +99,12 @@ impl<'m> Stepper<'m> {
     /// forgotten.
     ///
     /// `inputs` has one value for each input and `time` is the time of the sample, in the user's units;
-    /// `time` is ignored by a model that needs none. `rate` is that of the first input, for a model with one;
+    /// `time` is ignored by a model that needs none (see [`Model::needs_time`]), and may then be NaN. `rate` is that of the first input, for a model with one;
     /// `None` stands for a backward difference (0 at the first sample).
     ///
     /// # Errors
-    /// Another number of inputs, a value that is not finite, or time that does not increase. The memory is
-    /// then unchanged.
+    /// Another number of inputs, a value that is not finite, a time that is missing or does not increase. The memory
+    /// is then unchanged.
     pub fn step(&mut self, inputs: &[f64], time: f64, rate: Option<f64>) -> Result<f64> {
         self.revert();
         self.advance(inputs, time, rate)
@@ -204,8 +204,13 @@ impl State {
             return Err(SampleError::Inputs { expected, found: inputs.len() }.into());
         }
         let elapsed = self.elapsed(time);
-        if model.needs_time() && !(time.is_finite() && (self.last.is_none() || elapsed > 0.0)) {
-            return Err(SampleError::Time(time).into());
+        if model.needs_time() {
+            if !time.is_finite() {
+                return Err(SampleError::NoTime { needed_by: "the model" }.into());
+            }
+            if self.last.is_some() && elapsed <= 0.0 {
+                return Err(SampleError::Time(time).into());
+            }
         }
         let rate = self.rate(model, inputs, elapsed, rate);
         if let Some(bad) = inputs.iter().chain(&rate).find(|value| !value.is_finite()) {

@@ -146,8 +146,8 @@ class Inverse:
         Raises
         ------
         ValueError
-            A value that is not finite, another number of inputs, or time that does not advance. The state is then
-            unchanged.
+            A value that is not finite, another number of inputs, a time that is missing or does not advance. The state
+            is then unchanged.
         """
         return Inverted(*self._native.step(float(y), time, [float(value) for value in others]))
 

@@ -34,8 +34,8 @@ class RestoringForce:
     noise : float
         Standard deviation of the noise of the force, in its unit; noise is taken to be independent from row to row.
     smoothing : float
-        Root mean square of what the filter of the acceleration smooths away, in the unit of the force; an estimate, and 0
-        for a measured acceleration.
+        Smoothing error of the force, in its unit: the root mean square of the part of the motion that the filter of the
+        acceleration does not follow, times the mass. An estimate, and 0 for a measured acceleration.
     velocity_filter, acceleration_filter : tuple of int or None
         Degree and window, in rows, of the Savitzky-Golay filter; None for a measured channel.
     """

@@ -462,7 +462,7 @@ class Model(StoredModel):
         Raises
         ------
         ValueError
-            Invalid inputs, or time that does not advance.
+            Invalid inputs, or a time that is missing or does not advance.
         """
         stepper = self._stepper
         if stepper is None:

@@ -1,5 +1,5 @@
 //! Derivatives of measured channels by Savitzky-Golay filters whose window is chosen from the data, theory.md (15.21)
-//! and (15.22): a longer window lets less noise through and smooths more of the motion away.
+//! and (15.22): a longer window has less noise and a larger smoothing error.
 
 use super::filter::{Filter, RowWeights, SMALLEST_WINDOW};
 use super::search::{Channel, Search, Trial};
@@ -22,7 +22,7 @@ pub struct Derivative {
     pub filter: Filter,
     /// Standard deviation of its noise within the record: the noise of the channel times the gain of the filter.
     pub noise: f64,
-    /// Root mean square of what the filter smooths away, as estimated from polynomials of a higher degree.
+    /// Smoothing error of the derivative (root mean square), as estimated from polynomials of a higher degree.
     pub smoothing: f64,
 }
 
@@ -44,7 +44,7 @@ pub fn derivative(records: &[Channel<'_>], order: usize, noise: f64, window: Opt
         }
         Some(on_a_side) => {
             let chosen = search.best(&[on_a_side], Some(&best));
-            // The filter that would be chosen does not smooth away what a longer window hides.
+            // The filter that would be chosen follows what a longer window hides.
             let smoothing = match chosen.noise < best.noise {
                 true => chosen.smoothing,
                 false => chosen.smoothing.min(search.smoothing_by_longer(&chosen)),
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_longer_than_the_motion_is_said_to_smooth_it_away() {
+    fn the_smoothing_error_of_a_window_longer_than_the_motion_is_told() {
         let time: Vec<f64> = (0..3000).map(|k| 0.005 * f64::from(k)).collect();
         let (smooth, exact) = vibration(&time);
         let mut generator = generator(5, 0);

@@ -25,7 +25,7 @@ impl Filter {
         2 * self.on_a_side + 1
     }
 
-    /// The filter by whose difference the smoothing of this one is estimated.
+    /// The filter by whose difference the smoothing error of this one is estimated.
     pub(super) fn reference(&self) -> Self {
         Self { degree: self.degree + 2, ..*self }
     }

@@ -1,7 +1,7 @@
 //! Weights of the derivatives of a local polynomial, for time steps that need not be equal.
 //!
-//! The polynomial of degree `p` that fits the rows of a window best is a sum of polynomials `q_j` that are orthogonal
-//! over the times of the window. Its derivative of order `d` at the time of a row is `Σ_i w_i x_i`,
+//! The polynomial of degree `M` that fits the rows of a window best is a sum of polynomials `Q_j` that are orthogonal
+//! over the times of the window. Its derivative of order `J` at the time of a row is `Σ_i K_i x_i`,
 //! theory.md (15.21).
 
 /// Weights of the rows of a window: the derivative of an order, at the time of row `centre`, of the polynomial of a
@@ -23,7 +23,7 @@ pub fn weights(time: &[f64], centre: usize, degree: usize, order: usize) -> Vec<
         for (weight, q) in weights.iter_mut().zip(&now) {
             *weight += slopes[order] * q / norm;
         }
-        // q_{j+1} = (t - a) q_j - b q_{j-1}
+        // Q_{j+1} = (t - a) Q_j - b Q_{j-1}
         let a = t.iter().zip(&now).map(|(t, q)| t * q * q).sum::<f64>() / norm;
         let b = if j == 0 { 0.0 } else { norm / norm_before };
         let next = t.iter().zip(now.iter().zip(&before)).map(|(t, (q, before))| (t - a) * q - b * before);

@@ -1,4 +1,4 @@
-//! The choice of a filter by its noise and by what it smooths away, theory.md (15.22).
+//! The choice of a filter by its noise and its smoothing error, theory.md (15.22).
 
 use std::ops::Range;
 
@@ -10,10 +10,10 @@ pub const DEGREES: [usize; 2] = [2, 4];
 /// Rows on which a filter is tried.
 const TRIED_ROWS: usize = 2000;
 
-/// No longer window is tried once it smooths away so many times the error of the best.
+/// No longer window is tried once the smoothing error is so many times the whole error of the best.
 const HOPELESS: f64 = 4.0;
 
-/// Smoothing is told from noise where two filters are apart by so many times the variance that noise explains.
+/// A smoothing error is told from noise where two filters are apart by so many times the variance that noise explains.
 const TOLD: f64 = 3.0;
 
 /// A window is so many times as long where a polynomial of the next higher degree lets as much noise through.
@@ -85,8 +85,8 @@ impl<'s> Search<'s> {
         let (count, variance) = (values.len() as f64, self.noise * self.noise);
         let noise = (variance * gain / count).sqrt();
         let own = Trial { filter, values, noise, smoothing: 0.0, is_told: false };
-        // What two filters are apart is the smoothing of the longer one and the noise that the other lets through. A
-        // window longer than the motion hides it from the polynomials of both degrees, but not from a shorter window.
+        // What two filters are apart is the smoothing error of the longer one and the noise that the other lets through.
+        // A window longer than the motion hides it from the polynomials of both degrees, but not from a shorter window.
         let from_reference = Apart { total: apart / count, by_others: variance * apart_by_noise / count };
         let from_other = other.filter(|other| own.noise < other.noise).map(|other| own.apart_from(other));
         let all = || [Some(from_reference), from_other].into_iter().flatten();
@@ -97,7 +97,7 @@ impl<'s> Search<'s> {
         }
     }
 
-    /// The smoothing of a filter by the difference from a polynomial of the higher degree on a longer window, which lets
+    /// The smoothing error of a filter by the difference from a polynomial of the higher degree on a longer window, which lets
     /// about as much noise through; above the truth where that one smooths, too.
     pub fn smoothing_by_longer(&self, trial: &Trial) -> f64 {
         let shortest = self.records.iter().map(|(time, _)| time.len()).min().unwrap_or(0);
@@ -122,9 +122,9 @@ pub struct Trial {
     values: Vec<f64>,
     /// Standard deviation of the noise of the derivative.
     pub noise: f64,
-    /// Root mean square of what is smoothed away.
+    /// Smoothing error of the derivative (root mean square).
     pub smoothing: f64,
-    /// The smoothing is larger than what noise alone can feign.
+    /// The smoothing error is larger than what noise alone can feign.
     is_told: bool,
 }
 
@@ -144,7 +144,7 @@ impl Trial {
 #[derive(Debug, Clone, Copy)]
 struct Apart {
     total: f64,
-    /// What noise, and smoothing by the other filter, add to it.
+    /// What noise, and the smoothing error of the other filter, add to it.
     by_others: f64,
 }
 

@@ -1,21 +1,21 @@
 //! A hysteretic element: a force that depends on the path of a displacement.
 //!
 //! ```text
-//! a_i   = δ + τ_i ν,   f_i = e_i,0 + a_i - a_i,0,   e_i = max(-ρ_i, min(ρ_i, f_i))
-//! S_i   = S_i,0 + |f_i - e_i|,   z_i = e_i max(0, 1 - λ_i S_i)                 theory.md (15.6)
-//! h     = tanh(A [1, δ, ν, z, s])                                              theory.md (15.7)
-//! T     = W↑ h  where δ rises,  W↓ h  where it falls                           theory.md (15.8)
-//! s_1   = a s_0 + w_0 T_0 + w_1 T_1,   l = c |δ - δ_0|                         theory.md (15.9)
-//! a = e^-l,   w_1 = 1 - (1 - a)/l,   w_0 = 1 - a - w_1
-//! r     = v [z, s, h]                                                          theory.md (15.10)
+//! ε̂_i = ε_i,0 + δ - δ_0 + τ_i (ν - ν_0),   ε_i = max(-ρ_i, min(ρ_i, ε̂_i))
+//! Λ_i = Λ_i,0 + |ε̂_i - ε_i|,   z_i = ε_i max(0, 1 - λ_i Λ_i)                   theory.md (15.6)
+//! φ   = tanh(A [1, δ, ν, z, s])                                                theory.md (15.7)
+//! T   = W↑ φ  where δ rises,  W↓ φ  where it falls                             theory.md (15.8)
+//! s   = χ s_0 + w_0 T_0 + w_1 T_1,   l = γ |δ - δ_0|                           theory.md (15.9)
+//! χ   = exp(-l),   w_1 = 1 - (1 - χ)/l,   w_0 = 1 - χ - w_1
+//! r   = v [z, s, φ]                                                            theory.md (15.10)
 //! ```
 //!
-//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `r` its force; `e` is the elongation of
-//! a stop, `S` its slip, `z` its output, `s` a state and `h` a tanh neuron. Index 0 is the beginning of the step. A stop
-//! is driven by displacement and velocity and deteriorates as it slips, as the
-//! [deteriorating stop](crate::operator::deteriorating_stop) does. (15.9) integrates `ds/d|δ| = c (T - s)` to second order: `T_1` is
-//! taken at the end of the step, with the states that follow from `T_0` alone. The weights are not negative and sum
-//! to 1, so a state stays among its targets whatever the step.
+//! `δ` is the displacement of the element, `ν` its velocity over the frequency, `r` its force; `ε` is the elongation of
+//! a stop, `ε̂` the one that it would have without its threshold, `Λ` its slip, `z` its output, `s` a state and `φ` a
+//! tanh neuron. Index 0 is the beginning of the step. A stop is driven by displacement and velocity and deteriorates as
+//! it slips, as the [deteriorating stop](crate::operator::deteriorating_stop) does. (15.9) integrates
+//! `ds/d|δ| = γ (T - s)` to second order: `T_1` is taken at the end of the step, with the states that follow from `T_0`
+//! alone. The weights are not negative and sum to 1, so a state stays among its targets whatever the step.
 
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
@@ -29,15 +29,15 @@ use crate::simd::multiply_add;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Element {
-    /// How the displacement of the element follows from the displacement of each mode.
+    /// `D`: how the displacement of the element follows from the displacement of each mode.
     pub of_displacements: Vec<f64>,
-    /// How it follows from the velocity of each mode.
+    /// `V`: how it follows from the velocity of each mode.
     pub of_velocities: Vec<f64>,
-    /// How it follows from the input.
+    /// `U`: how it follows from the input.
     pub of_input: f64,
-    /// Displacement of each mode at rest under a unit force of the element.
+    /// `g`: displacement of each mode at rest under a unit force of the element.
     pub compliances: Vec<f64>,
-    /// Share of the force in the output.
+    /// `μ`: share of the force in the output.
     pub in_output: f64,
     /// `ρ > 0`: thresholds of the stops.
     pub thresholds: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Element {
     pub rising: Vec<f64>,
     /// `W↓`, in the same form.
     pub falling: Vec<f64>,
-    /// `c > 0` of each state: its leak along the path.
+    /// `γ > 0` of each state: its leak along the path.
     pub path_leaks: Vec<f64>,
     /// States before the first sample.
     pub initial: Vec<f64>,
@@ -108,34 +108,34 @@ impl Element {
     }
 }
 
-/// An element at a point of its path.
+/// An element at a point of its path: displacement, velocity, memory and force.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PathPoint {
     /// `1, δ, ν, z, s`.
     pub inputs: Vec<f64>,
     pub neurons: Vec<f64>,
     pub force: f64,
-    /// `e` and `S` of each stop.
+    /// `ε` and `Λ` of each stop.
     pub elongations: Vec<f64>,
     pub slips: Vec<f64>,
 }
 
-/// A way from one place to another, with what its derivatives need.
+/// A step of an element along its path, from one point to another, with what its derivatives need.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
-    pub to: Place,
+pub(super) struct PathStep {
+    pub end: PathPoint,
     /// The inputs of the layer for `T_1`, and the neurons there.
     pub inputs_ahead: Vec<f64>,
     pub neurons_ahead: Vec<f64>,
     pub targets: Vec<f64>,
     pub targets_ahead: Vec<f64>,
-    /// `l`, `a`, `w_0` and `w_1` of each state.
+    /// `l`, `χ`, `w_0` and `w_1` of each state.
     pub weights: Vec<StateWeights>,
     /// `δ - δ_0`.
     pub moved: f64,
     /// Of each stop that ends at its threshold its elongation, otherwise 0.
     pub at_threshold: Vec<f64>,
-    /// `max(0, 1 - λ S)` of each stop.
+    /// `max(0, 1 - λ Λ)` of each stop.
     pub strengths: Vec<f64>,
 }
 
@@ -171,7 +171,7 @@ impl StateWeights {
     }
 }
 
-impl Place {
+impl PathPoint {
     fn zero(shape: Shape) -> Self {
         Self {
             inputs: vec![0.0; shape.inputs()],
@@ -185,10 +185,10 @@ impl Place {
     /// Where an element is before the first sample, without its force.
     pub fn virgin(element: &Element) -> Self {
         let shape = element.shape();
-        let mut place = Self::zero(shape);
-        place.inputs[0] = 1.0;
-        place.inputs[shape.first_state()..].copy_from_slice(&element.initial);
-        place
+        let mut point = Self::zero(shape);
+        point.inputs[0] = 1.0;
+        point.inputs[shape.first_state()..].copy_from_slice(&element.initial);
+        point
     }
 
     /// Neurons and force from the inputs of the layer.
@@ -208,38 +208,38 @@ impl Place {
     }
 }
 
-impl Way {
+impl PathStep {
     pub fn new(element: &Element) -> Self {
         let shape = element.shape();
-        let to = Place::zero(shape);
+        let end = PathPoint::zero(shape);
         Self {
-            inputs_ahead: to.inputs.clone(),
-            neurons_ahead: to.neurons.clone(),
+            inputs_ahead: end.inputs.clone(),
+            neurons_ahead: end.neurons.clone(),
             targets: vec![0.0; shape.states],
             targets_ahead: vec![0.0; shape.states],
             weights: vec![StateWeights::default(); shape.states],
             moved: 0.0,
             at_threshold: vec![0.0; shape.stops],
             strengths: vec![1.0; shape.stops],
-            to,
+            end,
         }
     }
 
-    /// The weights of the targets in the direction of this way.
+    /// The weights of the targets in the direction of this step.
     #[inline(always)]
     pub fn targets_of<'e>(&self, element: &'e Element) -> &'e [f64] {
         if self.moved < 0.0 { &element.falling } else { &element.rising }
     }
 
-    /// The way to a displacement and velocity.
+    /// Takes the step from a point to a displacement and velocity.
     #[inline(always)]
-    pub fn go<S: Simd>(&mut self, element: &Element, from: &Place, displacement: f64, velocity: f64) {
+    pub fn take<S: Simd>(&mut self, element: &Element, from: &PathPoint, displacement: f64, velocity: f64) {
         let shape = element.shape();
         let (stops, first_state) = (shape.stops, shape.first_state());
         self.moved = displacement - from.inputs[1];
         let rows = self.targets_of(element);
         let path = self.moved.abs();
-        let Place { inputs, elongations, slips, .. } = &mut self.to;
+        let PathPoint { inputs, elongations, slips, .. } = &mut self.end;
         (inputs[0], inputs[1], inputs[2]) = (1.0, displacement, velocity);
         let of_velocity = velocity - from.inputs[2];
         for i in 0..stops {
@@ -253,7 +253,7 @@ impl Way {
             self.at_threshold[i] = if elongation == free { 0.0 } else { elongation };
             inputs[3 + i] = elongation * self.strengths[i];
         }
-        let inputs = &mut self.to.inputs;
+        let inputs = &mut self.end.inputs;
         self.inputs_ahead[..first_state].copy_from_slice(&inputs[..first_state]);
         for (i, before) in from.inputs[first_state..].iter().enumerate() {
             let weights = StateWeights::of::<S>(element.path_leaks[i] * path);
@@ -267,9 +267,9 @@ impl Way {
             let StateWeights { kept, first, last, .. } = self.weights[i];
             let ahead = product::<S>(&rows[i * shape.neurons..][..shape.neurons], &self.neurons_ahead);
             self.targets_ahead[i] = ahead;
-            self.to.inputs[first_state + i] =
+            self.end.inputs[first_state + i] =
                 multiply_add::<S>(kept, *before, multiply_add::<S>(first, self.targets[i], last * ahead));
         }
-        self.to.finish::<S>(element);
+        self.end.finish::<S>(element);
     }
 }

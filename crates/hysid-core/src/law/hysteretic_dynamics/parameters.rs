@@ -24,7 +24,7 @@ pub struct ModeLayout {
     pub ln_damping: usize,
     /// `b`.
     pub gain: usize,
-    /// `k`; empty for an oscillator.
+    /// `η`; empty for an oscillator.
     pub velocity_in_output: Range<usize>,
 }
 

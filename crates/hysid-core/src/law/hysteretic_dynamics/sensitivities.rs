@@ -3,7 +3,7 @@
 //!
 //! A step is differentiated as a whole (theory.md (15.13)): first the motion without the forces at its end, then those
 //! forces, which depend on the displacements that they cause, by solving `(1 - ∂R/∂r) ∂r = ∂R`, then what follows
-//! from them. The local derivatives of an element by the ends of its way come from sweeps backwards through its layer,
+//! from them. The local derivatives of an element by the ends of its step come from sweeps backwards through its layer,
 //! one for each state and one for the force.
 
 mod of_stops;
@@ -11,7 +11,7 @@ mod of_stops;
 use of_stops::{OfStops, add_by_end};
 use pulp::{Simd, WithSimd};
 
-use super::element::{Element, Place, Way};
+use super::element::{Element, PathPoint, PathStep};
 use super::parameters::{DIRECT, ElementLayout, Layout, OFFSET};
 use super::propagation::PropagationSlopes;
 use super::trial::Motion;
@@ -177,7 +177,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
     }
 }
 
-/// Derivatives of the motion on their way along a record. A row has one number for each parameter, in whole groups.
+/// Derivatives of the motion, carried forward along a record. A row has one number for each parameter, in whole groups.
 struct Sensitivities<'l> {
     layout: &'l Layout,
     width: usize,
@@ -202,19 +202,19 @@ struct Sensitivities<'l> {
 
 /// Derivatives of an element.
 struct OfElement {
-    /// Of its place: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
-    place: Vec<f64>,
-    /// Of the outputs of stops and of the states at the end of a way, without those of `δ` and `ν` there.
+    /// At its point of the path: `∂δ`, `∂ν`, `∂z` of each stop, `∂s` of each state.
+    point: Vec<f64>,
+    /// Of the outputs of stops and of the states at the end of a step, without those of `δ` and `ν` there.
     memory: Vec<f64>,
     stops: OfStops,
     of_states: Vec<Local>,
     of_force: Local,
-    /// Where the way began.
-    from: Option<Place>,
+    /// Where the step began.
+    from: Option<PathPoint>,
     scratch: Scratch,
 }
 
-/// Derivatives of one number at the end of a way.
+/// Derivatives of one number at the end of a step.
 #[derive(Clone)]
 struct Local {
     /// By `δ`, `ν`, stops and states at its beginning; empty for the force.
@@ -243,7 +243,7 @@ impl OfElement {
             by_velocity: 0.0,
         };
         Self {
-            place: vec![0.0; (2 + memory) * width],
+            point: vec![0.0; (2 + memory) * width],
             memory: vec![0.0; memory * width],
             stops: OfStops::new(shape, width),
             of_states: vec![local.clone(); shape.states],
@@ -289,13 +289,13 @@ impl<'l> Sensitivities<'l> {
         self.forces.fill(0.0);
         for (e, element) in self.elements.iter_mut().enumerate() {
             let layout = &self.layout.elements[e];
-            element.place.fill(0.0);
+            element.point.fill(0.0);
             element.stops.begin();
             for (i, place) in layout.initial.clone().enumerate() {
-                element.place[(2 + shape.stops + i) * width + place] = 1.0;
+                element.point[(2 + shape.stops + i) * width + place] = 1.0;
             }
         }
-        self.forces_of_places::<S>(dynamics, motion);
+        self.forces_at_points::<S>(dynamics, motion);
     }
 
     /// After [`Motion::displace`].
@@ -313,7 +313,7 @@ impl<'l> Sensitivities<'l> {
         }
         for (e, own) in self.elements.iter_mut().enumerate() {
             let (element, layout) = (&dynamics.elements[e], &self.layout.elements[e]);
-            let (displacement, rest) = own.place.split_at_mut(width);
+            let (displacement, rest) = own.point.split_at_mut(width);
             let velocity = &mut rest[..width];
             for i in 0..modes {
                 let (by_displacement, by_velocity) = (element.of_displacements[i], element.of_velocities[i]);
@@ -331,29 +331,29 @@ impl<'l> Sensitivities<'l> {
                 }
             }
         }
-        self.forces_of_places::<S>(dynamics, motion);
+        self.forces_at_points::<S>(dynamics, motion);
     }
 
-    /// `∂r` where the elements are, from what describes the places.
+    /// `∂r` where the elements are, from what describes their points.
     #[inline(always)]
-    fn forces_of_places<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
+    fn forces_at_points<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion) {
         let width = self.width;
         for (e, own) in self.elements.iter_mut().enumerate() {
             let force = &mut self.forces[e * width..(e + 1) * width];
-            own.force::<S>(&dynamics.elements[e], &self.layout.elements[e], &motion.places[e], force);
+            own.force::<S>(&dynamics.elements[e], &self.layout.elements[e], &motion.points[e], force);
             let Local { by_displacement, by_velocity, .. } = own.of_force;
-            add_multiples::<S>(force, &[by_displacement, by_velocity], &own.place);
-            add_multiples::<S>(force, &own.of_force.by_memory, &own.place[2 * width..]);
+            add_multiples::<S>(force, &[by_displacement, by_velocity], &own.point);
+            add_multiples::<S>(force, &own.of_force.by_memory, &own.point[2 * width..]);
         }
     }
 
     /// Keeps where a step begins.
     #[inline(always)]
     fn remember(&mut self, motion: &Motion) {
-        for (element, place) in self.elements.iter_mut().zip(&motion.places) {
+        for (element, point) in self.elements.iter_mut().zip(&motion.points) {
             match &mut element.from {
-                Some(from) => from.copy_from(place),
-                none => *none = Some(place.clone()),
+                Some(from) => from.copy_from(point),
+                none => *none = Some(point.clone()),
             }
         }
     }
@@ -449,21 +449,22 @@ impl<'l> Sensitivities<'l> {
     #[inline(always)]
     fn element<S: Simd>(&mut self, dynamics: &Dynamics, motion: &Motion, e: usize) {
         let (width, shape) = (self.width, self.layout.shape);
-        let (element, layout, way) = (&dynamics.elements[e], &self.layout.elements[e], &motion.ways[e]);
+        let (element, layout) = (&dynamics.elements[e], &self.layout.elements[e]);
+        let step = &motion.path_steps[e];
         let own = &mut self.elements[e];
         let from = own.from.as_ref().expect("the beginning of a step is remembered");
-        let ends = Ends { element, layout, shape, from, way };
+        let ends = Ends { element, layout, shape, from, step };
         let (outputs, states) = own.memory.split_at_mut(shape.stops * width);
-        own.stops.go::<S>(ends, &own.place, outputs);
+        own.stops.take::<S>(ends, &own.point, outputs);
         for (k, local) in own.of_states.iter_mut().enumerate() {
             let row = &mut states[k * width..(k + 1) * width];
             ends.of_state::<S>(k, &mut own.scratch, local, row);
             local.through_stops(&own.stops.outputs);
-            add_multiples::<S>(row, &local.by_start, &own.place);
+            add_multiples::<S>(row, &local.by_start, &own.point);
             add_multiples::<S>(row, &local.by_memory[..shape.stops], outputs);
         }
         let row = &mut self.new_forces[e * width..(e + 1) * width];
-        own.force::<S>(element, layout, &way.to, row);
+        own.force::<S>(element, layout, &step.end, row);
         own.of_force.through_stops(&own.stops.outputs);
         for (local, by) in own.of_states.iter().zip(&own.of_force.by_memory[shape.stops..]) {
             own.of_force.by_displacement += by * local.by_displacement;
@@ -594,15 +595,21 @@ impl<'l> Sensitivities<'l> {
 }
 
 impl OfElement {
-    /// Of the force at a place: by `δ`, `ν` and memory there, and in `row` by its own parameters.
+    /// Of the force at a point of the path: by `δ`, `ν` and memory there, and in `row` by its own parameters.
     #[inline(always)]
-    fn force<S: Simd>(&mut self, element: &Element, layout: &ElementLayout, place: &Place, row: &mut [f64]) {
+    fn force<S: Simd>(
+        &mut self,
+        element: &Element,
+        layout: &ElementLayout,
+        point: &PathPoint,
+        row: &mut [f64],
+    ) {
         let Scratch { back, by_inputs, .. } = &mut self.scratch;
         let first_free = element.shape().first_free_input();
-        let memory = place.inputs.len() - 3;
+        let memory = point.inputs.len() - 3;
         let (of_memory, of_neurons) = element.force.split_at(memory);
-        for ((back, weight), h) in back.iter_mut().zip(of_neurons).zip(&place.neurons) {
-            *back = weight * (1.0 - h * h);
+        for ((back, weight), phi) in back.iter_mut().zip(of_neurons).zip(&point.neurons) {
+            *back = weight * (1.0 - phi * phi);
         }
         through_layer::<S>(element, back, by_inputs);
         let local = &mut self.of_force;
@@ -612,16 +619,16 @@ impl OfElement {
         }
         row.fill(0.0);
         let (own_memory, own_neurons) = row[layout.force.clone()].split_at_mut(memory);
-        own_memory.copy_from_slice(&place.inputs[3..]);
-        own_neurons.copy_from_slice(&place.neurons);
-        add_of_layer(&place.inputs[first_free..], back, &mut row[layout.layer.clone()]);
+        own_memory.copy_from_slice(&point.inputs[3..]);
+        own_neurons.copy_from_slice(&point.neurons);
+        add_of_layer(&point.inputs[first_free..], back, &mut row[layout.layer.clone()]);
     }
 
-    /// To the end of the way, from `∂δ` and `∂ν` there.
+    /// To the end of the step, from `∂δ` and `∂ν` there.
     #[inline(always)]
     fn end<S: Simd>(&mut self, displacement: &[f64], velocity: &[f64]) {
         let width = displacement.len();
-        let (ends, memory) = self.place.split_at_mut(2 * width);
+        let (ends, memory) = self.point.split_at_mut(2 * width);
         self.stops.end::<S>(displacement, velocity);
         memory.copy_from_slice(&self.memory);
         let (outputs, states) = memory.split_at_mut(self.stops.outputs.len() * width);
@@ -635,7 +642,7 @@ impl OfElement {
 }
 
 impl Local {
-    /// Adds what depends on `δ` and `ν` at the end of a way through the stops there.
+    /// Adds what depends on `δ` and `ν` at the end of a step through the stops there.
     #[inline(always)]
     fn through_stops(&mut self, outputs: &[[f64; 2]]) {
         for (by, [of_displacement, of_velocity]) in self.by_memory.iter().zip(outputs) {
@@ -645,61 +652,62 @@ impl Local {
     }
 }
 
-/// A way of an element and its ends.
+/// A step of an element and its ends.
 #[derive(Clone, Copy)]
 pub(super) struct Ends<'a> {
     element: &'a Element,
     layout: &'a ElementLayout,
     shape: Shape,
-    from: &'a Place,
-    way: &'a Way,
+    from: &'a PathPoint,
+    step: &'a PathStep,
 }
 
 impl Ends<'_> {
-    /// Derivatives of state `k` at the end of the way by its ends, and in `row` by the parameters of the element.
+    /// Derivatives of state `k` at the end of the step by its ends, and in `row` by the parameters of the element.
     #[inline(always)]
     fn of_state<S: Simd>(&self, k: usize, scratch: &mut Scratch, local: &mut Local, row: &mut [f64]) {
-        let Self { element, layout, shape, from, way } = *self;
+        let Self { element, layout, shape, from, step } = *self;
         let Scratch { back, back_ahead, by_inputs, on_targets } = scratch;
         let (neurons, first_state, first_free) =
             (shape.neurons, shape.first_state(), shape.first_free_input());
-        let rows = way.targets_of(element);
-        let of_targets = if way.moved < 0.0 { layout.falling.start } else { layout.rising.start };
-        let last = way.weights[k].last;
+        let rows = step.targets_of(element);
+        let of_targets = if step.moved < 0.0 { layout.falling.start } else { layout.rising.start };
+        let last = step.weights[k].last;
         local.by_start.fill(0.0);
         local.by_memory.fill(0.0);
         row.fill(0.0);
 
         // T_1, taken with the states ahead.
-        for ((back, weight), h) in back_ahead.iter_mut().zip(&rows[k * neurons..]).zip(&way.neurons_ahead) {
-            *back = last * weight * (1.0 - h * h);
+        for ((back, weight), phi) in back_ahead.iter_mut().zip(&rows[k * neurons..]).zip(&step.neurons_ahead)
+        {
+            *back = last * weight * (1.0 - phi * phi);
         }
         through_layer::<S>(element, back_ahead, by_inputs);
-        for (to, h) in row[of_targets + k * neurons..].iter_mut().zip(&way.neurons_ahead) {
-            *to += last * h;
+        for (to, phi) in row[of_targets + k * neurons..].iter_mut().zip(&step.neurons_ahead) {
+            *to += last * phi;
         }
-        add_of_layer(&way.inputs_ahead[first_free..], back_ahead, &mut row[layout.layer.clone()]);
+        add_of_layer(&step.inputs_ahead[first_free..], back_ahead, &mut row[layout.layer.clone()]);
         (local.by_displacement, local.by_velocity) = (by_inputs[1], by_inputs[2]);
         local.by_memory[..shape.stops].copy_from_slice(&by_inputs[3..first_state]);
 
         // The states ahead, and the weights of the targets, follow from the travel.
         let mut by_path = 0.0;
-        for (j, weights) in way.weights.iter().enumerate() {
+        for (j, weights) in step.weights.iter().enumerate() {
             let (before, ahead) = (from.inputs[first_state + j], by_inputs[first_state + j]);
-            let mut by_travel = weights.kept * (way.targets[j] - before) * ahead;
+            let mut by_travel = weights.kept * (step.targets[j] - before) * ahead;
             local.by_start[2 + shape.stops + j] = weights.kept * ahead;
             on_targets[j] = (1.0 - weights.kept) * ahead;
             if j == k {
                 let (of_first, of_last) = weights.slopes();
                 by_travel +=
-                    of_first * way.targets[k] + of_last * way.targets_ahead[k] - weights.kept * before;
+                    of_first * step.targets[k] + of_last * step.targets_ahead[k] - weights.kept * before;
                 local.by_start[2 + shape.stops + j] += weights.kept;
                 on_targets[j] += weights.first;
             }
             row[layout.ln_path_leaks.start + j] = by_travel * weights.travel;
             by_path += by_travel * element.path_leaks[j];
         }
-        let by_moved = if way.moved < 0.0 { -by_path } else { by_path };
+        let by_moved = if step.moved < 0.0 { -by_path } else { by_path };
         local.by_displacement += by_moved;
         local.by_start[0] -= by_moved;
 
@@ -708,9 +716,9 @@ impl Ends<'_> {
         for (j, on_target) in on_targets.iter().enumerate() {
             let own = rows[j * neurons..].iter().zip(&from.neurons);
             let places = row[of_targets + j * neurons..].iter_mut();
-            for ((back, to), (weight, h)) in back.iter_mut().zip(places).zip(own) {
-                *back += on_target * weight * (1.0 - h * h);
-                *to += on_target * h;
+            for ((back, to), (weight, phi)) in back.iter_mut().zip(places).zip(own) {
+                *back += on_target * weight * (1.0 - phi * phi);
+                *to += on_target * phi;
             }
         }
         through_layer::<S>(element, back, by_inputs);

@@ -189,7 +189,7 @@ fn the_force_of_a_single_element_is_always_found() {
             let step = if k % 20 == 0 { f64::INFINITY } else { (6.0 * numbers.next()).exp() };
             dynamics.step(&mut motion, Sample { x: 3.0 * numbers.next(), rate: 0.0, step });
             let (largest, found) = (dynamics.elements[0].bounds().0, &motion);
-            let mismatch = found.places[0].force - found.forces[0];
+            let mismatch = found.points[0].force - found.forces[0];
             assert!(mismatch.abs() <= 1e-8 * largest, "{seed} {k}: {mismatch} of {largest}");
         }
     }
@@ -295,7 +295,7 @@ fn a_stop_deteriorates_as_the_operator_does() {
     let capacity = 4.0;
     element.strength_losses = element.thresholds.iter().map(|r| 1.0 / (r * capacity)).collect();
     element.stop_velocities = vec![0.0, 0.4];
-    let (mut place, mut way) = (element::Place::virgin(&element), element::Way::new(&element));
+    let (mut point, mut step) = (element::PathPoint::virgin(&element), element::PathStep::new(&element));
     let stop = |i: usize| DeterioratingStop::new(element.thresholds[i], capacity).unwrap();
     let (mut plain, mut of_rate) = (stop(0), stop(1));
     plain.step(0.0);
@@ -303,10 +303,10 @@ fn a_stop_deteriorates_as_the_operator_does() {
     let mut numbers = Numbers::new(4);
     for _ in 0..40 {
         let (displacement, velocity) = (numbers.next(), numbers.next());
-        way.go::<pulp::Scalar>(&element, &place, displacement, velocity);
-        place.copy_from(&way.to);
+        step.take::<pulp::Scalar>(&element, &point, displacement, velocity);
+        point.copy_from(&step.end);
         let expected = [plain.step(displacement), of_rate.step(displacement + 0.4 * velocity)];
-        assert!((0..2).all(|i| (place.inputs[3 + i] - expected[i]).abs() < 1e-12), "{expected:?}");
+        assert!((0..2).all(|i| (point.inputs[3 + i] - expected[i]).abs() < 1e-12), "{expected:?}");
     }
     assert!(plain.is_dead() || of_rate.is_dead());
 }
@@ -350,7 +350,7 @@ fn what_does_not_fit_together_is_refused() {
         ("go together", |d| d.elements[0].compliances.clear()),
         ("ζ_1", |d| d.modes[0].damping = -0.1),
         ("ω_2", |d| d.modes[1].frequency = f64::NAN),
-        ("c_1,1", |d| d.elements[0].path_leaks[0] = 0.0),
+        ("γ_1,1", |d| d.elements[0].path_leaks[0] = 0.0),
     ];
     for (words, change) in broken {
         let mut changed = sound.clone();

@@ -3,7 +3,7 @@
 
 use pulp::Simd;
 
-use super::element::{Place, Way};
+use super::element::{PathPoint, PathStep};
 use super::hold::{Hold, Recent};
 use super::propagation::Propagation;
 use super::{Dynamics, STATIC_STEPS};
@@ -12,7 +12,7 @@ use crate::simd::multiply_add;
 /// Trials of a step at most.
 const MOST_TRIALS: usize = 40;
 
-/// Trials after which the force of a single element is enclosed, because the quick way has not found it.
+/// Trials after which the force of a single element is enclosed, because the secant has not found it.
 const TRIALS_IN_HASTE: usize = 6;
 
 /// Difference of two trials, relative to the largest force, below which rounding hides the slope.
@@ -37,10 +37,11 @@ pub struct Motion {
     /// What the modes do in a step without the forces at its end.
     displacements_alone: Vec<f64>,
     velocities_alone: Vec<f64>,
-    pub(super) places: Vec<Place>,
-    /// The way of each element in the last step.
-    pub(super) ways: Vec<Way>,
-    /// Forces of the elements at the beginning and at the end of the last step, as the modes feel them.
+    /// Where each element is on its path.
+    pub(super) points: Vec<PathPoint>,
+    /// The last step of each element.
+    pub(super) path_steps: Vec<PathStep>,
+    /// Forces of the elements at the beginning and at the end of the last step, as they act on the modes.
     pub(super) forces_before: Vec<f64>,
     pub(super) forces: Vec<f64>,
     /// Bounds of the forces.
@@ -73,7 +74,7 @@ impl Motion {
     /// At rest without input, before the first sample.
     pub(super) fn virgin(dynamics: &Dynamics) -> Self {
         let (modes, elements) = (dynamics.modes.len(), &dynamics.elements);
-        let places: Vec<Place> = elements.iter().map(Place::virgin).collect();
+        let points: Vec<PathPoint> = elements.iter().map(PathPoint::virgin).collect();
         Self {
             displacements: vec![0.0; modes],
             velocities: vec![0.0; modes],
@@ -81,13 +82,13 @@ impl Motion {
             velocities_before: vec![0.0; modes],
             displacements_alone: vec![0.0; modes],
             velocities_alone: vec![0.0; modes],
-            ways: elements.iter().map(Way::new).collect(),
+            path_steps: elements.iter().map(PathStep::new).collect(),
             forces_before: vec![0.0; elements.len()],
             forces: vec![0.0; elements.len()],
             largest: elements.iter().map(|element| element.bounds().0).collect(),
             slopes: vec![0.0; elements.len()],
             tried: vec![(0.0, 0.0); elements.len()],
-            places,
+            points,
             input_before: 0.0,
             input: 0.0,
             recent: Recent::default(),
@@ -105,13 +106,13 @@ impl Motion {
     /// The forces of virgin elements, before the first sample.
     #[inline(always)]
     pub(super) fn start<S: Simd>(&mut self, dynamics: &Dynamics) {
-        for (e, (place, element)) in self.places.iter_mut().zip(&dynamics.elements).enumerate() {
-            place.finish::<S>(element);
-            (self.forces[e], self.forces_before[e]) = (place.force, place.force);
+        for (e, (point, element)) in self.points.iter_mut().zip(&dynamics.elements).enumerate() {
+            point.finish::<S>(element);
+            (self.forces[e], self.forces_before[e]) = (point.force, point.force);
         }
     }
 
-    /// Moves the modes by displacements and velocities, without a way from there to here: a record that begins in
+    /// Moves the modes by displacements and velocities, without a path from there to here: a record that begins in
     /// mid-motion.
     #[inline(always)]
     pub(super) fn displace<S: Simd>(
@@ -124,13 +125,13 @@ impl Motion {
             self.displacements[i] += displacements[i];
             self.velocities[i] += velocities[i];
         }
-        for (e, (place, element)) in self.places.iter_mut().zip(&dynamics.elements).enumerate() {
+        for (e, (point, element)) in self.points.iter_mut().zip(&dynamics.elements).enumerate() {
             for (i, (q, p)) in displacements.iter().zip(velocities).enumerate() {
-                place.inputs[1] += element.of_displacements[i] * q + element.of_velocities[i] * p;
-                place.inputs[2] += element.of_displacements[i] * p;
+                point.inputs[1] += element.of_displacements[i] * q + element.of_velocities[i] * p;
+                point.inputs[2] += element.of_displacements[i] * p;
             }
-            place.finish::<S>(element);
-            (self.forces[e], self.forces_before[e]) = (place.force, place.force);
+            point.finish::<S>(element);
+            (self.forces[e], self.forces_before[e]) = (point.force, point.force);
         }
     }
 
@@ -224,8 +225,8 @@ impl Motion {
         (self.input_before, self.input) = (self.input, input);
         self.move_alone::<S>(dynamics);
         self.find_forces::<S>(dynamics);
-        for (place, way) in self.places.iter_mut().zip(&self.ways) {
-            place.copy_from(&way.to);
+        for (point, step) in self.points.iter_mut().zip(&self.path_steps) {
+            point.copy_from(&step.end);
         }
     }
 
@@ -256,9 +257,9 @@ impl Motion {
         }
     }
 
-    /// The way of an element to where the modes are.
+    /// Tries the step of an element to where the modes are.
     #[inline(always)]
-    fn try_way<S: Simd>(&mut self, dynamics: &Dynamics, index: usize) {
+    fn try_step<S: Simd>(&mut self, dynamics: &Dynamics, index: usize) {
         let element = &dynamics.elements[index];
         let (mut displacement, mut velocity) = (element.of_input * self.input, 0.0);
         for (i, (q, p)) in self.displacements.iter().zip(&self.velocities).enumerate() {
@@ -266,7 +267,7 @@ impl Motion {
             displacement = multiply_add::<S>(element.of_velocities[i], *p, displacement);
             velocity = multiply_add::<S>(element.of_displacements[i], *p, velocity);
         }
-        self.ways[index].go::<S>(element, &self.places[index], displacement, velocity);
+        self.path_steps[index].take::<S>(element, &self.points[index], displacement, velocity);
     }
 
     /// Finds forces `r` with `R(r) = r`, where `R` follows from the displacements under `r` (theory.md (15.11)).
@@ -285,7 +286,7 @@ impl Motion {
         for trial in 1..=MOST_TRIALS {
             self.move_modes::<S>(dynamics);
             for e in 0..count {
-                self.try_way::<S>(dynamics, e);
+                self.try_step::<S>(dynamics, e);
             }
             let is_found = |e: usize| self.mismatch(e).abs() <= TOLERANCE * self.largest[e];
             if trial == MOST_TRIALS || (0..count).all(is_found) {
@@ -317,13 +318,13 @@ impl Motion {
     /// Difference of the force that follows from the one that is assumed.
     #[inline(always)]
     fn mismatch(&self, e: usize) -> f64 {
-        self.ways[e].to.force - self.forces[e]
+        self.path_steps[e].end.force - self.forces[e]
     }
 
     /// The force to assume next.
     #[inline(always)]
     fn next_force(&mut self, e: usize, was_tried: bool) -> f64 {
-        let (assumed, follows, largest) = (self.forces[e], self.ways[e].to.force, self.largest[e]);
+        let (assumed, follows, largest) = (self.forces[e], self.path_steps[e].end.force, self.largest[e]);
         let (assumed_before, followed_before) = self.tried[e];
         let by = assumed - assumed_before;
         if was_tried && by.abs() > LEAST_DIFFERENCE * largest {

@@ -9,13 +9,13 @@ use crate::law::hysteretic_dynamics::Shape;
 pub(super) struct OfStops {
     width: usize,
     deteriorates: bool,
-    /// `∂e` and `∂S` where a step begins. Slips count only for stops that deteriorate.
+    /// `∂ε` and `∂Λ` where a step begins. Slips count only for stops that deteriorate.
     elongations: Vec<f64>,
     slips: Vec<f64>,
     /// The same at its end, without those of `δ` and `ν` there.
     elongations_ahead: Vec<f64>,
     slips_ahead: Vec<f64>,
-    /// By `δ` and `ν` at the end: of `e`, of `S` and of the output `z`.
+    /// By `δ` and `ν` at the end: of `ε`, of `Λ` and of the output `z`.
     by_end_of_elongations: Vec<[f64; 2]>,
     by_end_of_slips: Vec<[f64; 2]>,
     pub outputs: Vec<[f64; 2]>,
@@ -44,27 +44,27 @@ impl OfStops {
         self.slips.fill(0.0);
     }
 
-    /// A step without `∂δ` and `∂ν` at its end; `place` has the rows of `δ` and `ν` at its beginning, and `outputs`
+    /// A step without `∂δ` and `∂ν` at its end; `point` has the rows of `δ` and `ν` at its beginning, and `outputs`
     /// takes `∂z`.
     #[inline(always)]
-    pub fn go<S: Simd>(&mut self, ends: Ends<'_>, place: &[f64], outputs: &mut [f64]) {
-        let Ends { element, layout, from, way, .. } = ends;
+    pub fn take<S: Simd>(&mut self, ends: Ends<'_>, point: &[f64], outputs: &mut [f64]) {
+        let Ends { element, layout, from, step, .. } = ends;
         let width = self.width;
-        let (displacement, velocity) = place[..2 * width].split_at(width);
+        let (displacement, velocity) = point[..2 * width].split_at(width);
         for i in 0..element.thresholds.len() {
             let rows = i * width..(i + 1) * width;
             let (elongation, threshold) = (&mut self.elongations_ahead[rows.clone()], element.thresholds[i]);
-            let (of_velocity, at_threshold) = (element.stop_velocities[i], way.at_threshold[i]);
-            // ∂f
+            let (of_velocity, at_threshold) = (element.stop_velocities[i], step.at_threshold[i]);
+            // ∂ε̂
             elongation.copy_from_slice(&self.elongations[rows.clone()]);
             add_multiple::<S>(elongation, -1.0, displacement);
             add_multiple::<S>(elongation, -of_velocity, velocity);
-            elongation[layout.stop_velocities.start + i] += way.to.inputs[2] - from.inputs[2];
+            elongation[layout.stop_velocities.start + i] += step.end.inputs[2] - from.inputs[2];
             let of_free = [1.0, of_velocity];
             self.by_end_of_elongations[i] = of_free;
             let sign = if at_threshold == 0.0 { 0.0 } else { at_threshold.signum() };
             if self.deteriorates {
-                // S moves by |f| - ρ where the stop slips.
+                // Λ moves by |ε̂| - ρ where the stop slips.
                 let slip = &mut self.slips_ahead[rows.clone()];
                 slip.copy_from_slice(&self.slips[rows.clone()]);
                 if sign != 0.0 {
@@ -82,12 +82,12 @@ impl OfStops {
             output.copy_from_slice(elongation);
             self.outputs[i] = self.by_end_of_elongations[i];
             if self.deteriorates {
-                let (strength, length) = (way.strengths[i], way.to.elongations[i]);
+                let (strength, length) = (step.strengths[i], step.end.elongations[i]);
                 let by_slip = if strength > 0.0 { -element.strength_losses[i] * length } else { 0.0 };
                 output.iter_mut().for_each(|by| *by *= strength);
                 add_multiple::<S>(output, by_slip, &self.slips_ahead[rows]);
                 if strength > 0.0 {
-                    output[layout.strength_losses.start + i] -= length * way.to.slips[i];
+                    output[layout.strength_losses.start + i] -= length * step.end.slips[i];
                 }
                 for k in 0..2 {
                     self.outputs[i][k] =

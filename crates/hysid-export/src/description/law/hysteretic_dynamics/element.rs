@@ -1,4 +1,4 @@
-//! A hysteretic element: its way to a displacement, and the force there.
+//! A hysteretic element: its step to a displacement, and the force there.
 
 use hysid_core::law::hysteretic_dynamics::{Dynamics, Element, Shape};
 
@@ -13,7 +13,7 @@ const LEAST_TRAVEL: f64 = 1e-8;
 /// The constant, which is the only input of the tanh layer that is not remembered.
 const FORGOTTEN: usize = 1;
 
-/// Places of the velocity and of the first stop or state among what is remembered.
+/// Positions of the velocity and of the first stop or state among what is remembered.
 const VELOCITY: usize = 1;
 const MEMORY: usize = 2;
 
@@ -23,8 +23,8 @@ struct StopParts {
     velocities: Array,
     /// Those of stops that deteriorate.
     strength_losses: Option<Array>,
-    /// All `e`, then all `S` of stops that deteriorate, where the element is and where it goes.
-    place: Array,
+    /// All `ε`, then all `Λ` of stops that deteriorate, where the element is and where it goes.
+    point: Array,
     ahead: Array,
     length: usize,
 }
@@ -41,9 +41,9 @@ impl StopParts {
         let velocities = constants("stop_velocity", &element.stop_velocities);
         let strength_losses = deteriorates.then(|| constants("strength_loss", &element.strength_losses));
         let length = if deteriorates { 2 * stops } else { stops };
-        let place = builder.state(&name("stop"), vec![0.0; length]);
+        let point = builder.state(&name("stop"), vec![0.0; length]);
         let ahead = builder.scratch(&name("stop_ahead"), length);
-        Some(Self { thresholds, velocities, strength_losses, place, ahead, length })
+        Some(Self { thresholds, velocities, strength_losses, point, ahead, length })
     }
 }
 
@@ -63,13 +63,13 @@ pub(super) struct ElementParts<'l> {
     /// `v`
     weights: Array,
     /// `δ, ν, z, s` and the neurons, where the element is.
-    place: Array,
-    place_neurons: Array,
+    point: Array,
+    point_neurons: Array,
     /// `1, δ, ν, z, s` and the neurons, where it goes.
     inputs: Array,
     neurons: Array,
-    /// `a`, `w_0`, `w_1` and `T_0` of each state.
-    way: Array,
+    /// `χ`, `w_0`, `w_1` and `T_0` of each state, in the step from one to the other.
+    path_step: Array,
     sums: Array,
     /// The force of each element.
     following: Array,
@@ -101,8 +101,8 @@ impl<'l> ElementParts<'l> {
         let leaks = constants("leak", &element.path_leaks);
         let layer = constants("layer", &element.layer);
         let weights = constants("weight", &element.force);
-        let mut place = vec![0.0; MEMORY + shape.stops];
-        place.extend(&element.initial);
+        let mut point = vec![0.0; MEMORY + shape.stops];
+        point.extend(&element.initial);
         Self {
             element,
             shape,
@@ -114,11 +114,11 @@ impl<'l> ElementParts<'l> {
             leaks,
             layer,
             weights,
-            place: builder.state(&name("place"), place),
-            place_neurons: builder.state(&name("neuron"), vec![0.0; shape.neurons]),
+            point: builder.state(&name("point"), point),
+            point_neurons: builder.state(&name("neuron"), vec![0.0; shape.neurons]),
             inputs: builder.scratch(&name("input"), shape.inputs()),
             neurons: builder.scratch(&name("neuron_ahead"), shape.neurons),
-            way: builder.scratch(&name("way"), 4 * shape.states),
+            path_step: builder.scratch(&name("path_step"), 4 * shape.states),
             sums,
             following,
         }
@@ -133,11 +133,11 @@ impl<'l> ElementParts<'l> {
     pub fn begin(&self, builder: &mut Builder) {
         builder.set(self.inputs, 0_usize, 1.0);
         builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
-            builder.set(self.inputs, &i + FORGOTTEN, self.place.at(&i));
+            builder.set(self.inputs, &i + FORGOTTEN, self.point.at(&i));
         });
         if let Some(stops) = &self.stops {
             builder
-                .each(0_usize, stops.length, |builder, i| builder.set(stops.ahead, &i, stops.place.at(&i)));
+                .each(0_usize, stops.length, |builder, i| builder.set(stops.ahead, &i, stops.point.at(&i)));
         }
         self.finish(builder);
         self.arrive(builder);
@@ -146,18 +146,18 @@ impl<'l> ElementParts<'l> {
     /// Remembers where the element went.
     pub fn arrive(&self, builder: &mut Builder) {
         builder.each(0_usize, MEMORY + self.memory(), |builder, i| {
-            builder.set(self.place, &i, self.inputs.at(&i + FORGOTTEN));
+            builder.set(self.point, &i, self.inputs.at(&i + FORGOTTEN));
         });
         if let Some(stops) = &self.stops {
             builder
-                .each(0_usize, stops.length, |builder, i| builder.set(stops.place, &i, stops.ahead.at(&i)));
+                .each(0_usize, stops.length, |builder, i| builder.set(stops.point, &i, stops.ahead.at(&i)));
         }
         builder.each(0_usize, self.shape.neurons, |builder, i| {
-            builder.set(self.place_neurons, &i, self.neurons.at(&i));
+            builder.set(self.point_neurons, &i, self.neurons.at(&i));
         });
     }
 
-    /// The way to where displacements and velocities of the modes and the scaled input are.
+    /// The step to where displacements and velocities of the modes and the scaled input are.
     pub fn go(&self, builder: &mut Builder, (displacements, velocities): (Array, Array), input: &Real) {
         let displacement = builder.variable(self.element.of_input * input);
         let velocity = builder.variable(0.0);
@@ -168,7 +168,7 @@ impl<'l> ElementParts<'l> {
             builder.assign(displacement, self.of_velocities.at(&i) * &p + Real::from(displacement));
             builder.assign(velocity, of_displacement * p + Real::from(velocity));
         });
-        let moved = builder.value(Real::from(displacement) - self.place.at(0_usize));
+        let moved = builder.value(Real::from(displacement) - self.point.at(0_usize));
         builder.set(self.inputs, 0_usize, 1.0);
         builder.set(self.inputs, 1_usize, displacement);
         builder.set(self.inputs, 2_usize, velocity);
@@ -182,16 +182,16 @@ impl<'l> ElementParts<'l> {
     fn stops(&self, builder: &mut Builder, moved: &Real, velocity: &Real) {
         let Some(parts) = &self.stops else { return };
         let stops = self.shape.stops;
-        let of_velocity = builder.value(velocity - self.place.at(VELOCITY));
+        let of_velocity = builder.value(velocity - self.point.at(VELOCITY));
         builder.each(0_usize, stops, |builder, i| {
             let driven = builder.value(parts.velocities.at(&i) * &of_velocity + moved);
-            let free = builder.value(parts.place.at(&i) + driven);
+            let free = builder.value(parts.point.at(&i) + driven);
             let threshold = builder.value(parts.thresholds.at(&i));
             let elongation = builder.value(free.clone().clamp(-&threshold, &threshold));
             builder.set(parts.ahead, &i, &elongation);
             let output = match parts.strength_losses {
                 Some(losses) => {
-                    let slip = builder.value(parts.place.at(&i + stops) + (free - &elongation).abs());
+                    let slip = builder.value(parts.point.at(&i + stops) + (free - &elongation).abs());
                     builder.set(parts.ahead, &i + stops, &slip);
                     elongation * (1.0 - losses.at(&i) * slip).max(0.0)
                 }
@@ -211,7 +211,7 @@ impl<'l> ElementParts<'l> {
             let row = Whole::from(builder.whole_variable(Whole::from(rows) + i * neurons));
             product(builder, (self.targets, &row), (of, &zero), (neurons, self.sums))
         };
-        let way = |what: usize, i: &Whole| i + what * states;
+        let entry = |what: usize, i: &Whole| i + what * states;
         builder.each(0_usize, states, |builder, i| {
             let travel = builder.value(self.leaks.at(&i) * &path);
             let half = builder.value(0.5 * &travel);
@@ -221,20 +221,20 @@ impl<'l> ElementParts<'l> {
             let mean = builder.value(is_far.choose(&left / &travel, 1.0 - 0.5 * &travel));
             let kept = builder.value(1.0 - left);
             let first = builder.value(&mean - &kept);
-            let target = target(builder, &i, self.place_neurons);
-            let before = builder.value(self.place.at(&i + (MEMORY + stops)));
+            let target = target(builder, &i, self.point_neurons);
+            let before = builder.value(self.point.at(&i + (MEMORY + stops)));
             let ahead = (1.0 - &kept) * (&target - &before) + &before;
             builder.set(self.inputs, &i + (3 + stops), ahead);
-            builder.set(self.way, way(0, &i), kept);
-            builder.set(self.way, way(1, &i), first.max(0.0));
-            builder.set(self.way, way(2, &i), 1.0 - mean);
-            builder.set(self.way, way(3, &i), target);
+            builder.set(self.path_step, entry(0, &i), kept);
+            builder.set(self.path_step, entry(1, &i), first.max(0.0));
+            builder.set(self.path_step, entry(2, &i), 1.0 - mean);
+            builder.set(self.path_step, entry(3, &i), target);
         });
         self.layer(builder);
         builder.each(0_usize, states, |builder, i| {
             let ahead = target(builder, &i, self.neurons);
-            let [kept, first, last, target] = [0, 1, 2, 3].map(|what| self.way.at(way(what, &i)));
-            let before = self.place.at(&i + (MEMORY + stops));
+            let [kept, first, last, target] = [0, 1, 2, 3].map(|what| self.path_step.at(entry(what, &i)));
+            let before = self.point.at(&i + (MEMORY + stops));
             builder.set(self.inputs, &i + (3 + stops), kept * before + (first * target + last * ahead));
         });
     }
