@@ -14,7 +14,7 @@ use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid::options::ModelName;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::specimens::BoucWenOscillator;
+use hysid::specimens::{BoucWenOscillator, PiezoStage};
 use hysid::stop_check::StopCheck;
 
 /// Rows a second, and steps of the integration in a row.
@@ -110,8 +110,8 @@ fn the_bouc_wen_oscillator_is_identified_and_simulated_on_unseen_forces() {
         HystereticOscillator::fit(&seen, &options(ClassicalModel::HystereticOscillator), &mut go_on).unwrap();
     let of_oscillator = error(&found.law, &unseen);
     assert!(of_oscillator < 0.03, "{of_oscillator}");
-    let found =
-        HystereticStateSpace::fit(&seen, &options(ClassicalModel::HystereticStateSpace), &mut go_on).unwrap();
+    let all_starts = ClassicalOptions { starts: None, ..options(ClassicalModel::HystereticStateSpace) };
+    let found = HystereticStateSpace::fit(&seen, &all_starts, &mut go_on).unwrap();
     let of_state_space = error(&found.law, &unseen);
     assert!(of_state_space < 0.15, "{of_state_space}");
 }
@@ -146,6 +146,61 @@ fn the_parameters_of_a_linear_oscillator_are_found() {
     let gain = mode.gain * found.law.0.output_scale / found.law.0.input_scale;
     let mass = 1.0 / (gain * mode.frequency * mode.frequency);
     assert!((mass / 2.0 - 1.0).abs() < 0.01, "{mass}");
+}
+
+/// A record that is cut out of a longer one begins in mid-motion. Neither that nor how it begins changes the oscillator
+/// that is found.
+#[test]
+fn a_record_in_mid_motion_does_not_change_the_oscillator() {
+    let whole = record(3, 1500, true);
+    let cut = |from: usize| {
+        let inputs = vec![whole.inputs()[0][from..].to_vec()];
+        let time = whole.time().unwrap()[from..].to_vec();
+        Record::new("cut", inputs, whole.output()[from..].to_vec()).unwrap().with_time(time).unwrap()
+    };
+    for records in [vec![cut(311)], vec![record(5, 400, true), cut(700)]] {
+        let linear = ClassicalOptions {
+            hidden: Some(1),
+            states: Some(0),
+            ..options(ClassicalModel::HystereticOscillator)
+        };
+        let found = HystereticOscillator::fit(&data(records), &linear, &mut go_on).unwrap();
+        let unseen = error(&found.law, &data(vec![record(4, 1200, true)]));
+        assert!(unseen < 2e-3, "{unseen}");
+    }
+}
+
+/// A piezo stage has its hysteresis at the input, and one mode. A second mode in the model must not lead to a much worse
+/// one.
+#[test]
+fn hysteresis_at_the_input_is_identified_with_one_mode_and_with_two() {
+    let stage = |seed: u64, rows: usize| {
+        let step = 2e-4;
+        let voltage = |k: usize| {
+            let t = k as f64 * step;
+            let phase = |k: u64| std::f64::consts::TAU * number(seed * 37 + k * k);
+            let tone = |k: u64, frequency: f64| (std::f64::consts::TAU * frequency * t + phase(k)).sin();
+            let slow: f64 = (1..=5).map(|k| 8.0 * tone(k, 5.1 * k as f64)).sum();
+            let fast: f64 = (6..=14).map(|k| 0.7 * tone(k, 31.3 * (k - 4) as f64)).sum();
+            (1.0 - (-t / 0.01).exp()) * (50.0 + slow + fast)
+        };
+        let volts: Vec<f64> = (0..rows).map(voltage).collect();
+        let motion = PiezoStage::designed().motion(volts.iter().copied(), step, 4);
+        let displacement = motion.map(|at| at.displacement).collect();
+        let time = (0..rows).map(|k| k as f64 * step).collect();
+        Record::new("stage", vec![volts], displacement).unwrap().with_time(time).unwrap()
+    };
+    let (seen, unseen) = (data(vec![stage(1, 2500)]), data(vec![stage(2, 2500)]));
+    for modes in [1, 2] {
+        let asked = ClassicalOptions {
+            modes: Some(modes),
+            starts: None,
+            ..options(ClassicalModel::HystereticStateSpace)
+        };
+        let found = HystereticStateSpace::fit(&seen, &asked, &mut go_on).unwrap();
+        let unseen = error(&found.law, &unseen);
+        assert!(unseen < 0.02, "{modes}: {unseen}");
+    }
 }
 
 /// Random samples at three times the trained amplitude stay within the bound that the model states.

@@ -202,7 +202,7 @@ pub const OPTIONS: [FitOption; 31] = [
         values: Values::Count(1, MOST_STARTS),
         default: "2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for \
                   rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for \
-                  generalized-prandtl-ishlinskii, 2 for models with inertia",
+                  generalized-prandtl-ishlinskii, 4 for models with inertia",
         used_by: |_, _| true,
     },
     FitOption {

@@ -131,7 +131,7 @@ def fit(
         Number of random starts: networks, populations or parameter sets from which the training begins.
         Default: 2; 8 for levenberg-marquardt; 1 for hybrid and genetic; 16 for
         rate-dependent-prandtl-ishlinskii and neuro-madelung, 6 for duhem-nn, 32 for
-        generalized-prandtl-ishlinskii, 2 for models with inertia.
+        generalized-prandtl-ishlinskii, 4 for models with inertia.
     epochs : int, optional
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400; 2000 for
