@@ -131,12 +131,9 @@ impl Layout {
 
     /// True for a gain or a compliance of a mode after the first. Where all of them are 0, only the first mode moves.
     pub fn excites_later_modes(&self, index: usize) -> bool {
-        let modes = self.modes.len();
+        let is_later = |compliances: &Range<usize>| compliances.contains(&index) && index > compliances.start;
         self.modes[1..].iter().any(|mode| mode.gain == index)
-            || self.elements.iter().any(|element| {
-                let compliances = &element.compliances;
-                compliances.contains(&index) && (index - compliances.start) % modes > 0
-            })
+            || self.elements.iter().any(|element| is_later(&element.compliances))
     }
 
     /// True for what is a logarithm.
