@@ -44,6 +44,9 @@ const MOST_FIRST_ROWS: f64 = 1000.0;
 /// begins at rest.
 const LEAST_MOTION: f64 = 0.1;
 
+/// Records whose beginnings are searched, at most: the first. Each adds parameters.
+const MOST_IN_MOTION: usize = 50;
+
 /// A small penalty that keeps coefficients without influence at 0.
 const RIDGE: f64 = 1e-10;
 
@@ -106,7 +109,8 @@ fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<(Dynami
         elements: Vec::new(),
     };
     // Until it is known how the records begin, all may be in motion.
-    let few = begun(few, &vec![true; records.drives.len()]);
+    let all: Vec<bool> = (0..few.len()).map(|record| record < MOST_IN_MOTION).collect();
+    let few = begun(few, &all);
     for _ in 0..asked.modes {
         system.modes.push(best_of_grid(&system, &few, records, asked, stop)?);
         system = improved(system, asked, &few, stop)?.0;
@@ -135,7 +139,7 @@ fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<(Dynami
 }
 
 /// Which records begin in mid-motion: those whose first rows are further from a motion from rest than the linear system
-/// is from the records, whose error is given; `None` once stopped.
+/// is from the records, whose error is given. Records after the first 50 count as at rest. `None` once stopped.
 fn are_in_motion(system: &Dynamics, records: &Records, error: f64, stop: StopCheck<'_>) -> Option<Vec<bool>> {
     let vibrating = system.modes.iter().filter(|mode| mode.damping < 1.0);
     let slowest = vibrating.map(|mode| mode.frequency).fold(f64::INFINITY, f64::min);
@@ -148,7 +152,10 @@ fn are_in_motion(system: &Dynamics, records: &Records, error: f64, stop: StopChe
         let mean_square = 2.0 * run.half_square()? / drive.rows().max(1.0);
         Some(mean_square.sqrt() > error.max(LEAST_MOTION))
     };
-    records.first_rows(rows).iter().map(of_record).collect()
+    let mut are_in_motion: Vec<bool> =
+        records.first_rows(rows).iter().map(of_record).collect::<Option<_>>()?;
+    are_in_motion.iter_mut().skip(MOST_IN_MOTION).for_each(|is_in_motion| *is_in_motion = false);
+    Some(are_in_motion)
 }
 
 /// Rows of a quarter of a period, in which a motion is still as it began.
