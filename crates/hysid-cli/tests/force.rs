@@ -274,31 +274,23 @@ fn what_has_no_restoring_force_is_refused_in_one_line() {
             format!("{},{},{}", if row == 5 { 19.0 } else { 1e3 * at[0] }, at[1], at[4])
         }),
     );
-    bench.put(
-        "word.csv",
+    // Words in the first row.
+    let beginning = |y: Option<&str>, force: Option<&str>| {
         rows("t_s,y_mm,F_N", &|row, at| {
-            if row == 0 {
-                format!("{},zero,{}", at[0], at[4])
-            } else {
-                format!("{},{},{}", at[0], at[1], at[4])
-            }
-        }),
-    );
+            let cell = |word: Option<&str>, value: f64| match word.filter(|_| row == 0) {
+                Some(word) => word.to_string(),
+                None => value.to_string(),
+            };
+            format!("{},{},{}", at[0], cell(y, at[1]), cell(force, at[4]))
+        })
+    };
+    bench.put("word.csv", beginning(Some("zero"), None));
+    bench.put("off.csv", beginning(None, Some("off")));
     bench.put(
         "slow.csv",
         rows("t_s,y_mm,v_mm_s,F_N", &|row, at| {
             let v = if row == 2 { String::new() } else { at[2].to_string() };
             format!("{},{},{v},{}", at[0], at[1], at[4])
-        }),
-    );
-    bench.put(
-        "off.csv",
-        rows("t_s,y_mm,F_N", &|row, at| {
-            if row == 0 {
-                format!("{},{},off", at[0], at[1])
-            } else {
-                format!("{},{},{}", at[0], at[1], at[4])
-            }
         }),
     );
     bench.put("one.csv", "t_s,y_mm,F_N\n0,1,2\n");

@@ -235,9 +235,11 @@ fn of_classical(data: &Dataset, options: &ClassicalOptions, threads: usize) -> M
             let parameters = Asked::of(form, options).map_or(0, |asked| asked.layout().count());
             let (p, starts) =
                 (parameters as f64, options.starts.unwrap_or(hysteretic_dynamics::STARTS) as f64);
-            let busy = threads.min(starts);
-            // As for a Duhem network; a row of derivatives for each number that moves beside them.
-            let derivatives = 1.5 * p * p + 300.0 * p;
+            let at_once = data.records().len().min(hysteretic_dynamics::AT_ONCE) as f64;
+            let busy = threads.min(starts * at_once);
+            // As for a Duhem network; a row of derivatives for each number that moves beside them. A start keeps the sums
+            // of some records until it adds them.
+            let derivatives = 1.5 * p * p + 300.0 * p + starts * at_once * p * p / busy;
             let taken_by = format!("derivatives by {parameters} searched parameters");
             largest_of(
                 busy * derivatives + starts * 6.0 * p + 2.0 * copies,

@@ -134,7 +134,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
                     if let Some(sensitivities) = &mut sensitivities {
                         sensitivities.of_rest::<S>(dynamics, &motion, mode, weight, &mut row[..columns]);
                     }
-                    row[columns] = weight * motion.force_on::<S>(dynamics, mode);
+                    row[columns] = weight * motion.force_on::<S>(dynamics, mode, 0.0);
                     self.rows.take(simd, &row);
                 }
             }

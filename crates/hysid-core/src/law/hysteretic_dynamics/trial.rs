@@ -103,7 +103,7 @@ impl Motion {
         self.is_portable = true;
     }
 
-    /// The forces of virgin elements, before the first sample.
+    /// The forces of the elements where they are, such as those of virgin elements before the first sample.
     #[inline(always)]
     pub(super) fn start<S: Simd>(&mut self, dynamics: &Dynamics) {
         for (e, (point, element)) in self.points.iter_mut().zip(&dynamics.elements).enumerate() {
@@ -125,14 +125,13 @@ impl Motion {
             self.displacements[i] += displacements[i];
             self.velocities[i] += velocities[i];
         }
-        for (e, (point, element)) in self.points.iter_mut().zip(&dynamics.elements).enumerate() {
+        for (point, element) in self.points.iter_mut().zip(&dynamics.elements) {
             for (i, (q, p)) in displacements.iter().zip(velocities).enumerate() {
                 point.inputs[1] += element.of_displacements[i] * q + element.of_velocities[i] * p;
                 point.inputs[2] += element.of_displacements[i] * p;
             }
-            point.finish::<S>(element);
-            (self.forces[e], self.forces_before[e]) = (point.force, point.force);
         }
+        self.start::<S>(dynamics);
     }
 
     /// Takes the next sample of the input, and returns into which steps its row is divided.
@@ -203,10 +202,10 @@ impl Motion {
         y
     }
 
-    /// The force of the elements on a mode, as the displacement that it would hold at rest.
+    /// Another force on a mode and that of the elements, as the displacement that they would hold at rest.
     #[inline(always)]
-    pub(super) fn force_on<S: Simd>(&self, dynamics: &Dynamics, mode: usize) -> f64 {
-        let mut force = 0.0;
+    pub(super) fn force_on<S: Simd>(&self, dynamics: &Dynamics, mode: usize, other: f64) -> f64 {
+        let mut force = other;
         for (element, r) in dynamics.elements.iter().zip(&self.forces) {
             force = multiply_add::<S>(-element.compliances[mode], *r, force);
         }
@@ -237,10 +236,7 @@ impl Motion {
         self.velocities_before.copy_from_slice(&self.velocities);
         for (i, (mode, by)) in dynamics.modes.iter().zip(&self.propagations).enumerate() {
             let (q, p) = (self.displacements[i], self.velocities[i]);
-            let mut force = mode.gain * self.input_before;
-            for (element, r) in dynamics.elements.iter().zip(&self.forces) {
-                force = multiply_add::<S>(-element.compliances[i], *r, force);
-            }
+            let force = self.force_on::<S>(dynamics, i, mode.gain * self.input_before);
             let ahead = mode.gain * self.input;
             self.displacements_alone[i] = sum::<S>(by.displacement, [q, p, force, ahead]);
             self.velocities_alone[i] = sum::<S>(by.velocity, [q, p, force, ahead]);
@@ -251,7 +247,7 @@ impl Motion {
     #[inline(always)]
     fn move_modes<S: Simd>(&mut self, dynamics: &Dynamics) {
         for (i, by) in self.propagations.iter().enumerate() {
-            let force = self.force_on::<S>(dynamics, i);
+            let force = self.force_on::<S>(dynamics, i, 0.0);
             self.displacements[i] = multiply_add::<S>(by.displacement[3], force, self.displacements_alone[i]);
             self.velocities[i] = multiply_add::<S>(by.velocity[3], force, self.velocities_alone[i]);
         }

@@ -35,6 +35,7 @@ use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use linear_start::LinearStarts;
 use records::Records;
+pub(crate) use task::AT_ONCE;
 use task::{Task, Value};
 
 /// Default number of starts of the search.

@@ -61,10 +61,14 @@ pub(super) struct LinearStarts {
 impl LinearStarts {
     /// `None` once stopped.
     pub fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<Self> {
-        let (all_modes, are_in_motion) = find(records, asked, stop)?;
+        let rows: usize = records.drives.iter().map(|drive| drive.x.len()).sum();
+        let few = records.first(ROWS_OF_GRID as f64 / rows as f64);
+        let systems = mode_by_mode(records, &few, asked, stop)?;
+        let finished = |system: &Dynamics| finished(system, records, few.clone(), asked, stop);
+        let (all_modes, are_in_motion) = finished(systems.last()?)?;
         let mut one_mode = all_modes.clone();
         if asked.modes > 1 {
-            one_mode = find(records, &Asked { modes: 1, ..*asked }, stop)?.0;
+            one_mode = finished(&systems[0])?.0;
             let first = one_mode.modes[0].frequency.ln();
             // The mode that is nearest to it is left out.
             let distance = |mode: &Mode| (mode.frequency.ln() - first).abs();
@@ -91,30 +95,56 @@ fn begun(drives: Vec<Drive>, are_in_motion: &[bool]) -> Vec<Begun> {
     records.map(|(drive, &is_in_motion)| Begun { drive, is_in_motion }).collect()
 }
 
-/// The linear system, and which records begin in mid-motion; `None` once stopped.
-fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<(Dynamics, Vec<bool>)> {
-    let holds: &[Hold] =
-        if is_smooth(&records.drives) { &[Hold::Cubic] } else { &[Hold::Linear, Hold::Constant] };
-    let rows: usize = records.drives.iter().map(|drive| drive.x.len()).sum();
-    let few = records.first(ROWS_OF_GRID as f64 / rows as f64);
+/// How the input may go between the rows.
+fn holds(records: &Records) -> &'static [Hold] {
+    if is_smooth(&records.drives) { &[Hold::Cubic] } else { &[Hold::Linear, Hold::Constant] }
+}
+
+/// Records of which it is not known how they begin: the first may be in motion.
+fn perhaps_in_motion(few: Vec<Drive>) -> Vec<Begun> {
+    let may_be: Vec<bool> = (0..few.len()).map(|record| record < MOST_IN_MOTION).collect();
+    begun(few, &may_be)
+}
+
+/// Linear systems of one mode, of two and so on, each with one mode more than the last; `None` once stopped.
+fn mode_by_mode(
+    records: &Records,
+    few: &[Drive],
+    asked: &Asked,
+    stop: StopCheck<'_>,
+) -> Option<Vec<Dynamics>> {
     let mut system = Dynamics {
         input_scale: records.input_scale,
         output_offset: records.output_mean,
         output_scale: records.output_scale,
         direct: 0.0,
-        hold: holds[0],
+        hold: holds(records)[0],
         longest_step: f64::MAX.sqrt(),
         begins_under_input: false,
         modes: Vec::new(),
         elements: Vec::new(),
     };
-    // Until it is known how the records begin, all may be in motion.
-    let all: Vec<bool> = (0..few.len()).map(|record| record < MOST_IN_MOTION).collect();
-    let few = begun(few, &all);
+    let begun = perhaps_in_motion(few.to_vec());
+    let mut systems = Vec::new();
     for _ in 0..asked.modes {
-        system.modes.push(best_of_grid(&system, &few, records, asked, stop)?);
-        system = improved(system, asked, &few, stop)?.0;
+        system.modes.push(best_of_grid(&system, few, records, asked, stop)?);
+        system = improved(system, asked, &begun, stop)?.0;
+        systems.push(system.clone());
     }
+    Some(systems)
+}
+
+/// A linear system with its steps, its hold and how it begins, improved on all rows; and which records begin in
+/// mid-motion. `None` once stopped.
+fn finished(
+    system: &Dynamics,
+    records: &Records,
+    few: Vec<Drive>,
+    asked: &Asked,
+    stop: StopCheck<'_>,
+) -> Option<(Dynamics, Vec<bool>)> {
+    let mut system = system.clone();
+    let few = perhaps_in_motion(few);
     let vibrating = system.modes.iter().filter(|mode| mode.damping < 1.0);
     let fastest = vibrating.map(|mode| mode.frequency).fold(0.0, f64::max);
     system.longest_step = match fastest > 0.0 {
@@ -122,7 +152,7 @@ fn find(records: &Records, asked: &Asked, stop: StopCheck<'_>) -> Option<(Dynami
         false => records.step,
     };
     let mut best: Option<(Dynamics, f64)> = None;
-    for &hold in holds {
+    for &hold in holds(records) {
         let found = improved(Dynamics { hold, ..system.clone() }, asked, &few, stop)?;
         if best.as_ref().is_none_or(|best| found.1 < best.1) {
             best = Some(found);
@@ -184,12 +214,11 @@ fn is_smooth(drives: &[Drive]) -> bool {
 /// The mode that lowers the error most beside those that there are.
 fn best_of_grid(
     system: &Dynamics,
-    few: &[Begun],
+    drives: &[Drive],
     records: &Records,
     asked: &Asked,
     stop: StopCheck<'_>,
 ) -> Option<Mode> {
-    let drives: Vec<Drive> = few.iter().map(|record| record.drive.clone()).collect();
     let longest = drives.iter().map(|drive| drive.steps.iter().filter(|step| step.is_finite()).sum::<f64>());
     let lowest = std::f64::consts::TAU / longest.fold(records.step, f64::max);
     let highest = std::f64::consts::TAU * HIGHEST / records.step;
@@ -205,7 +234,7 @@ fn best_of_grid(
     let of_point = |&(frequency, damping): &(f64, f64)| {
         let mut tried = system.clone();
         tried.modes.push(Mode { frequency, damping, gain: 1.0, velocity_in_output: 0.0 });
-        let run = Run { dynamics: &tried, drives: &drives, beginnings: &[], stop };
+        let run = Run { dynamics: &tried, drives, beginnings: &[], stop };
         let (square, gain, velocity) = linear_part(&run.gram(&layout)?, &layout)?;
         Some((square, Mode { gain, velocity_in_output: velocity, ..tried.modes[system.modes.len()] }))
     };

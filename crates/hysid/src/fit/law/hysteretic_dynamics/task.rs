@@ -14,6 +14,9 @@ use crate::stop_check::StopCheck;
 /// drift over long records without having been seen to.
 const PATH_LEAKS: (f64, f64) = (0.13, 1e3);
 
+/// Records whose Gram matrices are computed side by side, so that many records need no more memory than a few.
+pub(crate) const AT_ONCE: usize = 8;
+
 /// A model may change its frequencies by this factor.
 const LARGEST_SHIFT: f64 = 30.0;
 
@@ -161,20 +164,21 @@ impl Problem for Task<'_> {
         let dynamics = self.layout.dynamics(parameters, self.template);
         let in_motion = self.layout.with_beginning();
         let (of_model, count) = (self.layout.count(), self.count());
-        let of_record = |(run, own): (Run<'_>, Range<usize>)| {
+        let of_record = |(run, own): &(Run<'_>, Range<usize>)| {
             let layout = if own.is_empty() { self.layout } else { &in_motion };
-            run.gram(layout).map(|gram| (gram, own))
+            run.gram(layout).map(|gram| (gram, own.clone()))
         };
-        let runs = self.runs(&dynamics, parameters).into_par_iter();
-        let grams: Vec<(Gram, Range<usize>)> = runs.map(of_record).collect::<Option<_>>()?;
         let mut gradient = vec![0.0; count];
         let mut curvature = Symmetric::from_fn(count, |_, _| 0.0);
-        for (gram, own) in &grams {
-            let places: Vec<usize> = (0..of_model).chain(own.clone()).collect();
-            for (i, &place) in places.iter().enumerate() {
-                gradient[place] += gram.at(places.len(), i) / self.rows;
-                for (j, &other) in places[..=i].iter().enumerate() {
-                    curvature.add_at(place, other, gram.at(i, j) / self.rows);
+        for runs in self.runs(&dynamics, parameters).chunks(AT_ONCE) {
+            let grams: Vec<(Gram, Range<usize>)> = runs.par_iter().map(of_record).collect::<Option<_>>()?;
+            for (gram, own) in grams {
+                let places: Vec<usize> = (0..of_model).chain(own).collect();
+                for (i, &place) in places.iter().enumerate() {
+                    gradient[place] += gram.at(places.len(), i) / self.rows;
+                    for (j, &other) in places[..=i].iter().enumerate() {
+                        curvature.add_at(place, other, gram.at(i, j) / self.rows);
+                    }
                 }
             }
         }
