@@ -7,6 +7,7 @@ mod normal_equations;
 mod search;
 mod static_law;
 
+pub use excerpt::Compared;
 use excerpt::Excerpts;
 pub(crate) use excerpt::{JITTER, even_step};
 use hysid_core::data::record::Dataset;
@@ -14,53 +15,84 @@ pub use linear_oscillator::LinearOscillator;
 
 use crate::Piece;
 
-/// An oscillator that leaves less than this share of what a law without inertia leaves is a resonance.
+/// Limits of the residual of the oscillator divided by that of the law without inertia, below which there is a resonance:
+/// for the output, and for its changes.
 const RATIO: f64 = 0.6;
+const RATIO_OF_CHANGES: f64 = 0.75;
 
-/// With a larger damping ratio nothing swings: the output only comes late.
+/// With a larger damping ratio, the response does not oscillate; it only lags. Yielding adds apparent damping, hence the
+/// higher limit for changes.
 const MOST_DAMPING: f64 = 0.4;
+const MOST_DAMPING_OF_CHANGES: f64 = 0.8;
 
 /// A linear oscillator, compared with a law without inertia.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resonance {
     /// The oscillator.
     pub oscillator: LinearOscillator,
-    /// Root mean square of what the law without inertia leaves of the output, in its unit.
-    pub static_residual: f64,
     /// The residual of the oscillator divided by that of the law without inertia.
     pub ratio: f64,
+    /// Whether the output or its changes from row to row were compared.
+    pub compared: Compared,
     /// The rows that were compared.
     pub rows: Vec<Piece>,
 }
 
 impl Resonance {
-    /// Compares the best linear oscillator with the best law without inertia, whichever is better. `None` unless the data
-    /// have one input, evenly spaced time (to 1/1000 of a step) and at least 200 rows with an output in records of at least
-    /// 200 rows, and where input or output are constant. Of long data some 6000 rows are compared.
+    /// Compares the best linear oscillator with the best law without inertia, whichever is better. If the output shows no
+    /// resonance, its changes from row to row are compared, because no linear oscillator follows the permanent deformation
+    /// of a structure that yields. `None` unless the data have one input, evenly spaced time (to 1/1000 of a step) and at least
+    /// 200 rows with an output in records of at least 200 rows, and where input or output are constant. Of long data some
+    /// 6000 rows are compared.
     pub fn of(data: &Dataset) -> Option<Self> {
-        let excerpts = Excerpts::of(data)?;
-        let oscillator = search::best(&excerpts).into_iter().next()?;
-        let (frequency, damping_ratio) = (oscillator.natural_frequency, oscillator.damping_ratio);
-        let remainder = static_law::remainder(data, &excerpts, frequency, damping_ratio);
-        let static_residual = excerpts.root_mean_square(remainder);
-        let ratio = oscillator.residual / static_residual;
-        let rows = excerpts.parts.iter();
-        let rows = rows
-            .map(|part| Piece::of(&data.records()[part.record], (part.rows.start, part.rows.end - 1)))
-            .collect();
-        Some(Self { oscillator, static_residual, ratio, rows })
+        Some(Comparison::of(data)?.resonance)
     }
 
     /// True if the oscillator leaves clearly less, and swings.
     pub fn is_found(&self) -> bool {
-        self.ratio < RATIO && self.oscillator.damping_ratio <= MOST_DAMPING
+        let (ratio, damping_ratio) = match self.compared {
+            Compared::Output => (RATIO, MOST_DAMPING),
+            Compared::Changes => (RATIO_OF_CHANGES, MOST_DAMPING_OF_CHANGES),
+        };
+        self.ratio < ratio && self.oscillator.damping_ratio <= damping_ratio
     }
 }
 
-/// Linear oscillators that fit data in a free run, the best first: up to three, at different frequencies. None where
-/// [`Resonance::of`] compares nothing.
+/// Linear oscillators that fit data in a free run, the best first: up to three, at different frequencies. They are fitted to
+/// what [`Resonance::of`] compares; none where it compares nothing.
 pub fn linear_oscillators(data: &Dataset) -> Vec<LinearOscillator> {
-    Excerpts::of(data).map_or_else(Vec::new, |excerpts| search::best(&excerpts))
+    Comparison::of(data).map_or_else(Vec::new, |comparison| comparison.oscillators)
+}
+
+struct Comparison {
+    /// The best first.
+    oscillators: Vec<LinearOscillator>,
+    resonance: Resonance,
+}
+
+impl Comparison {
+    fn of(data: &Dataset) -> Option<Self> {
+        let of_output = Self::of_what(data, Compared::Output)?;
+        if of_output.resonance.is_found() {
+            return Some(of_output);
+        }
+        let of_changes = Self::of_what(data, Compared::Changes);
+        of_changes.filter(|changes| changes.resonance.is_found()).or(Some(of_output))
+    }
+
+    fn of_what(data: &Dataset, compared: Compared) -> Option<Self> {
+        let excerpts = Excerpts::of(data, compared)?;
+        let oscillators = search::best(&excerpts);
+        let oscillator = *oscillators.first()?;
+        let (frequency, damping_ratio) = (oscillator.natural_frequency, oscillator.damping_ratio);
+        let remainder = static_law::remainder(data, &excerpts, frequency, damping_ratio);
+        let ratio = oscillator.residual / excerpts.root_mean_square(remainder);
+        let rows = excerpts.parts.iter();
+        let rows = rows
+            .map(|part| Piece::of(&data.records()[part.record], (part.rows.start, part.rows.end - 1)))
+            .collect();
+        Some(Self { oscillators, resonance: Resonance { oscillator, ratio, compared, rows } })
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{DataIssue, DataIssueKind, Severity, Units};
 use crate::branch::BranchSet;
-use crate::resonance::Resonance;
+use crate::resonance::{Compared, Resonance};
 use hysid_core::significant::Significant;
 
 /// Records that are shown.
@@ -11,14 +11,22 @@ const SHOWN: usize = 3;
 pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
     let found = Resonance::of(survey.data).filter(Resonance::is_found)?;
     let seconds = Units::of(survey).time.as_deref() == Some("s");
+    let (what, models) = match found.compared {
+        Compared::Output => ("", "--model hysteretic-oscillator or hysteretic-state-space"),
+        Compared::Changes => (
+            "for the changes of the output from row to row, ",
+            "--model hysteretic-oscillator; add --degradation if the structure loses strength",
+        ),
+    };
     let statement = format!(
-        "this looks like a resonance at {:.3} {} (damping ratio {:.2} %): the error of a linear oscillator is {:.2} times \
-         that of the best fit without inertia; fit a model with inertia (--model hysteretic-oscillator or \
-         hysteretic-state-space)",
+        "this looks like a resonance at {:.3} {} (damping ratio {:.2} %): {}the error of a linear oscillator is {:.2} \
+         times that of the best fit without inertia; fit a model with inertia ({})",
         Significant(found.oscillator.natural_frequency),
         if seconds { "Hz" } else { "cycles per unit of time" },
         Significant(100.0 * found.oscillator.damping_ratio),
-        found.ratio
+        what,
+        found.ratio,
+        models
     );
     Some(DataIssue {
         record: None,

@@ -13,6 +13,32 @@ const FEWEST_ROWS: usize = 200;
 /// Time stamps are evenly spaced up to this share of a step.
 pub(crate) const JITTER: f64 = 1e-3;
 
+/// Whether the output or its changes are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compared {
+    /// The output itself.
+    Output,
+    /// Its changes from row to row, in which a permanent deformation is small.
+    Changes,
+}
+
+impl Compared {
+    /// Turns a column into what is compared: its values, or their changes, in rows with an output, and 0 elsewhere.
+    fn apply(self, column: &mut [f64], scored: &[f64]) {
+        match self {
+            Self::Output => {
+                column.iter_mut().zip(scored).for_each(|(value, scored)| *value *= scored);
+            }
+            Self::Changes => {
+                for row in (1..column.len()).rev() {
+                    column[row] = scored[row] * scored[row - 1] * (column[row] - column[row - 1]);
+                }
+                column.iter_mut().take(1).for_each(|first| *first = 0.0);
+            }
+        }
+    }
+}
+
 /// Evenly spaced rows of a record. Input and output are scaled to their middle and half their range over all excerpts.
 #[derive(Debug)]
 pub(super) struct Excerpt {
@@ -24,15 +50,22 @@ pub(super) struct Excerpt {
     pub step: f64,
     /// The input, scaled.
     pub input: Vec<f64>,
-    /// The output, scaled; 0 in a row without one.
-    pub output: Vec<f64>,
+    /// What is compared.
+    compared: Compared,
     /// 1 in a row with an output, otherwise 0.
-    pub scored: Vec<f64>,
-    /// The input, scaled; 0 in a row without output.
-    pub scored_input: Vec<f64>,
+    scored: Vec<f64>,
+    /// What is compared of the scaled output, of the scaled input, and of the constant 1.
+    pub output_column: Vec<f64>,
+    pub input_column: Vec<f64>,
+    pub constant_column: Vec<f64>,
 }
 
 impl Excerpt {
+    /// Turns the values of all rows into what is compared of them.
+    pub fn compare(&self, column: &mut [f64]) {
+        self.compared.apply(column, &self.scored);
+    }
+
     /// Time from the first row to the last.
     pub fn duration(&self) -> f64 {
         self.step * (self.rows.len() - 1) as f64
@@ -73,7 +106,7 @@ pub(super) struct Excerpts {
 impl Excerpts {
     /// Of data with one input and evenly spaced time; `None` for other data, for too few rows, and where input or output
     /// are constant.
-    pub fn of(data: &Dataset) -> Option<Self> {
+    pub fn of(data: &Dataset, compared: Compared) -> Option<Self> {
         if data.names().inputs.len() != 1 {
             return None;
         }
@@ -93,14 +126,22 @@ impl Excerpts {
             let y = &records[*record].output()[rows.clone()];
             let x: Vec<f64> =
                 records[*record].inputs()[0][rows.clone()].iter().map(|&x| input.apply(x)).collect();
+            let scored: Vec<f64> = y.iter().map(|y| if y.is_nan() { 0.0 } else { 1.0 }).collect();
+            let scaled = y.iter().map(|&y| if y.is_nan() { 0.0 } else { output.apply(y) }).collect();
+            let column = |mut values: Vec<f64>| {
+                compared.apply(&mut values, &scored);
+                values
+            };
             Some(Excerpt {
                 record: *record,
                 rows: rows.clone(),
                 step: even_step(&records[*record].time()?[rows.clone()])?,
-                scored_input: x.iter().zip(y).map(|(&x, y)| if y.is_nan() { 0.0 } else { x }).collect(),
+                output_column: column(scaled),
+                input_column: column(x.clone()),
+                constant_column: column(vec![1.0; x.len()]),
                 input: x,
-                output: y.iter().map(|&y| if y.is_nan() { 0.0 } else { output.apply(y) }).collect(),
-                scored: y.iter().map(|y| if y.is_nan() { 0.0 } else { 1.0 }).collect(),
+                compared,
+                scored,
             })
         };
         let parts = chosen.iter().map(excerpt).collect::<Option<Vec<Excerpt>>>()?;
@@ -162,6 +203,18 @@ mod tests {
         let rows = busiest(&x, 22);
         assert!(rows.start <= 40 && rows.end >= 60, "{rows:?}");
         assert_eq!(busiest(&x, 1000), 0..100);
+    }
+
+    #[test]
+    fn changes_are_compared_where_both_rows_have_an_output() {
+        let scored = [1.0, 1.0, 0.0, 1.0, 1.0];
+        let compared = |compared: Compared| {
+            let mut column = [3.0, 5.0, 6.0, 7.0, 11.0];
+            compared.apply(&mut column, &scored);
+            column
+        };
+        assert_eq!(compared(Compared::Output), [3.0, 5.0, 0.0, 7.0, 11.0]);
+        assert_eq!(compared(Compared::Changes), [0.0, 2.0, 0.0, 0.0, 4.0]);
     }
 
     #[test]

@@ -20,9 +20,10 @@ pub struct LinearOscillator {
     pub gain: f64,
     /// Output that follows the input at once, for each unit of it, `D`.
     pub direct: f64,
-    /// Output at the input 0, at rest, `c`.
+    /// Output at rest under zero input, `c`. Not determined if changes were compared; do not use it then.
     pub offset: f64,
-    /// Root mean square of what it leaves of the output in a free run, in the unit of the output.
+    /// Root mean square error of a free run, in the unit of the output: of the output, or of its changes from row to row
+    /// if changes were compared.
     pub residual: f64,
 }
 
@@ -65,25 +66,25 @@ impl Step {
         [distance - lag, speed + rate]
     }
 
-    /// Distances `z - u` row by row, from rest at the first input, times `scored`.
-    pub fn response(&self, input: &[f64], scored: &[f64], response: &mut Vec<f64>) {
+    /// Distances `z - u` row by row, from rest at the first input.
+    pub fn response(&self, input: &[f64], response: &mut Vec<f64>) {
         let mut state = [0.0; 2];
         let mut before = input.first().copied().unwrap_or(0.0);
         response.clear();
-        response.extend(input.iter().zip(scored).map(|(&x, scored)| {
+        response.extend(input.iter().map(|&x| {
             state = self.driven(state, x - before);
             before = x;
-            state[0] * scored
+            state[0]
         }));
     }
 
-    /// Free motion row by row from a distance and a speed, times `scored`.
-    pub fn decay(&self, mut state: [f64; 2], scored: &[f64], decay: &mut Vec<f64>) {
+    /// Free motion in so many rows, from a distance and a speed.
+    pub fn decay(&self, mut state: [f64; 2], rows: usize, decay: &mut Vec<f64>) {
         decay.clear();
-        decay.extend(scored.iter().map(|scored| {
+        decay.extend((0..rows).map(|_| {
             let distance = state[0];
             state = self.free(state);
-            distance * scored
+            distance
         }));
     }
 }
@@ -111,7 +112,7 @@ mod tests {
     #[test]
     fn free_motion_is_the_damped_cosine() {
         let mut decay = Vec::new();
-        Step::new(F, ZETA, STEP).decay([1.0, 0.0], &[1.0; 60], &mut decay);
+        Step::new(F, ZETA, STEP).decay([1.0, 0.0], 60, &mut decay);
         for (t, value) in times().zip(decay) {
             let (sine, cosine) = damped(t);
             let exact = cosine + ZETA / (1.0 - ZETA * ZETA).sqrt() * sine;
@@ -124,7 +125,7 @@ mod tests {
         // u = t from rest: z = t - 2ζ/ω + (2ζ/ω) cosine + (2ζ² - 1)/ω_d sine, damped.
         let input: Vec<f64> = times().collect();
         let mut response = Vec::new();
-        Step::new(F, ZETA, STEP).response(&input, &[1.0; 60], &mut response);
+        Step::new(F, ZETA, STEP).response(&input, &mut response);
         let omega = TAU * F;
         for (t, value) in times().zip(response) {
             let (sine, cosine) = damped(t);
@@ -139,7 +140,7 @@ mod tests {
         let step = 1.0 / (F * 200.0);
         let input: Vec<f64> = (0..8000).map(|row| (TAU * F * f64::from(row) * step).sin()).collect();
         let mut response = Vec::new();
-        Step::new(F, ZETA, step).response(&input, &[1.0; 8000], &mut response);
+        Step::new(F, ZETA, step).response(&input, &mut response);
         let largest =
             response[7000..].iter().zip(&input[7000..]).map(|(z, u)| (z + u).abs()).fold(0.0, f64::max);
         // Straight lines between rows make the input smaller by 8e-5.

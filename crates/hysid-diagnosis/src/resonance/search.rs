@@ -67,16 +67,17 @@ impl Search<'_> {
         for part in &self.excerpts.parts {
             let step = Step::new(frequency, damping_ratio, part.step);
             let [distance, speed, response] = &mut self.columns;
-            step.decay([1.0, 0.0], &part.scored, distance);
-            step.decay([0.0, 1.0], &part.scored, speed);
-            step.response(&part.input, &part.scored, response);
+            step.decay([1.0, 0.0], part.rows.len(), distance);
+            step.decay([0.0, 1.0], part.rows.len(), speed);
+            step.response(&part.input, response);
+            [&mut *distance, speed, response].into_iter().for_each(|column| part.compare(column));
             let mut equations = NormalEquations::of([
                 distance,
                 speed,
                 response,
-                &part.scored_input,
-                &part.scored,
-                &part.output,
+                &part.input_column,
+                &part.constant_column,
+                &part.output_column,
             ]);
             equations.eliminate(0..2);
             sum.add(&equations);

@@ -23,12 +23,13 @@ pub(super) fn remainder(data: &Dataset, excerpts: &Excerpts, frequency: f64, dam
     let mut free = [Vec::new(), Vec::new()];
     for part in &excerpts.parts {
         let step = Step::new(frequency, damping_ratio, part.step);
-        step.decay([1.0, 0.0], &part.scored, &mut free[0]);
-        step.decay([0.0, 1.0], &part.scored, &mut free[1]);
+        step.decay([1.0, 0.0], part.rows.len(), &mut free[0]);
+        step.decay([0.0, 1.0], part.rows.len(), &mut free[1]);
+        free.iter_mut().for_each(|column| part.compare(column));
         let mut columns: Vec<&[f64]> = free.iter().map(Vec::as_slice).collect();
         let law = law(data, excerpts, part);
         columns.extend(law.iter().map(Vec::as_slice));
-        columns.push(&part.output);
+        columns.push(&part.output_column);
         let columns: [&[f64]; COLUMNS] = std::array::from_fn(|k| columns[k]);
         let mut equations = NormalEquations::of(columns);
         equations.eliminate(0..FREE);
@@ -48,7 +49,7 @@ fn law(data: &Dataset, excerpts: &Excerpts, part: &Excerpt) -> Vec<Vec<f64>> {
         unit * (x[after] - x[before]) / (after - before) as f64
     };
     let mut columns = vec![
-        part.scored.clone(),
+        vec![1.0; x.len()],
         x.clone(),
         x.iter().map(|x| x * x).collect(),
         x.iter().map(|x| x * x * x).collect(),
@@ -60,8 +61,6 @@ fn law(data: &Dataset, excerpts: &Excerpts, part: &Excerpt) -> Vec<Vec<f64>> {
         let run = past.iter().map(|&x| stop.step(excerpts.input.apply(x)));
         columns.push(run.skip(part.rows.start).collect());
     }
-    for column in &mut columns[1..] {
-        column.iter_mut().zip(&part.scored).for_each(|(value, scored)| *value *= scored);
-    }
+    columns.iter_mut().for_each(|column| part.compare(column));
     columns
 }
