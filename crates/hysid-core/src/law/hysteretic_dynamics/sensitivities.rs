@@ -54,14 +54,21 @@ pub struct Run<'a> {
     /// The records.
     pub drives: &'a [Drive],
     /// Of each record the displacements of the modes at its first row, beside those at rest, and then the velocities;
-    /// empty if all begin at rest. Where records begin in motion, the rows of each are preceded by the forces of the
-    /// virgin elements on the modes, as errors: without input the model is in equilibrium.
+    /// empty if all begin at rest.
     pub beginnings: &'a [f64],
+    /// True if records begin in mid-motion. The rows of each are then preceded by the forces of the virgin elements on
+    /// the modes, as errors: without input the model is in equilibrium.
+    pub is_in_motion: bool,
     /// Stops the computation early.
     pub stop: StopCheck<'a>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    /// A run over records that begin at rest.
+    pub fn from_rest(dynamics: &'a Dynamics, drives: &'a [Drive], stop: StopCheck<'a>) -> Self {
+        Self { dynamics, drives, beginnings: &[], is_in_motion: false, stop }
+    }
+
     /// Half the sum of squares of the weighted errors, in scaled units; `None` once stopped.
     pub fn half_square(self) -> Option<f64> {
         let mut rows = HalfSquare(0.0);
@@ -112,7 +119,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Run { dynamics, drives, beginnings, stop } = self.run;
+        let Run { dynamics, drives, beginnings, is_in_motion, stop } = self.run;
         let mut pace = Pace::new(stop);
         let offset = dynamics.output_offset / dynamics.output_scale;
         let mut sensitivities = self.layout.map(|layout| Sensitivities::new(dynamics, layout));
@@ -127,7 +134,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
             if let Some(sensitivities) = &mut sensitivities {
                 sensitivities.begin::<S>(dynamics, &motion);
             }
-            if beginning.is_some() && !dynamics.begins_under_input {
+            if is_in_motion && !dynamics.begins_under_input {
                 // One row counts as much as all that are compared.
                 let weight = drive.rows().sqrt();
                 for mode in 0..modes {

@@ -126,13 +126,19 @@ fn derivatives_equal_differences() {
                 dynamics: &dynamics,
                 drives: &drives,
                 beginnings: &beginnings,
+                is_in_motion: true,
                 stop: StopCheck::never(),
             };
             run.rows(&layout).unwrap().iter().map(|row| row[layout.count()]).collect()
         };
         let (dynamics, beginnings) = (layout.dynamics(&parameters, &template), beginnings(&parameters));
-        let run =
-            Run { dynamics: &dynamics, drives: &drives, beginnings: &beginnings, stop: StopCheck::never() };
+        let run = Run {
+            dynamics: &dynamics,
+            drives: &drives,
+            beginnings: &beginnings,
+            is_in_motion: true,
+            stop: StopCheck::never(),
+        };
         let rows = run.rows(&layout).unwrap();
         for place in 0..layout.count() {
             let by = 4e-6;

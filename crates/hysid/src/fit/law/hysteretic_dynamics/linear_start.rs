@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::records::Records;
-use super::task::{Begun, Task, Value};
+use super::task::{Beginning, Begun, Task, Value};
 use super::{Asked, Kind};
 use crate::law::hysteretic_dynamics::{
     DAMPING_RATIOS, Drive, Dynamics, Form, Hold, Layout, Mode, Run, Shape,
@@ -37,6 +37,10 @@ const STEPS_PER_PERIOD: f64 = 60.0;
 const SMOOTH: f64 = 0.02;
 const OF_RANDOM_SEQUENCE: f64 = 70.0;
 
+/// A hold replaces a likelier one only if its mean square error is below this share of the other's. The modes of a
+/// state space model follow a constant and a linear hold equally well, because a velocity in the output shifts it in time.
+const CLEARLY_BETTER: f64 = 0.95;
+
 /// Rows at most that tell how a motion began.
 const MOST_FIRST_ROWS: f64 = 1000.0;
 
@@ -46,6 +50,12 @@ const LEAST_MOTION: f64 = 0.1;
 
 /// Records whose beginnings are searched, at most: the first. Each adds parameters.
 const MOST_IN_MOTION: usize = 50;
+
+/// Rows at the beginning of a record whose input tells how far the hold may be off between the first of them.
+const ROWS_OF_KICK: usize = 4;
+
+/// An expected displacement or velocity below this, in standard deviations of the output, is rest.
+const LEAST_KICK: f64 = 1e-4;
 
 /// A small penalty that keeps coefficients without influence at 0.
 const RIDGE: f64 = 1e-10;
@@ -86,16 +96,41 @@ impl LinearStarts {
 
     /// Records with how they begin.
     pub fn begun(&self, drives: Vec<Drive>) -> Vec<Begun> {
-        begun(drives, &self.are_in_motion)
+        let mut records = begun(drives, &self.are_in_motion);
+        for record in records.iter_mut().take(MOST_IN_MOTION) {
+            let kicks = self.all_modes.modes.iter().map(|mode| kick(mode, &self.all_modes, &record.drive));
+            let kicks: Vec<f64> = kicks.collect();
+            if record.beginning == Beginning::AtRest && kicks.iter().any(|kick| *kick > LEAST_KICK) {
+                record.beginning = Beginning::NearRest(kicks);
+            }
+        }
+        records
     }
+}
+
+/// Expected error of the velocity `p` of a mode after the first rows of a record, theory.md (15.24). A straight line
+/// between two samples misses `Δ²u h/12` of the impulse of a curved input. In later rows this acts like a fixed linear
+/// filter, which the modes compensate.
+fn kick(mode: &Mode, system: &Dynamics, drive: &Drive) -> f64 {
+    let has_interpolation = drive.x.len() >= ROWS_OF_KICK && drive.steps[1].is_finite();
+    if system.hold == Hold::Constant || !has_interpolation {
+        return LEAST_KICK;
+    }
+    let curved = |x: &[f64]| (x[0] - 2.0 * x[1] + x[2]).abs() / system.input_scale;
+    let second_difference = drive.x[..ROWS_OF_KICK].windows(3).map(curved).fold(0.0, f64::max);
+    (mode.frequency * drive.steps[1] * mode.gain.abs() * second_difference / 12.0).max(LEAST_KICK)
 }
 
 fn begun(drives: Vec<Drive>, are_in_motion: &[bool]) -> Vec<Begun> {
     let records = drives.into_iter().zip(are_in_motion);
-    records.map(|(drive, &is_in_motion)| Begun { drive, is_in_motion }).collect()
+    let begun = |(drive, &is_in_motion)| Begun {
+        drive,
+        beginning: if is_in_motion { Beginning::InMotion } else { Beginning::AtRest },
+    };
+    records.map(begun).collect()
 }
 
-/// How the input may go between the rows.
+/// How the input may go between the rows, the likelier first.
 fn holds(records: &Records) -> &'static [Hold] {
     if is_smooth(&records.drives) { &[Hold::Cubic] } else { &[Hold::Linear, Hold::Constant] }
 }
@@ -154,14 +189,14 @@ fn finished(
     let mut best: Option<(Dynamics, f64)> = None;
     for &hold in holds(records) {
         let found = improved(Dynamics { hold, ..system.clone() }, asked, &few, stop)?;
-        if best.as_ref().is_none_or(|best| found.1 < best.1) {
+        if best.as_ref().is_none_or(|best| found.1 < CLEARLY_BETTER * best.1) {
             best = Some(found);
         }
     }
     let (at_rest, half_square) = best?;
     let under_input = Dynamics { begins_under_input: true, ..at_rest.clone() };
     let first = records.first_rows(first_rows(&at_rest, records.step));
-    let square = |dynamics: &Dynamics| Run { dynamics, drives: &first, beginnings: &[], stop }.half_square();
+    let square = |dynamics: &Dynamics| Run::from_rest(dynamics, &first, stop).half_square();
     let begins = if square(&under_input)? < square(&at_rest)? { under_input } else { at_rest };
     let are_in_motion = are_in_motion(&begins, records, (2.0 * half_square).sqrt(), stop)?;
     let (system, _) = improved(begins, asked, &begun(records.drives.clone(), &are_in_motion), stop)?;
@@ -178,7 +213,7 @@ fn are_in_motion(system: &Dynamics, records: &Records, error: f64, stop: StopChe
         false => first_rows(system, records.step),
     };
     let of_record = |drive: &Drive| {
-        let run = Run { dynamics: system, drives: std::slice::from_ref(drive), beginnings: &[], stop };
+        let run = Run::from_rest(system, std::slice::from_ref(drive), stop);
         let mean_square = 2.0 * run.half_square()? / drive.rows().max(1.0);
         Some(mean_square.sqrt() > error.max(LEAST_MOTION))
     };
@@ -234,7 +269,7 @@ fn best_of_grid(
     let of_point = |&(frequency, damping): &(f64, f64)| {
         let mut tried = system.clone();
         tried.modes.push(Mode { frequency, damping, gain: 1.0, velocity_in_output: 0.0 });
-        let run = Run { dynamics: &tried, drives, beginnings: &[], stop };
+        let run = Run::from_rest(&tried, drives, stop);
         let (square, gain, velocity) = linear_part(&run.gram(&layout)?, &layout)?;
         Some((square, Mode { gain, velocity_in_output: velocity, ..tried.modes[system.modes.len()] }))
     };
@@ -290,4 +325,45 @@ fn improved(
     }
     let value = search.known_value()?.objective;
     value.is_finite().then(|| (layout.dynamics(search.parameters(), &system), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parabola and the line between its ends, over one of two steps, give the mode impulses that differ by the kick.
+    #[test]
+    fn a_kick_is_the_impulse_that_a_straight_line_misses() {
+        let mode = Mode { frequency: 30.0, damping: 0.02, gain: -1.5, velocity_in_output: 0.0 };
+        let parabola = |share: f64| 2.0 - 3.0 * share + 4.0 * share * share;
+        let (step, parts) = (0.01, 100_000);
+        let missed = |part: i32| {
+            let share = (f64::from(part) + 0.5) / f64::from(parts);
+            parabola(share) - (parabola(0.0) + share * (parabola(1.0) - parabola(0.0)))
+        };
+        // The velocity is in units of the frequency: `p' = ω b u`.
+        let impulse = (0..parts).map(missed).sum::<f64>() * step / f64::from(parts);
+        let expected = (mode.frequency * mode.gain * impulse).abs();
+        let mut system = Dynamics {
+            input_scale: 1.0,
+            output_offset: 0.0,
+            output_scale: 1.0,
+            direct: 0.0,
+            hold: Hold::Cubic,
+            longest_step: step,
+            begins_under_input: false,
+            modes: vec![mode],
+            elements: Vec::new(),
+        };
+        let drive = Drive {
+            x: (0..4).map(|row| parabola(f64::from(row))).collect(),
+            steps: vec![step; 4],
+            targets: vec![0.0; 4],
+            weights: vec![1.0; 4],
+        };
+        assert!((kick(&mode, &system, &drive) / expected - 1.0).abs() < 1e-6);
+        // What is held constant is known.
+        system.hold = Hold::Constant;
+        assert_eq!(kick(&mode, &system, &drive), LEAST_KICK);
+    }
 }

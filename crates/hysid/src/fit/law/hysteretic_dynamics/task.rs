@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::EXPECTED_SQUARE;
 use crate::error::LARGEST_VALUE;
 use crate::law::hysteretic_dynamics::{DAMPING_RATIOS, Drive, Dynamics, LARGEST_WEIGHT, Layout, Run};
 use crate::linear_algebra::{Gram, Symmetric};
@@ -20,8 +21,8 @@ pub(crate) const AT_ONCE: usize = 8;
 /// A model may change its frequencies by this factor.
 const LARGEST_SHIFT: f64 = 30.0;
 
-/// Records, and the parameters that are searched: those of the model, and then of each record that begins in
-/// mid-motion the displacements and velocities of the modes at its first row.
+/// Records, and the parameters that are searched: those of the model, and then of each record that does not begin at rest
+/// the displacements and velocities of the modes at its first row.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub layout: &'a Layout,
@@ -40,8 +41,34 @@ pub(super) struct Task<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Begun {
     pub drive: Drive,
-    /// True in mid-motion, false at rest.
-    pub is_in_motion: bool,
+    pub beginning: Beginning,
+}
+
+/// How the modes move at the first row of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Beginning {
+    /// Not at all.
+    AtRest,
+    /// At rest, but the input between the first rows is not known well: of each mode the expected size of the displacement
+    /// and velocity that this adds. Without them, the memory of the elements would be fitted to the error.
+    NearRest(Vec<f64>),
+    /// A record in mid-motion: displacements and velocities may have any size.
+    InMotion,
+}
+
+impl Beginning {
+    /// Shares of the penalty on weights that act on displacements and then on velocities, if these are searched.
+    fn decays(&self, modes: usize) -> Vec<f64> {
+        match self {
+            Self::AtRest => Vec::new(),
+            Self::NearRest(deviations) => {
+                let decays: Vec<f64> =
+                    deviations.iter().map(|deviation| EXPECTED_SQUARE / (deviation * deviation)).collect();
+                decays.repeat(2)
+            }
+            Self::InMotion => vec![1.0; 2 * modes],
+        }
+    }
 }
 
 /// The objective at a point; infinite if it was broken off.
@@ -81,7 +108,7 @@ impl<'a> Task<'a> {
     /// The parameters of a model, with the modes at rest at the first row of each record.
     pub fn parameters(&self, dynamics: &Dynamics) -> Vec<f64> {
         let mut parameters = self.layout.parameters(dynamics);
-        parameters.resize(self.count(), 0.0);
+        parameters.resize(self.decays().len(), 0.0);
         parameters
     }
 
@@ -98,27 +125,28 @@ impl<'a> Task<'a> {
     fn runs<'r>(&'r self, dynamics: &'r Dynamics, parameters: &'r [f64]) -> Vec<(Run<'r>, Range<usize>)> {
         let mut end = self.layout.count();
         let run = |record: &'r Begun| {
-            let own = end..end + if record.is_in_motion { self.per_motion() } else { 0 };
+            let own = end..end + record.beginning.decays(self.layout.modes.len()).len();
             end = own.end;
-            let drives = std::slice::from_ref(&record.drive);
-            (Run { dynamics, drives, beginnings: &parameters[own.clone()], stop: self.stop }, own)
+            let run = Run {
+                dynamics,
+                drives: std::slice::from_ref(&record.drive),
+                beginnings: &parameters[own.clone()],
+                is_in_motion: record.beginning == Beginning::InMotion,
+                stop: self.stop,
+            };
+            (run, own)
         };
         self.records.iter().map(run).collect()
     }
 
-    fn per_motion(&self) -> usize {
-        2 * self.layout.modes.len()
-    }
-
-    fn count(&self) -> usize {
-        let in_motion = self.records.iter().filter(|record| record.is_in_motion).count();
-        self.layout.count() + in_motion * self.per_motion()
-    }
-
-    /// Weights of the elements, and how records begin.
-    fn penalised(&self) -> impl Iterator<Item = usize> {
-        let of_model = self.layout.count();
-        (0..self.count()).filter(move |&index| index >= of_model || self.layout.has_decay(index))
+    /// Which share of the penalty acts on each parameter: the whole on weights of the elements, none on the rest of the
+    /// model, and on how records begin as much as is known of it.
+    fn decays(&self) -> Vec<f64> {
+        let of_model =
+            (0..self.layout.count()).map(|index| f64::from(u8::from(self.layout.has_decay(index))));
+        let of_records =
+            self.records.iter().flat_map(|record| record.beginning.decays(self.layout.modes.len()));
+        of_model.chain(of_records).collect()
     }
 
     fn bounds(&self, index: usize) -> (f64, f64) {
@@ -151,7 +179,7 @@ impl Problem for Task<'_> {
     fn value(&self, parameters: &[f64]) -> Value {
         let mean_square = self.mean_square(parameters).filter(|square| *square < LARGEST_VALUE);
         let mean_square = mean_square.unwrap_or(f64::INFINITY);
-        let decay: f64 = self.penalised().map(|index| parameters[index] * parameters[index]).sum();
+        let decay: f64 = parameters.iter().zip(self.decays()).map(|(p, share)| share * p * p).sum();
         let objective = 0.5 * mean_square + 0.5 * self.penalty * decay;
         Value { objective, mean_square, penalty: self.penalty }
     }
@@ -163,7 +191,8 @@ impl Problem for Task<'_> {
     fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
         let dynamics = self.layout.dynamics(parameters, self.template);
         let in_motion = self.layout.with_beginning();
-        let (of_model, count) = (self.layout.count(), self.count());
+        let decays = self.decays();
+        let (of_model, count) = (self.layout.count(), decays.len());
         let of_record = |(run, own): &(Run<'_>, Range<usize>)| {
             let layout = if own.is_empty() { self.layout } else { &in_motion };
             run.gram(layout).map(|gram| (gram, own.clone()))
@@ -182,9 +211,9 @@ impl Problem for Task<'_> {
                 }
             }
         }
-        for index in self.penalised() {
-            gradient[index] += self.penalty * parameters[index];
-            curvature.add_to_diagonal(index, self.penalty);
+        for (index, share) in decays.into_iter().enumerate() {
+            gradient[index] += share * self.penalty * parameters[index];
+            curvature.add_to_diagonal(index, share * self.penalty);
         }
         let diagonal = (0..count).map(|index| curvature.diagonal(index)).collect();
         Some(Slope { gradient, diagonal, curvature, evaluations: 1 })
