@@ -14,7 +14,7 @@ use hysid::law::{Law, Sample};
 use hysid::operator::{DeterioratingStop, Operator};
 use hysid::options::ModelName;
 use hysid::options::classical::{ClassicalModel, ClassicalOptions};
-use hysid::specimens::{BoucWenOscillator, PiezoStage};
+use hysid::specimens::{BoucWenOscillator, DuffingOscillator, PiezoStage};
 use hysid::stop_check::StopCheck;
 
 /// Rows a second, and steps of the integration in a row.
@@ -78,6 +78,23 @@ fn deteriorating_record(seed: u64, rows: usize) -> Record {
     }
     let time = (0..rows).map(|k| k as f64 / RATE).collect();
     Record::new("r", vec![forces], displacements).unwrap().with_time(time).unwrap()
+}
+
+/// A record of a Duffing oscillator, whose force begins with a jump, with noise in the displacement of 1 % of the
+/// deviation.
+fn record_without_hysteresis(seed: u64, rows: usize) -> Record {
+    let rate = 610.0;
+    let step = 1.0 / (rate * STEPS as f64);
+    let forces: Vec<f64> = (0..2 * rows * STEPS).map(|half| force(seed, 0.5 * half as f64 * step)).collect();
+    let motion: Vec<f64> =
+        DuffingOscillator::designed().motion(&forces, step).map(|at| at.displacement).collect();
+    let deviation = (motion.iter().map(|y| y * y).sum::<f64>() / motion.len() as f64).sqrt();
+    let noise = |k: usize| 0.01 * deviation * 12f64.sqrt() * (number(k as u64 * 7919 + seed) - 0.5);
+    let motion: Vec<f64> = motion.iter().enumerate().map(|(k, y)| y + noise(k)).collect();
+    let every = |values: &[f64], steps: usize| values.iter().copied().step_by(steps).collect::<Vec<f64>>();
+    let time = (0..rows).map(|k| k as f64 / rate).collect();
+    let record = Record::new("r", vec![every(&forces, 2 * STEPS)], every(&motion, STEPS)).unwrap();
+    record.with_time(time).unwrap()
 }
 
 fn data(records: Vec<Record>) -> Dataset {
@@ -296,4 +313,16 @@ fn auto_chooses_a_model_with_inertia_for_a_resonance() {
     assert!(refused(0.5).is_ok());
     assert_eq!(refused(f64::INFINITY), Err(missing.into()));
     assert_eq!(refused(0.5), Err("time 0.5 does not come after the last sample's".into()));
+}
+
+/// A model with hysteresis fits these data too, but would have false loops beyond the training range.
+#[test]
+fn auto_leaves_out_hysteresis_that_the_data_do_not_have() {
+    let seen = data(vec![record_without_hysteresis(1, 1500)]);
+    let quick = Fit::new().option("epochs", 40).option("members", 2).option("starts", 1).option("hidden", 4);
+    let model = quick.run(&seen).unwrap();
+    let selection = model.provenance().selection.as_ref().unwrap();
+    let kept: Vec<&str> = selection.candidates.iter().map(|candidate| candidate.name.as_str()).collect();
+    assert_eq!(kept, ["hysteretic-state-space (no memory, 1 mode)"]);
+    assert!(selection.dropped.contains(&"hysteretic-state-space (1 mode)".to_owned()), "{selection:?}");
 }

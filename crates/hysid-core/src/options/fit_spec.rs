@@ -65,6 +65,7 @@ impl FitSpec {
                 ]),
             ),
             Self::Classical(options) => {
+                let has_no_memory = options.states == Some(0) && options.operators.unwrap_or(0) == 0;
                 let has_tanh_layer = options.model == ClassicalModel::RandomStops
                     && options.hidden.is_some_and(|hidden| hidden > 0);
                 (
@@ -77,7 +78,8 @@ impl FitSpec {
                         ("logarithmic thresholds", options.logarithmic_thresholds),
                         ("rate", options.rate.is_some() && !options.model.needs_rate()),
                         ("tanh layer", has_tanh_layer),
-                        ("no stops", options.operators == Some(0)),
+                        ("no stops", options.operators == Some(0) && !has_no_memory),
+                        ("no memory", has_no_memory),
                     ]),
                 )
             }
@@ -86,6 +88,9 @@ impl FitSpec {
         if let Self::Network(options) = self {
             let ridge = options.ridge.filter(|ridge| *ridge != ENSEMBLE_PENALTIES.ridge);
             variant.extend(ridge.map(|ridge| format!("ridge {ridge:e}")));
+        }
+        if let Self::Classical(ClassicalOptions { modes: Some(modes), .. }) = self {
+            variant.push(if *modes == 1 { "1 mode".into() } else { format!("{modes} modes") });
         }
         variant.extend(shaping.companding.map(|share| format!("input companded {share}")));
         variant.extend(shaping.rate_companding.map(|share| format!("rate companded {share}")));

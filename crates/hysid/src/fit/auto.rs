@@ -2,11 +2,12 @@
 //!
 //! 1. *Folds* of the training data, [`crate::validation::folds`]; of a single record only three of them.
 //! 2. *Candidates*: for data that look like a resonance models with inertia, a network and a recurrent network, which
-//!    are judged on the beginnings of the records and fitted to all of them; otherwise networks, recurrent networks, random stops and all classical laws, with and without rate,
-//!    deterioration, relaxation and companding. Laws with searched parameters are first fitted to few rows, and
-//!    dropped if their errors are far above the best. The other candidates and the remaining laws are fitted to the
-//!    first folds, the best of each kind also to the other folds, and those with a weight once more from a second
-//!    start. The prediction of a candidate is the median of its starts.
+//!    are judged on the beginnings of the records and fitted to all of them (theory.md, section 15); otherwise networks,
+//!    recurrent networks, random stops and all classical laws, with and without rate, deterioration, relaxation and
+//!    companding. Laws with searched parameters are first fitted to few rows, and dropped if their errors are far above
+//!    the best. The other candidates and the remaining laws are fitted to the first folds, the best of each kind also to
+//!    the other folds, and those with a weight once more from a second start. The prediction of a candidate is the
+//!    median of its starts.
 //! 3. *Weights*: the best eight candidates are weighted by their scores and combined by their weighted median.
 //!    Rows inside and outside the trained range have separate scores.
 //! 4. *Members*: the fewest starts, at least five, whose error on the folds is at most 1 % above that of all
@@ -112,7 +113,7 @@ pub(crate) fn fit(data: &Dataset, options: &AutoOptions, observer: &mut Observer
     // Should the observer stop everything soon, this is what there is.
     let alone = work.first_fit(first, if has_inertia { data } else { &few })?;
     let beginning = match has_inertia {
-        true => Beginning::virgin(&few, folds, options),
+        true => Beginning::with_inertia(&few, folds, options),
         false => Beginning::of(&quick(options), &few, folds, options, &work),
     };
     let data = &*beginning.of_all(data)?;

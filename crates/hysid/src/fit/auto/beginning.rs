@@ -27,6 +27,13 @@ use crate::validation::Fold;
 /// The validation error that states found must come to, as a share of that of the virgin state. Designed.
 const WORTH: f64 = 0.8;
 
+/// Share of a record that begins with a jump of the input whose rows are not scored. Designed.
+const AFTER_A_JUMP: f64 = 0.1;
+
+/// First rows of which a second difference of the input above this share of its range is a jump. Designed.
+const FIRST_ROWS: usize = 4;
+const JUMP: f64 = 0.01;
+
 /// Data whose records begin as it was chosen, and their folds.
 pub(super) struct Beginning {
     pub data: Dataset,
@@ -83,9 +90,25 @@ impl Beginning {
         }
     }
 
-    /// Records that begin in the virgin state, or after a warm-up that the user decided.
-    pub fn virgin(data: &Dataset, folds: Vec<Fold>, options: &AutoOptions) -> Self {
+    /// Records of systems with inertia: from rest, or after a warm-up that the user decided. If the input of a held-out
+    /// record begins with a jump, the first tenth of the record is not scored, because the input between its first rows is
+    /// not known.
+    pub fn with_inertia(data: &Dataset, folds: Vec<Fold>, options: &AutoOptions) -> Self {
         let warm_up = WarmUp::decided(options.warm_up.unwrap_or(0));
+        let (low, high) = data.input_range(0);
+        let without_jump = |record: &Record| {
+            let rows =
+                if jumps(record, high - low) { (AFTER_A_JUMP * record.len() as f64) as usize } else { 0 };
+            record.clone().scored_where(|row| row >= rows)
+        };
+        let judged = |fold: Fold| {
+            let held_out = fold.held_out.records().iter().map(without_jump).collect();
+            match Dataset::new(fold.held_out.names().clone(), held_out) {
+                Ok(held_out) if held_out.scored() > 0 => Fold { held_out, ..fold },
+                _ => fold,
+            }
+        };
+        let folds = folds.into_iter().map(judged).collect();
         Self { data: data.clone(), folds, warm_up, is_changed: false, found: None }
     }
 
@@ -101,6 +124,12 @@ impl Beginning {
         let of_record = |index: usize, _: &Record| records[index].lead_in().unwrap_or_default().to_vec();
         all.clone().with_lead_ins(of_record).map(Cow::Owned)
     }
+}
+
+/// True if the first rows of a record are not those of an input that begins smoothly.
+fn jumps(record: &Record, range: f64) -> bool {
+    let first = &record.inputs()[0][..record.len().min(FIRST_ROWS)];
+    first.windows(3).any(|x| (x[0] - 2.0 * x[1] + x[2]).abs() > JUMP * range)
 }
 
 /// Data and folds with the lead-ins that were found.

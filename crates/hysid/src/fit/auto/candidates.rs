@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use crate::data::rate::RateMethod;
 use crate::data::record::Dataset;
-use crate::diagnosis::resonance::Resonance;
+use crate::diagnosis::resonance::{Compared, Resonance};
 use crate::fit::initial_state::QUICK;
 use crate::law::duhem_nn::MOST_NEURONS;
 use crate::law::hysteretic_dynamics::MOST_NEURONS as MOST_NEURONS_OF_ELEMENT;
@@ -87,9 +87,12 @@ const EPOCHS: usize = 25;
 /// Epochs of a recurrent network.
 const EPOCHS_OF_RECURRENT: usize = 40;
 
-/// Starts and epochs of a model with inertia.
+/// Starts of a model with inertia for each start of another candidate; its search drops those with the larger errors.
 const STARTS_OF_DYNAMIC: usize = 2;
-const EPOCHS_OF_DYNAMIC: usize = 80;
+
+/// Starts and epochs of a model with inertia on a fold: fewer, because the folds only rank the candidates.
+const STARTS_ON_A_FOLD: usize = 2;
+const EPOCHS_ON_A_FOLD: usize = 80;
 
 /// Random stops with a linear readout, and with a random tanh layer: numbers of stops and tanh neurons. As
 /// above.
@@ -152,6 +155,21 @@ impl Candidate {
         }
     }
 
+    /// The same as it is fitted to the training part of a fold: a model with inertia and hysteresis from fewer starts and
+    /// in fewer epochs.
+    pub fn on_a_fold(&self) -> Cow<'_, Self> {
+        let FitSpec::Classical(options) = &self.request else { return Cow::Borrowed(self) };
+        if !self.is_dynamic() || self.has_no_hysteresis() {
+            return Cow::Borrowed(self);
+        }
+        let quicker = ClassicalOptions {
+            starts: Some(options.starts.map_or(STARTS_ON_A_FOLD, |starts| starts.min(STARTS_ON_A_FOLD))),
+            epochs: options.epochs.or(Some(EPOCHS_ON_A_FOLD)),
+            ..options.clone()
+        };
+        Cow::Owned(Self { request: FitSpec::Classical(quicker), ..self.clone() })
+    }
+
     /// The same network with other penalties, the weakest only for data without noise; none for what is no network.
     pub fn with_other_penalties(&self, is_without_noise: bool) -> Vec<Self> {
         let FitSpec::Network(options) = &self.request else { return Vec::new() };
@@ -166,6 +184,27 @@ impl Candidate {
     /// True for a model with inertia, which is fitted to rows without gaps.
     pub fn is_dynamic(&self) -> bool {
         self.kind == Kind::Dynamic
+    }
+
+    /// True for a model with inertia whose force follows from displacement and velocity alone.
+    fn has_no_hysteresis(&self) -> bool {
+        let is_without =
+            |options: &ClassicalOptions| options.states == Some(0) && options.operators == Some(0);
+        self.is_dynamic() && matches!(&self.request, FitSpec::Classical(options) if is_without(options))
+    }
+
+    /// True if this has hysteresis or is another kind of model, and the other is a model with inertia without hysteresis;
+    /// or if both are state space models, and this has more modes.
+    pub fn has_more_parts_than(&self, other: &Self) -> bool {
+        let modes_of_state_space = |candidate: &Self| match &candidate.request {
+            FitSpec::Classical(options) if options.model == ClassicalModel::HystereticStateSpace => {
+                options.modes
+            }
+            _ => None,
+        };
+        let modes = modes_of_state_space(self).zip(modes_of_state_space(other));
+        other.has_no_hysteresis() && !self.has_no_hysteresis()
+            || modes.is_some_and(|(of_this, of_other)| of_this > of_other)
     }
 
     /// True for a law whose parameters are searched from several starts in one fit.
@@ -233,8 +272,8 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
 
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
-    if Resonance::of(data).is_some_and(|resonance| resonance.is_found()) {
-        let all = candidates_with_inertia(data, options);
+    if let Some(resonance) = Resonance::of(data).filter(Resonance::is_found) {
+        let all = candidates_with_inertia(data, options, resonance.compared);
         if !all.is_empty() {
             return all;
         }
@@ -330,23 +369,33 @@ fn random_stops(options: &AutoOptions) -> Vec<ClassicalOptions> {
     all.into_iter().map(of).collect()
 }
 
-/// Models with inertia, and a network and a recurrent network in case that they do as well.
-fn candidates_with_inertia(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
-    let of = |(model, modes): (ClassicalModel, usize)| ClassicalOptions {
+/// Models with inertia, a network and a recurrent network. If only the changes of the output show the resonance, the
+/// structure has yielded and may have lost strength: oscillators with degradation are tried.
+fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Compared) -> Vec<Candidate> {
+    use ClassicalModel::{HystereticOscillator, HystereticStateSpace};
+    let of = |model: ClassicalModel, modes: usize| ClassicalOptions {
         modes: Some(options.modes.unwrap_or(modes)),
         hidden: options.hidden.map(|hidden| hidden.min(MOST_NEURONS_OF_ELEMENT)),
         operators: options.operators.map(|stops| stops.min(MOST_NEURONS_OF_ELEMENT)),
-        starts: Some(STARTS_OF_DYNAMIC),
-        epochs: Some(options.epochs.unwrap_or(EPOCHS_OF_DYNAMIC)),
+        starts: Some(STARTS_OF_DYNAMIC * options.starts),
+        epochs: options.epochs,
         seed: options.seed,
         ..ClassicalOptions::of(model)
     };
-    let dynamic = [
-        (ClassicalModel::HystereticOscillator, 1),
-        (ClassicalModel::HystereticStateSpace, 1),
-        (ClassicalModel::HystereticStateSpace, 2),
-    ];
-    let mut models: Vec<ClassicalOptions> = dynamic.map(of).into();
+    let degrading = |modes: usize| ClassicalOptions { degradation: true, ..of(HystereticOscillator, modes) };
+    let without_memory =
+        ClassicalOptions { states: Some(0), operators: Some(0), ..of(HystereticStateSpace, 1) };
+    let mut models = match compared {
+        Compared::Output => {
+            vec![of(HystereticOscillator, 1), of(HystereticStateSpace, 1), of(HystereticStateSpace, 2)]
+        }
+        Compared::Changes => vec![degrading(1), of(HystereticOscillator, 1), degrading(2)],
+    };
+    if compared == Compared::Output {
+        let is_wanted = options.operators.is_none_or(|stops| stops == 0);
+        models.extend(is_wanted.then_some(without_memory));
+        models.extend((options.deterioration == Some(true)).then(|| degrading(1)));
+    }
     models.dedup();
     let recurrent = recurrent(data, options).into_iter().take(1);
     let others = models.into_iter().chain(recurrent).map(FitSpec::Classical);

@@ -147,7 +147,11 @@ impl Makers<'_, '_, '_> {
         plain.sort_by(|a, b| a.error.total_cmp(&b.error));
         let Some(best) = plain.first() else { return Ok(None) };
         let candidate = &self.trials[best.place].candidate;
-        let distilled = self.distilled(candidate, ensemble, &unmeasured)?;
+        // A model with inertia takes long to fit, and its search has found the best of several starts already.
+        let distilled = match candidate.is_dynamic() {
+            true => None,
+            false => self.distilled(candidate, ensemble, &unmeasured)?,
+        };
         let of_distilled =
             distilled.as_ref().map(|(_, predicted)| Score::of(predicted, self.bench.folds, |_| true));
         let mut how = SingleModel {

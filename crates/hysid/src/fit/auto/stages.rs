@@ -23,6 +23,9 @@ const SIDE_BY_SIDE: usize = 4;
 const HOPELESS: f64 = 3.0;
 const HOPEFUL_OF_KIND: usize = 6;
 
+/// A model with inertia that has fewer parts is enough if its error is at most so many times that of the best.
+const ABOUT_AS_GOOD: f64 = 1.2;
+
 /// With so many folds at most, all are first folds.
 const FEW_FOLDS: usize = 3;
 
@@ -108,7 +111,7 @@ impl Stages<'_, '_, '_> {
         }
         let (first_folds, other_folds) = self.first_folds();
         let all: Vec<usize> = (begun..self.trials.len()).collect();
-        let urgent = if begun == 0 { all.len().min(SIDE_BY_SIDE) } else { 0 };
+        let urgent = if begun == 0 { self.urgent().min(all.len()) } else { 0 };
         let (urgent, others) = all.split_at(urgent);
         self.bench.try_folds(&mut self.trials, urgent, 0, &first_folds, true);
         self.tell(urgent, Standing::Trying);
@@ -135,6 +138,13 @@ impl Stages<'_, '_, '_> {
             place += 1;
             !dropped.contains(&(place - 1))
         });
+    }
+
+    /// How many of the first candidates are tried on everything at once. A model with inertia takes long to fit to
+    /// everything: only the first, which has been.
+    fn urgent(&self) -> usize {
+        let has_inertia = self.trials.first().is_some_and(|trial| trial.candidate.is_dynamic());
+        if has_inertia { 1 } else { SIDE_BY_SIDE }
     }
 
     /// Ends the starts of some candidates that are under way, and tells what came of them.
@@ -187,7 +197,23 @@ impl Stages<'_, '_, '_> {
             *of_kind += 1;
             *of_kind <= HOPEFUL_OF_KIND
         });
-        scored.into_iter().map(|(place, _)| place).collect()
+        let enough = 0.5 * best.sum() + ABOUT_AS_GOOD.ln();
+        let scored = scored.into_iter().map(|(place, score)| (place, 0.5 * score.sum() <= enough));
+        self.without_needless_parts(scored.collect())
+    }
+
+    /// Of candidates, each with whether its error is at most [`ABOUT_AS_GOOD`] times the lowest: those for which no
+    /// simpler one is about as good. Unnecessary hysteresis or modes increase the error beyond the training range.
+    fn without_needless_parts(&self, candidates: Vec<(usize, bool)>) -> Vec<usize> {
+        let candidate = |place: usize| &self.trials[place].candidate;
+        let enough: Vec<&Candidate> = candidates
+            .iter()
+            .filter(|(_, is_enough)| *is_enough)
+            .map(|(place, _)| candidate(*place))
+            .collect();
+        let is_needed =
+            |place: &usize| !enough.iter().any(|other| candidate(*place).has_more_parts_than(other));
+        candidates.into_iter().map(|(place, _)| place).filter(is_needed).collect()
     }
 
     /// The folds on which a candidate shows whether it is hopeless, and the others. Of a single record the first

@@ -241,7 +241,7 @@ impl Bench<'_, '_, '_> {
             return Some(Tried::OnEverything(fitted.model));
         };
         let fold = &self.folds[fold].fold;
-        let model = self.work.fit(candidate, &fold.train, job.start).ok().flatten()?.model;
+        let model = self.work.fit(&candidate.on_a_fold(), &fold.train, job.start).ok().flatten()?.model;
         let predicted = fold.predicted_by(&model).ok()?;
         let is_sound = predicted.iter().all(|y| y.is_finite());
         is_sound.then_some(Tried::OnFold(OnFold { model, predicted }))
