@@ -158,6 +158,13 @@ impl ClassicalOptions {
         }
     }
 
+    /// True for a model with inertia whose elements have neither memory states nor stops. By default, only elements that
+    /// deteriorate have stops.
+    pub fn has_no_memory(&self) -> bool {
+        let has_no_stops = self.operators.map_or(!self.degradation, |stops| stops == 0);
+        self.model.needs_time() && self.states == Some(0) && has_no_stops
+    }
+
     /// The defaults of a model.
     pub fn of(model: ClassicalModel) -> Self {
         Self {

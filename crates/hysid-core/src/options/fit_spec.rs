@@ -65,7 +65,7 @@ impl FitSpec {
                 ]),
             ),
             Self::Classical(options) => {
-                let has_no_memory = options.states == Some(0) && options.operators.unwrap_or(0) == 0;
+                let has_no_memory = options.has_no_memory();
                 let has_tanh_layer = options.model == ClassicalModel::RandomStops
                     && options.hidden.is_some_and(|hidden| hidden > 0);
                 (

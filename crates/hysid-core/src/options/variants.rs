@@ -68,6 +68,18 @@ mod tests {
     }
 
     #[test]
+    fn a_model_with_inertia_tells_its_modes_and_whether_it_has_memory() {
+        let label = |options: ClassicalOptions| FitSpec::Classical(options).label();
+        let plain = ClassicalOptions::of(ClassicalModel::HystereticOscillator);
+        let without_states = ClassicalOptions { states: Some(0), modes: Some(1), ..plain.clone() };
+        let degrading = ClassicalOptions { degradation: true, modes: Some(2), ..without_states.clone() };
+        assert_eq!(label(plain), "hysteretic-oscillator");
+        assert_eq!(label(without_states), "hysteretic-oscillator (no memory, 1 mode)");
+        // It has deteriorating stops.
+        assert_eq!(label(degrading), "hysteretic-oscillator (degradation, 2 modes)");
+    }
+
+    #[test]
     fn the_simplest_variant_comes_first() {
         let bouc_wen = ModelName::Classical(ClassicalModel::BoucWen);
         assert_eq!(labels(bouc_wen, None), ["bouc-wen", "bouc-wen (degradation)"]);

@@ -95,6 +95,11 @@ fn outputs(dynamics: &Dynamics, samples: &[Sample]) -> Vec<f64> {
 
 const SHAPE: Shape = Shape { stops: 2, states: 2, neurons: 9, deteriorates: true };
 
+/// A run over records that begin in mid-motion.
+fn in_motion<'a>(dynamics: &'a Dynamics, drives: &'a [Drive], beginnings: &'a [f64]) -> Run<'a> {
+    Run { dynamics, drives, beginnings, is_in_motion: true, stop: StopCheck::never() }
+}
+
 #[test]
 fn derivatives_equal_differences() {
     for (form, modes, elements, shape, begins_under_input, hold) in [
@@ -122,23 +127,11 @@ fn derivatives_equal_differences() {
         let beginnings = |parameters: &[f64]| parameters[layout.beginning.clone()].repeat(2);
         let errors = |parameters: &[f64]| -> Vec<f64> {
             let (dynamics, beginnings) = (layout.dynamics(parameters, &template), beginnings(parameters));
-            let run = Run {
-                dynamics: &dynamics,
-                drives: &drives,
-                beginnings: &beginnings,
-                is_in_motion: true,
-                stop: StopCheck::never(),
-            };
-            run.rows(&layout).unwrap().iter().map(|row| row[layout.count()]).collect()
+            let rows = in_motion(&dynamics, &drives, &beginnings).rows(&layout).unwrap();
+            rows.iter().map(|row| row[layout.count()]).collect()
         };
         let (dynamics, beginnings) = (layout.dynamics(&parameters, &template), beginnings(&parameters));
-        let run = Run {
-            dynamics: &dynamics,
-            drives: &drives,
-            beginnings: &beginnings,
-            is_in_motion: true,
-            stop: StopCheck::never(),
-        };
+        let run = in_motion(&dynamics, &drives, &beginnings);
         let rows = run.rows(&layout).unwrap();
         for place in 0..layout.count() {
             let by = 4e-6;

@@ -16,6 +16,7 @@ use crate::fit::auto::trial::{Bench, HeldOut, Trial};
 use crate::fit::auto::warm_up::better;
 use crate::fit::auto::work::Work;
 use crate::fit::initial_state::{self, QUICK_INTERVALS, found_on, known};
+use crate::fit::law::hysteretic_dynamics::first_second_difference;
 use crate::law::facts::Origin;
 use crate::model::selection::{FoundStates, WarmUp};
 use crate::options::FitSpec;
@@ -30,8 +31,7 @@ const WORTH: f64 = 0.8;
 /// Share of a record that begins with a jump of the input whose rows are not scored. Designed.
 const AFTER_A_JUMP: f64 = 0.1;
 
-/// First rows of which a second difference of the input above this share of its range is a jump. Designed.
-const FIRST_ROWS: usize = 4;
+/// A second difference of the input in the first rows above this share of its range is a jump. Designed.
 const JUMP: f64 = 0.01;
 
 /// Data whose records begin as it was chosen, and their folds.
@@ -128,8 +128,7 @@ impl Beginning {
 
 /// True if the first rows of a record are not those of an input that begins smoothly.
 fn jumps(record: &Record, range: f64) -> bool {
-    let first = &record.inputs()[0][..record.len().min(FIRST_ROWS)];
-    first.windows(3).any(|x| (x[0] - 2.0 * x[1] + x[2]).abs() > JUMP * range)
+    first_second_difference(&record.inputs()[0]) > JUMP * range
 }
 
 /// Data and folds with the lead-ins that were found.

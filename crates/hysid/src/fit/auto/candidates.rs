@@ -188,9 +188,7 @@ impl Candidate {
 
     /// True for a model with inertia whose force follows from displacement and velocity alone.
     fn has_no_hysteresis(&self) -> bool {
-        let is_without =
-            |options: &ClassicalOptions| options.states == Some(0) && options.operators == Some(0);
-        self.is_dynamic() && matches!(&self.request, FitSpec::Classical(options) if is_without(options))
+        self.is_dynamic() && matches!(&self.request, FitSpec::Classical(options) if options.has_no_memory())
     }
 
     /// True if this has hysteresis or is another kind of model, and the other is a model with inertia without hysteresis;
@@ -385,18 +383,26 @@ fn candidates_with_inertia(data: &Dataset, options: &AutoOptions, compared: Comp
     let degrading = |modes: usize| ClassicalOptions { degradation: true, ..of(HystereticOscillator, modes) };
     let without_memory =
         ClassicalOptions { states: Some(0), operators: Some(0), ..of(HystereticStateSpace, 1) };
-    let mut models = match compared {
-        Compared::Output => {
-            vec![of(HystereticOscillator, 1), of(HystereticStateSpace, 1), of(HystereticStateSpace, 2)]
+    let may_have_no_stops = options.operators.is_none_or(|stops| stops == 0);
+    let wanted = match compared {
+        Compared::Output => vec![
+            Some(of(HystereticOscillator, 1)),
+            Some(of(HystereticStateSpace, 1)),
+            Some(of(HystereticStateSpace, 2)),
+            may_have_no_stops.then_some(without_memory),
+            (options.deterioration == Some(true)).then(|| degrading(1)),
+        ],
+        Compared::Changes => {
+            vec![Some(degrading(1)), Some(of(HystereticOscillator, 1)), Some(degrading(2))]
         }
-        Compared::Changes => vec![degrading(1), of(HystereticOscillator, 1), degrading(2)],
     };
-    if compared == Compared::Output {
-        let is_wanted = options.operators.is_none_or(|stops| stops == 0);
-        models.extend(is_wanted.then_some(without_memory));
-        models.extend((options.deterioration == Some(true)).then(|| degrading(1)));
+    let mut models: Vec<ClassicalOptions> = Vec::new();
+    for model in wanted.into_iter().flatten() {
+        // With a number of modes that the user has decided, some are alike.
+        if !models.contains(&model) {
+            models.push(model);
+        }
     }
-    models.dedup();
     let recurrent = recurrent(data, options).into_iter().take(1);
     let others = models.into_iter().chain(recurrent).map(FitSpec::Classical);
     let all = others.chain(networks(options).into_iter().take(1).map(FitSpec::Network));

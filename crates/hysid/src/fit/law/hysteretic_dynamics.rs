@@ -34,6 +34,7 @@ use crate::options::table::{check, check_counts};
 use crate::stop_check::StopCheck;
 use crate::termination::Termination;
 use linear_start::LinearStarts;
+pub(crate) use linear_start::first_second_difference;
 use records::Records;
 pub(crate) use task::AT_ONCE;
 use task::{Task, Value};

@@ -52,7 +52,7 @@ const LEAST_MOTION: f64 = 0.1;
 const MOST_IN_MOTION: usize = 50;
 
 /// Rows at the beginning of a record whose input tells how far the hold may be off between the first of them.
-const ROWS_OF_KICK: usize = 4;
+const FIRST_ROWS: usize = 4;
 
 /// An expected displacement or velocity below this, in standard deviations of the output, is rest.
 const LEAST_KICK: f64 = 1e-4;
@@ -112,13 +112,18 @@ impl LinearStarts {
 /// between two samples misses `Δ²u h/12` of the impulse of a curved input. In later rows this acts like a fixed linear
 /// filter, which the modes compensate.
 fn kick(mode: &Mode, system: &Dynamics, drive: &Drive) -> f64 {
-    let has_interpolation = drive.x.len() >= ROWS_OF_KICK && drive.steps[1].is_finite();
+    let has_interpolation = drive.x.len() >= FIRST_ROWS && drive.steps[1].is_finite();
     if system.hold == Hold::Constant || !has_interpolation {
         return LEAST_KICK;
     }
-    let curved = |x: &[f64]| (x[0] - 2.0 * x[1] + x[2]).abs() / system.input_scale;
-    let second_difference = drive.x[..ROWS_OF_KICK].windows(3).map(curved).fold(0.0, f64::max);
+    let second_difference = first_second_difference(&drive.x) / system.input_scale;
     (mode.frequency * drive.steps[1] * mode.gain.abs() * second_difference / 12.0).max(LEAST_KICK)
+}
+
+/// Largest second difference of the first four rows of an input: large if the record begins with a jump.
+pub(crate) fn first_second_difference(input: &[f64]) -> f64 {
+    let curved = |x: &[f64]| (x[0] - 2.0 * x[1] + x[2]).abs();
+    input[..input.len().min(FIRST_ROWS)].windows(3).map(curved).fold(0.0, f64::max)
 }
 
 fn begun(drives: Vec<Drive>, are_in_motion: &[bool]) -> Vec<Begun> {
