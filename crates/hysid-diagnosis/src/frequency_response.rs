@@ -8,12 +8,13 @@
 //!
 //! ```
 //! use hysid_diagnosis::frequency_response::{Segments, resolution};
-//! use hysid_diagnosis::resonance::linear_oscillators;
+//! use hysid_diagnosis::resonance::Resonance;
 //! use hysid_specimens::Specimen;
 //! let data = Specimen::named("duffing-oscillator").unwrap().train();
-//! let resolution = resolution(&linear_oscillators(&data)[0]);
+//! let oscillator = Resonance::of(&data).unwrap().oscillator;
+//! let resolution = resolution(&oscillator);
 //! let response = Segments::of(&data, Some(resolution))?.measured(&data, resolution);
-//! let peak = response.peak().unwrap();
+//! let peak = response.peak(oscillator.compared).unwrap();
 //! assert!((55.0..85.0).contains(&peak.frequency)); // Hz
 //! # Ok::<(), hysid_diagnosis::frequency_response::NoResponse>(())
 //! ```
@@ -29,7 +30,7 @@ use std::fmt;
 pub use of_model::{AtAmplitude, ModelResponses};
 pub use segments::{Segments, Window, resolution};
 
-use crate::resonance::LinearOscillator;
+use crate::resonance::{Compared, LinearOscillator};
 
 /// The response at a frequency: output per unit of input, a complex number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,19 +83,27 @@ impl FrequencyResponse {
         Self { points: frequencies.map(point).collect() }
     }
 
-    /// The point of the largest magnitude; `None` if it is the first or the last one, which is no peak.
-    pub fn peak(&self) -> Option<ResponsePoint> {
-        self.peak_index().map(|peak| self.points[peak])
+    /// The point where the response of the output, or that of its changes, has its largest magnitude; `None` if it is the
+    /// first or the last one, which is no peak.
+    ///
+    /// The response of the changes is that of the output times a factor in proportion to the frequency, as long as this is
+    /// far below half the sampling rate. It shows the resonance of a structure whose output drifts.
+    pub fn peak(&self, compared: Compared) -> Option<ResponsePoint> {
+        self.peak_index(compared).map(|peak| self.points[peak])
     }
 
     /// Mean distance of the frequency of the peak from those of the points beside it: to so much it is known.
-    pub fn peak_resolution(&self) -> Option<f64> {
-        let peak = self.peak_index()?;
+    pub fn peak_resolution(&self, compared: Compared) -> Option<f64> {
+        let peak = self.peak_index(compared)?;
         Some(0.5 * (self.points[peak + 1].frequency - self.points[peak - 1].frequency))
     }
 
-    fn peak_index(&self) -> Option<usize> {
-        let magnitudes = self.points.iter().map(ResponsePoint::magnitude).enumerate();
+    fn peak_index(&self, compared: Compared) -> Option<usize> {
+        let magnitude = |point: &ResponsePoint| match compared {
+            Compared::Output => point.magnitude(),
+            Compared::Changes => point.frequency * point.magnitude(),
+        };
+        let magnitudes = self.points.iter().map(magnitude).enumerate();
         let (largest, _) = magnitudes.max_by(|a, b| a.1.total_cmp(&b.1))?;
         (largest > 0 && largest + 1 < self.points.len()).then_some(largest)
     }

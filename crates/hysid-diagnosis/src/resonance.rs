@@ -32,8 +32,6 @@ pub struct Resonance {
     pub oscillator: LinearOscillator,
     /// The residual of the oscillator divided by that of the law without inertia.
     pub ratio: f64,
-    /// Whether the output or its changes from row to row were compared.
-    pub compared: Compared,
     /// The rows that were compared.
     pub rows: Vec<Piece>,
 }
@@ -45,45 +43,25 @@ impl Resonance {
     /// 200 rows with an output in records of at least 200 rows, and where input or output are constant. Of long data some
     /// 6000 rows are compared.
     pub fn of(data: &Dataset) -> Option<Self> {
-        Some(Comparison::of(data)?.resonance)
+        let of_output = Self::of_what(data, Compared::Output)?;
+        if of_output.is_found() {
+            return Some(of_output);
+        }
+        Self::of_what(data, Compared::Changes).filter(Self::is_found).or(Some(of_output))
     }
 
     /// True if the oscillator leaves clearly less, and swings.
     pub fn is_found(&self) -> bool {
-        let (ratio, damping_ratio) = match self.compared {
+        let (ratio, damping_ratio) = match self.oscillator.compared {
             Compared::Output => (RATIO, MOST_DAMPING),
             Compared::Changes => (RATIO_OF_CHANGES, MOST_DAMPING_OF_CHANGES),
         };
         self.ratio < ratio && self.oscillator.damping_ratio <= damping_ratio
     }
-}
-
-/// Linear oscillators that fit data in a free run, the best first: up to three, at different frequencies. They are fitted to
-/// what [`Resonance::of`] compares; none where it compares nothing.
-pub fn linear_oscillators(data: &Dataset) -> Vec<LinearOscillator> {
-    Comparison::of(data).map_or_else(Vec::new, |comparison| comparison.oscillators)
-}
-
-struct Comparison {
-    /// The best first.
-    oscillators: Vec<LinearOscillator>,
-    resonance: Resonance,
-}
-
-impl Comparison {
-    fn of(data: &Dataset) -> Option<Self> {
-        let of_output = Self::of_what(data, Compared::Output)?;
-        if of_output.resonance.is_found() {
-            return Some(of_output);
-        }
-        let of_changes = Self::of_what(data, Compared::Changes);
-        of_changes.filter(|changes| changes.resonance.is_found()).or(Some(of_output))
-    }
 
     fn of_what(data: &Dataset, compared: Compared) -> Option<Self> {
         let excerpts = Excerpts::of(data, compared)?;
-        let oscillators = search::best(&excerpts);
-        let oscillator = *oscillators.first()?;
+        let oscillator = search::best(&excerpts)?;
         let (frequency, damping_ratio) = (oscillator.natural_frequency, oscillator.damping_ratio);
         let remainder = static_law::remainder(data, &excerpts, frequency, damping_ratio);
         let ratio = oscillator.residual / excerpts.root_mean_square(remainder);
@@ -91,7 +69,7 @@ impl Comparison {
         let rows = rows
             .map(|part| Piece::of(&data.records()[part.record], (part.rows.start, part.rows.end - 1)))
             .collect();
-        Some(Self { oscillators, resonance: Resonance { oscillator, ratio, compared, rows } })
+        Some(Self { oscillator, ratio, rows })
     }
 }
 

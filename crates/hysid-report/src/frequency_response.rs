@@ -4,7 +4,7 @@ use hysid::data::unit::of_column;
 use hysid::diagnosis::frequency_response::{
     AtAmplitude, FrequencyResponse, ModelResponses, ResponsePoint, Segments, Window,
 };
-use hysid::diagnosis::resonance::LinearOscillator;
+use hysid::diagnosis::resonance::{Compared, LinearOscillator};
 use hysid_document::chart::Track;
 use hysid_document::chart::thin::{Point, thin};
 use hysid_document::{Axis, Cell, Chart, Colour, Curve, Part, Table, count, number, unit};
@@ -157,9 +157,10 @@ impl<'a> Section<'a> {
             format!("magnitude there ({})", self.gain_unit()),
             "coherence there".into(),
         ]);
+        let compared = self.responses.compared();
         for line in &self.lines {
-            let peak = line.response.peak();
-            let known = peak.zip(line.response.peak_resolution());
+            let peak = line.response.peak(compared);
+            let known = peak.zip(line.response.peak_resolution(compared));
             let resonance =
                 known.map_or(Cell::Missing, |(peak, resolution)| resolved(peak.frequency, resolution));
             table.push([
@@ -188,18 +189,28 @@ impl<'a> Section<'a> {
              resonance of the model may be sharper, within less. Frequencies with little input power, or with a coherence \
              that noise alone could give, are left out. Coherence: share of the output power that this linear system \
              explains. {oscillator}Model: free runs over the measured input, and over the input with its deviation from \
-             the mean multiplied by smaller factors; larger ones would leave the trained range. Resonance: frequency of \
-             the largest magnitude.",
+             the mean multiplied by smaller factors; larger ones would leave the trained range. Resonance: \
+             frequency {}.",
             divided(segments),
             number(self.responses.resolution.max(segments.distance()), 2),
-            self.hertz
+            self.hertz,
+            match self.responses.compared() {
+                Compared::Output => "of the largest magnitude",
+                Compared::Changes =>
+                    "where magnitude times frequency is largest; this is the response of the changes of the output from row \
+                     to row, which show the resonance better than the output itself",
+            }
         )
     }
 
     fn oscillator(&self, oscillator: &LinearOscillator) -> String {
         format!(
-            "Best linear oscillator: mass, spring and damper plus a constant gain, fitted in a free run; natural frequency \
-             {} {}, damping ratio {} %. ",
+            "Best linear oscillator: mass, spring and damper plus a constant gain, fitted {}in a free run; natural \
+             frequency {} {}, damping ratio {} %. ",
+            match oscillator.compared {
+                Compared::Output => "",
+                Compared::Changes => "to the changes of the output from row to row ",
+            },
             number(oscillator.natural_frequency, 4),
             self.hertz,
             number(100.0 * oscillator.damping_ratio, 2)

@@ -11,7 +11,7 @@ const SHOWN: usize = 3;
 pub(super) fn complaints(survey: &BranchSet) -> Option<DataIssue> {
     let found = Resonance::of(survey.data).filter(Resonance::is_found)?;
     let seconds = Units::of(survey).time.as_deref() == Some("s");
-    let (what, models) = match found.compared {
+    let (what, models) = match found.oscillator.compared {
         Compared::Output => ("", "--model hysteretic-oscillator or hysteretic-state-space"),
         Compared::Changes => (
             "for the changes of the output from row to row, ",

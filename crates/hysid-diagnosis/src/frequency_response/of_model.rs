@@ -7,7 +7,7 @@ use hysid_core::model::Model;
 use super::spectra::mean;
 use super::stretches::{Stretch, stretches};
 use super::{FrequencyResponse, NoResponse, Segments, resolution};
-use crate::resonance::{LinearOscillator, linear_oscillators};
+use crate::resonance::{Compared, LinearOscillator, Resonance};
 
 /// Factors by which the input is multiplied, about its mean. Larger ones than 1 would leave the trained range.
 const FACTORS: [f64; 2] = [0.3, 0.1];
@@ -39,6 +39,12 @@ pub struct AtAmplitude {
 }
 
 impl ModelResponses {
+    /// Which response has its largest magnitude at the resonance: that of the output, unless only the changes of the measured
+    /// output show it.
+    pub fn compared(&self) -> Compared {
+        self.oscillator.as_ref().map_or(Compared::Output, |(oscillator, _)| oscillator.compared)
+    }
+
     /// Responses of a model to the inputs of data, which it was simulated over: `simulated` has the output of each record.
     /// Its rows without a measured output are left out as those of the measurement are.
     ///
@@ -55,7 +61,7 @@ impl ModelResponses {
             Ok(found) => found,
             Err(why) => return Ok(Err(why)),
         };
-        let oscillator = linear_oscillators(data).into_iter().next();
+        let oscillator = Resonance::of(data).map(|found| found.oscillator);
         let of_data = oscillator.as_ref().map_or(0.0, resolution);
         let begun = stretches.iter().map(|stretch| {
             (stretch.input(data).to_vec(), simulated[stretch.record][..stretch.rows].to_vec())
@@ -108,7 +114,7 @@ impl Run {
             columns.push((input, output));
         }
         let moved = Dataset::new(data.names().clone(), records)?;
-        let oscillator = linear_oscillators(&moved).into_iter().next();
+        let oscillator = Resonance::of(&moved).map(|found| found.oscillator);
         let resolution = oscillator.map_or(coarsest, |oscillator| resolution(&oscillator).min(coarsest));
         Ok(Self { factor, columns, resolution })
     }

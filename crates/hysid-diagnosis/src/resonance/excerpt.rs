@@ -96,6 +96,8 @@ impl Scale {
 /// Excerpts of all records, and how they are scaled.
 #[derive(Debug)]
 pub(super) struct Excerpts {
+    /// What is compared of each.
+    pub compared: Compared,
     pub parts: Vec<Excerpt>,
     pub input: Scale,
     pub output: Scale,
@@ -145,7 +147,7 @@ impl Excerpts {
             })
         };
         let parts = chosen.iter().map(excerpt).collect::<Option<Vec<Excerpt>>>()?;
-        Some(Self { parts, input, output, scored })
+        Some(Self { compared, parts, input, output, scored })
     }
 
     /// A remainder as root mean square in the unit of the output.

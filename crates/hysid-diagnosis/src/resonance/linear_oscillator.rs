@@ -9,6 +9,8 @@
 
 use std::f64::consts::TAU;
 
+use super::excerpt::Compared;
+
 /// A linear oscillator as fitted to data.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearOscillator {
@@ -22,8 +24,9 @@ pub struct LinearOscillator {
     pub direct: f64,
     /// Output at rest under zero input, `c`. Not determined if changes were compared; do not use it then.
     pub offset: f64,
-    /// Root mean square error of a free run, in the unit of the output: of the output, or of its changes from row to row
-    /// if changes were compared.
+    /// What was compared with the oscillator: the output or its changes from row to row.
+    pub compared: Compared,
+    /// Root mean square error of a free run, of what was compared, in the unit of the output.
     pub residual: f64,
 }
 

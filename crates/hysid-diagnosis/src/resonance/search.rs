@@ -1,4 +1,4 @@
-//! Which linear oscillators fit data best in a free run: a grid of frequencies and damping ratios, and around the best of
+//! Which linear oscillator fits data best in a free run: a grid of frequencies and damping ratios, and around the best of
 //! it a search with ever smaller steps. Gain, direct part, offset and initial states follow by linear least squares.
 
 use super::excerpt::Excerpts;
@@ -29,8 +29,8 @@ const MOST_STEPS: usize = 100;
 /// Columns of a free run: two free motions, the oscillator, the input, a constant, the output.
 const COLUMNS: usize = 6;
 
-/// The bottoms of the deepest valleys, the best oscillator first.
-pub(super) fn best(excerpts: &Excerpts) -> Vec<LinearOscillator> {
+/// The best oscillator: the lowest bottom of the deepest valleys. `None` if the rows are too few for one.
+pub(super) fn best(excerpts: &Excerpts) -> Option<LinearOscillator> {
     let longest = excerpts.parts.iter().map(|part| part.duration()).fold(0.0, f64::max);
     let coarsest = excerpts.parts.iter().map(|part| part.step).fold(0.0, f64::max);
     let mut search = Search {
@@ -38,10 +38,8 @@ pub(super) fn best(excerpts: &Excerpts) -> Vec<LinearOscillator> {
         frequencies: (FEWEST_CYCLES / longest, MOST_CYCLES / coarsest),
         columns: std::array::from_fn(|_| Vec::new()),
     };
-    let mut found: Vec<LinearOscillator> =
-        search.valleys().into_iter().map(|point| search.bottom(point)).collect();
-    found.sort_by(|a, b| a.residual.total_cmp(&b.residual));
-    found
+    let bottoms = search.valleys().into_iter().map(|point| search.bottom(point));
+    bottoms.min_by(|a, b| a.residual.total_cmp(&b.residual))
 }
 
 /// A frequency and a damping ratio, and the sum of squares that such an oscillator leaves of the scaled output.
@@ -149,6 +147,7 @@ impl Search<'_> {
             gain: slope * weights[0],
             direct: slope * (weights[1] - weights[0]),
             offset: output.middle + output.half * weights[2] - slope * weights[1] * input.middle,
+            compared: self.excerpts.compared,
             residual: self.excerpts.root_mean_square(point.remainder),
         }
     }

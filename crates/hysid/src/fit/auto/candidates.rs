@@ -271,7 +271,7 @@ pub(super) fn quick(options: &AutoOptions) -> Candidate {
 /// All candidates for data like these: those that are usually good or quick before the others.
 pub(super) fn candidates(data: &Dataset, options: &AutoOptions) -> Vec<Candidate> {
     if let Some(resonance) = Resonance::of(data).filter(Resonance::is_found) {
-        let all = candidates_with_inertia(data, options, resonance.compared);
+        let all = candidates_with_inertia(data, options, resonance.oscillator.compared);
         if !all.is_empty() {
             return all;
         }

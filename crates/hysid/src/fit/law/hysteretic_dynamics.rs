@@ -269,6 +269,8 @@ fn with_elements(
 struct Walk {
     kind: Kind,
     search: LevenbergMarquardt<Value>,
+    /// On the square of each parameter.
+    penalties: Vec<f64>,
     stage: usize,
     /// True in the last stage, which alone may end the search.
     is_in_last: bool,
@@ -279,9 +281,9 @@ struct Walk {
 
 impl Walk {
     fn new(task: &Task<'_>, beginning: &Dynamics, kind: Kind) -> Self {
-        let search =
-            LevenbergMarquardt::new(&task.with_penalty(STAGES[0].penalty), task.parameters(beginning));
-        Self { kind, search, stage: 0, is_in_last: false, ended: None, earlier: 0 }
+        let penalties = task.penalties(STAGES[0].penalty);
+        let search = LevenbergMarquardt::new(&task.with_penalties(&penalties), task.parameters(beginning));
+        Self { kind, search, penalties, stage: 0, is_in_last: false, ended: None, earlier: 0 }
     }
 
     fn value(&self) -> &Value {
@@ -296,20 +298,19 @@ impl Walk {
         let task = if known.is_some_and(|stage| stage.is_early) { early } else { whole };
         let has_one_mode = self.kind.has_one_mode_first && known.is_some_and(|stage| stage.has_one_mode);
         let task = task.of_one_mode(has_one_mode);
-        let penalty = |mean_square: f64| match known {
-            Some(stage) => stage.penalty,
-            None => mean_square / (EXPECTED_SQUARE * task.rows),
-        };
         if stage != self.stage {
             self.earlier += self.search.evaluations();
             let parameters = self.search.parameters().to_vec();
-            let known = self.value().mean_square;
-            self.search = LevenbergMarquardt::new(&task.with_penalty(penalty(known)), parameters);
+            let mean_square = self.value().mean_square;
+            self.penalties = task.penalties(match known {
+                Some(stage) => stage.penalty,
+                None => mean_square / (EXPECTED_SQUARE * task.rows),
+            });
+            self.search = LevenbergMarquardt::new(&task.with_penalties(&self.penalties), parameters);
             (self.stage, self.ended) = (stage, None);
         }
         if self.ended.is_none() {
-            let penalty = self.value().penalty;
-            self.ended = self.search.advance(&task.with_penalty(penalty));
+            self.ended = self.search.advance(&task.with_penalties(&self.penalties));
         }
     }
 }

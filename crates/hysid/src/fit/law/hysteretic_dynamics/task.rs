@@ -31,7 +31,8 @@ pub(super) struct Task<'a> {
     pub records: &'a [Begun],
     /// `N`.
     pub rows: f64,
-    penalty: f64,
+    /// Penalty on the square of each parameter; empty if there is none.
+    penalties: &'a [f64],
     /// True while only the first mode moves: what excites the others is 0 and stays so.
     is_of_one_mode: bool,
     stop: StopCheck<'a>,
@@ -57,17 +58,21 @@ pub(super) enum Beginning {
 }
 
 impl Beginning {
+    /// Number of displacements and velocities that are searched.
+    fn count(&self, modes: usize) -> usize {
+        if *self == Self::AtRest { 0 } else { 2 * modes }
+    }
+
     /// Shares of the penalty on weights that act on displacements and then on velocities, if these are searched.
     fn decays(&self, modes: usize) -> Vec<f64> {
-        match self {
+        let of_mode: Vec<f64> = match self {
             Self::AtRest => Vec::new(),
             Self::NearRest(deviations) => {
-                let decays: Vec<f64> =
-                    deviations.iter().map(|deviation| EXPECTED_SQUARE / (deviation * deviation)).collect();
-                decays.repeat(2)
+                deviations.iter().map(|deviation| EXPECTED_SQUARE / (deviation * deviation)).collect()
             }
-            Self::InMotion => vec![1.0; 2 * modes],
-        }
+            Self::InMotion => vec![1.0; modes],
+        };
+        of_mode.repeat(2)
     }
 }
 
@@ -76,8 +81,6 @@ impl Beginning {
 pub(super) struct Value {
     pub objective: f64,
     pub mean_square: f64,
-    /// κ.
-    pub penalty: f64,
 }
 
 impl Value {
@@ -94,11 +97,15 @@ impl<'a> Task<'a> {
         stop: StopCheck<'a>,
     ) -> Self {
         let rows = records.iter().map(|record| record.drive.rows()).sum::<f64>().max(1.0);
-        Self { layout, template, records, rows, penalty: 0.0, is_of_one_mode: false, stop }
+        Self { layout, template, records, rows, penalties: &[], is_of_one_mode: false, stop }
     }
 
-    pub fn with_penalty(self, penalty: f64) -> Self {
-        Self { penalty, ..self }
+    /// The same task with other penalties.
+    pub fn with_penalties<'b>(self, penalties: &'b [f64]) -> Task<'b>
+    where
+        'a: 'b,
+    {
+        Task { penalties, ..self }
     }
 
     pub fn of_one_mode(self, is_of_one_mode: bool) -> Self {
@@ -108,7 +115,7 @@ impl<'a> Task<'a> {
     /// The parameters of a model, with the modes at rest at the first row of each record.
     pub fn parameters(&self, dynamics: &Dynamics) -> Vec<f64> {
         let mut parameters = self.layout.parameters(dynamics);
-        parameters.resize(self.decays().len(), 0.0);
+        parameters.resize(self.count(), 0.0);
         parameters
     }
 
@@ -125,7 +132,7 @@ impl<'a> Task<'a> {
     fn runs<'r>(&'r self, dynamics: &'r Dynamics, parameters: &'r [f64]) -> Vec<(Run<'r>, Range<usize>)> {
         let mut end = self.layout.count();
         let run = |record: &'r Begun| {
-            let own = end..end + record.beginning.decays(self.layout.modes.len()).len();
+            let own = end..end + record.beginning.count(self.layout.modes.len());
             end = own.end;
             let run = Run {
                 dynamics,
@@ -139,14 +146,20 @@ impl<'a> Task<'a> {
         self.records.iter().map(run).collect()
     }
 
-    /// Which share of the penalty acts on each parameter: the whole on weights of the elements, none on the rest of the
-    /// model, and on how records begin as much as is known of it.
-    fn decays(&self) -> Vec<f64> {
+    /// Number of parameters: those of the model and of how records begin.
+    fn count(&self) -> usize {
+        let modes = self.layout.modes.len();
+        self.layout.count() + self.records.iter().map(|record| record.beginning.count(modes)).sum::<usize>()
+    }
+
+    /// A penalty on every weight of the elements, on no other parameter of the model, and on how records begin as much as
+    /// is known of it.
+    pub fn penalties(&self, penalty: f64) -> Vec<f64> {
         let of_model =
             (0..self.layout.count()).map(|index| f64::from(u8::from(self.layout.has_decay(index))));
         let of_records =
             self.records.iter().flat_map(|record| record.beginning.decays(self.layout.modes.len()));
-        of_model.chain(of_records).collect()
+        of_model.chain(of_records).map(|share| penalty * share).collect()
     }
 
     fn bounds(&self, index: usize) -> (f64, f64) {
@@ -179,9 +192,8 @@ impl Problem for Task<'_> {
     fn value(&self, parameters: &[f64]) -> Value {
         let mean_square = self.mean_square(parameters).filter(|square| *square < LARGEST_VALUE);
         let mean_square = mean_square.unwrap_or(f64::INFINITY);
-        let decay: f64 = parameters.iter().zip(self.decays()).map(|(p, share)| share * p * p).sum();
-        let objective = 0.5 * mean_square + 0.5 * self.penalty * decay;
-        Value { objective, mean_square, penalty: self.penalty }
+        let decay: f64 = parameters.iter().zip(self.penalties).map(|(p, penalty)| penalty * p * p).sum();
+        Value { objective: 0.5 * mean_square + 0.5 * decay, mean_square }
     }
 
     fn objective(value: &Value) -> f64 {
@@ -191,8 +203,7 @@ impl Problem for Task<'_> {
     fn slope(&self, parameters: &[f64], _: &Value) -> Option<Slope<Symmetric>> {
         let dynamics = self.layout.dynamics(parameters, self.template);
         let in_motion = self.layout.with_beginning();
-        let decays = self.decays();
-        let (of_model, count) = (self.layout.count(), decays.len());
+        let (of_model, count) = (self.layout.count(), self.count());
         let of_record = |(run, own): &(Run<'_>, Range<usize>)| {
             let layout = if own.is_empty() { self.layout } else { &in_motion };
             run.gram(layout).map(|gram| (gram, own.clone()))
@@ -211,9 +222,9 @@ impl Problem for Task<'_> {
                 }
             }
         }
-        for (index, share) in decays.into_iter().enumerate() {
-            gradient[index] += share * self.penalty * parameters[index];
-            curvature.add_to_diagonal(index, share * self.penalty);
+        for (index, penalty) in self.penalties.iter().enumerate() {
+            gradient[index] += penalty * parameters[index];
+            curvature.add_to_diagonal(index, *penalty);
         }
         let diagonal = (0..count).map(|index| curvature.diagonal(index)).collect();
         Some(Slope { gradient, diagonal, curvature, evaluations: 1 })
