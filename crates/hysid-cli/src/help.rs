@@ -30,13 +30,7 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
 
 /// What helps if a value was typed after `--force` of `hysid force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
-    value_of_force(typed()).map(|column| applied_force(&column))
-}
-
-/// The same if that value was taken for the table, which cannot be read.
-fn hint_of_unread_force(error: &str, typed: impl IntoIterator<Item = String>) -> Option<String> {
-    let column = value_of_force(typed)?;
-    error.starts_with(&format!("{column}: cannot be read")).then(|| applied_force(&column))
+    value_of_force(typed()).map(|column| applied_force(Path::new(&column)))
 }
 
 /// What was typed after `--force` of `hysid force`.
@@ -50,8 +44,9 @@ fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
     }
 }
 
-fn applied_force(column: &str) -> String {
-    let column = shown(Path::new(column));
+/// What helps if a column was named by `--force`.
+pub fn applied_force(column: &Path) -> String {
+    let column = shown(column);
     format!("--force replaces files; a column with the applied force is named by --applied-force {column}")
 }
 
@@ -67,12 +62,7 @@ pub fn pointer(error: &anyhow::Error) -> String {
         Some(_) => format!(" (see `{}`)", of_typed_command()),
         // In parentheses, the error says itself what helps.
         None if text.ends_with(')') => String::new(),
-        None => {
-            if let Some(hint) = hint_of_unread_force(&text, typed()) {
-                return format!(" ({hint})");
-            }
-            look_at(&text, typed()).map_or_else(String::new, |look| format!(" (see `{look}`)"))
-        }
+        None => look_at(&text, typed()).map_or_else(String::new, |look| format!(" (see `{look}`)")),
     }
 }
 
@@ -112,10 +102,6 @@ mod tests {
         assert_eq!(value("force a.csv --force --mass 2"), None);
         assert_eq!(value("force a.csv --mass 2 --force"), None);
         assert_eq!(value("fit a.csv --force b.csv"), None);
-        let hint =
-            |error: &str| hint_of_unread_force(error, "force --force F_N".split(' ').map(String::from));
-        assert!(hint("F_N: cannot be read: no such file").unwrap().ends_with("--applied-force F_N"));
-        assert_eq!(hint("a.csv: cannot be read: no such file"), None);
     }
 
     #[test]

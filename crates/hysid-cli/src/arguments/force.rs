@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hysid::restoring_force::SMALLEST_WINDOW;
 
 use super::mass::Mass;
 use super::reading::missing_help;
@@ -62,7 +61,7 @@ pub struct Force {
     /// Rows of the window of the filter that differentiates, an odd number [default: chosen from the data]
     ///
     /// A longer window reduces the noise and increases the smoothing error.
-    #[arg(long, value_name = "ROWS", value_parser = window, help_heading = "Method", hide_short_help = true)]
+    #[arg(long, value_name = "ROWS", help_heading = "Method", hide_short_help = true)]
     pub window: Option<usize>,
     /// Print the result as one JSON object
     #[arg(long, help_heading = RUN)]
@@ -120,9 +119,4 @@ pub struct MotionOptions {
 
 fn mass(text: &str) -> Result<Mass, String> {
     text.parse()
-}
-
-fn window(text: &str) -> Result<usize, String> {
-    let rows = text.parse().ok().filter(|rows: &usize| *rows >= SMALLEST_WINDOW && rows % 2 == 1);
-    rows.ok_or_else(|| format!("an odd number of rows is needed, {SMALLEST_WINDOW} or more"))
 }

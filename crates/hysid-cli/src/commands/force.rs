@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use hysid_files::{Destination, Kind};
 use hysid_tables::Table;
 
 use crate::Outcome;
 use crate::arguments::Force;
 use crate::files::{self, check_outputs};
+use crate::help;
 use crate::messages::{json_results, note_labelled, raw_results, results, warning};
 use crate::motion::{MeasuredMotion, Printed, Written, summary, understood, warnings};
 
@@ -17,7 +18,7 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     let path = arguments.out.clone().unwrap_or_else(|| files::named_after(&arguments.data, ".force.csv"));
     let to_stdout = path == Path::new("-");
     files::check_stdout(to_stdout, arguments.json)?;
-    let table = Table::read(&arguments.data, &arguments.reading.reading())?;
+    let table = table(arguments)?;
     let motion = MeasuredMotion::of(&table, arguments)?;
     let written = Written::of(&table, &motion)?;
     let header = written.header()?;
@@ -41,4 +42,14 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     }
     files::say_written([("table", Some(out.path()))]);
     Ok(Outcome::Done)
+}
+
+/// The table of the motion. A column typed after `--force` is taken for its file.
+fn table(arguments: &Force) -> Result<Table> {
+    let Force { data, overwriting, reading, .. } = arguments;
+    let table = Table::read(data, &reading.reading());
+    match overwriting.force && !data.exists() && data != Path::new("-") {
+        true => table.map_err(|error| anyhow!("{error:#} ({})", help::applied_force(data))),
+        false => table,
+    }
 }

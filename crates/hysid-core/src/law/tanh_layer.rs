@@ -74,3 +74,14 @@ pub(super) fn add_multiples<S: Simd>(to: &mut [f64], factors: &[f64], rows: &[f6
         *to = sums;
     }
 }
+
+/// Adds two multiples of rows that are as long as `to`, a multiple of [`LANES`].
+#[inline(always)]
+pub(super) fn add_two<S: Simd>(to: &mut [f64], factors: [f64; 2], rows: [&[f64]; 2]) {
+    let (to, [first, second]) = (to.as_chunks_mut::<LANES>().0, rows.map(|row| row.as_chunks::<LANES>().0));
+    for (to, (first, second)) in to.iter_mut().zip(first.iter().zip(second)) {
+        for k in 0..LANES {
+            to[k] = multiply_add::<S>(factors[1], second[k], multiply_add::<S>(factors[0], first[k], to[k]));
+        }
+    }
+}

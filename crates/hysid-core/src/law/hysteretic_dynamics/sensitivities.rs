@@ -17,9 +17,9 @@ use super::propagation::PropagationSlopes;
 use super::trial::Motion;
 use super::{Dynamics, Shape};
 use crate::law::gram_of_rows::{GramOfRows, TakeRows};
-use crate::law::tanh_layer::{LANES, add_multiples, product};
+use crate::law::tanh_layer::{LANES, add_multiples, add_two, product};
 use crate::linear_algebra::Gram;
-use crate::simd;
+use crate::simd::{self, multiply_add};
 use crate::stop_check::{Pace, StopCheck};
 
 /// Smallest divisor of a force by which it depends on itself.
@@ -419,8 +419,8 @@ impl<'l> Sensitivities<'l> {
                     }
                     factors[e] = -by[2] * dynamics.elements[e].compliances[i];
                 }
-                add_multiple::<S>(row, by[0], &self.modes[i * width..][..width]);
-                add_multiple::<S>(row, by[1], &self.modes[(modes + i) * width..][..width]);
+                let [q, p] = [i, modes + i].map(|k| &self.modes[k * width..][..width]);
+                add_two::<S>(row, [by[0], by[1]], [q, p]);
                 add_multiples::<S>(row, &factors[..self.elements.len()], &self.forces);
             }
         }
@@ -478,8 +478,8 @@ impl<'l> Sensitivities<'l> {
             own.of_force.by_velocity += by * local.by_velocity;
         }
         add_multiples::<S>(row, &own.of_force.by_memory, &own.memory);
-        add_multiple::<S>(row, own.of_force.by_displacement, &self.ends[2 * e * width..][..width]);
-        add_multiple::<S>(row, own.of_force.by_velocity, &self.ends[(2 * e + 1) * width..][..width]);
+        let ends = [2 * e, 2 * e + 1].map(|k| &self.ends[k * width..][..width]);
+        add_two::<S>(row, [own.of_force.by_displacement, own.of_force.by_velocity], ends);
     }
 
     /// `∂δ/∂r` and `∂ν/∂r` at the end of a step: of element `e` by the force of element `f`.
@@ -586,8 +586,8 @@ impl<'l> Sensitivities<'l> {
             if let Some(place) = self.layout.modes[i].velocity_in_output.clone().next() {
                 row[place] = motion.velocities[i];
             }
-            add_multiple::<S>(row, 1.0, &q[i * width..][..width]);
-            add_multiple::<S>(row, mode.velocity_in_output, &p[i * width..][..width]);
+            let motion = [q, p].map(|rows| &rows[i * width..][..width]);
+            add_two::<S>(row, [1.0, mode.velocity_in_output], motion);
         }
         for (e, element) in dynamics.elements.iter().enumerate() {
             if let Some(place) = self.layout.elements[e].in_output.clone().next() {
@@ -757,7 +757,11 @@ fn add_of_layer(inputs: &[f64], back: &[f64], row: &mut [f64]) {
 /// Adds `factor` times a row.
 #[inline(always)]
 fn add_multiple<S: Simd>(to: &mut [f64], factor: f64, row: &[f64]) {
-    add_multiples::<S>(to, &[factor], row);
+    for (to, row) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(row.as_chunks::<LANES>().0) {
+        for k in 0..LANES {
+            to[k] = multiply_add::<S>(factor, row[k], to[k]);
+        }
+    }
 }
 
 /// The inverse of a matrix of few rows by elimination, with pivots that are not small.

@@ -7,7 +7,7 @@
 //!
 //! `ŷ_k` is the output of the free run at row `k`, scaled; `n_k` is the number of periods that the row is the mean of,
 //! and `N` their sum. The penalty acts on the weights of the elements only, and falls in stages. The first stages use
-//! only the beginnings of the records.
+//! only the beginnings of the records. All but the last stages integrate with steps twice as long.
 
 mod linear_start;
 mod records;
@@ -43,7 +43,7 @@ use task::{Task, Value};
 pub(crate) const STARTS: usize = 4;
 
 /// Default number of iterations of each start.
-const EPOCHS: usize = 110;
+const EPOCHS: usize = 200;
 
 /// Default parts of an element, and of one whose stops deteriorate.
 const USUAL: Shape = Shape { stops: 0, states: 2, neurons: 8, deteriorates: false };
@@ -55,6 +55,9 @@ const MODES_OF_STATE_SPACE: usize = 2;
 /// After so many epochs half of the starts are given up, and again after as many more.
 const EPOCHS_TO_PROVE_ITSELF: usize = 30;
 
+/// Epochs that the stages are made for. Fewer pass through all of them more quickly.
+const SCHEDULED: usize = 140;
+
 /// Stages of the training. After the last the penalty follows from the error.
 const STAGES: [Stage; 4] = [
     Stage { end: 12, penalty: 1e-4, is_early: true, has_one_mode: true },
@@ -64,7 +67,7 @@ const STAGES: [Stage; 4] = [
 ];
 
 struct Stage {
-    /// The epoch after which it ends, of [`EPOCHS`].
+    /// The epoch after which it ends, of [`SCHEDULED`].
     end: usize,
     /// κ.
     penalty: f64,
@@ -76,6 +79,11 @@ struct Stage {
 
 /// Epochs after which the penalty follows the error again.
 const EPOCHS_OF_PENALTY: usize = 20;
+
+/// Stages at first that integrate with longer steps, and how much longer these are. The parameters of such a model are close
+/// to those for the steps of the last stages, and cost as much less.
+const COARSE_STAGES: usize = STAGES.len() + 2;
+const COARSE: f64 = 2.0;
 
 /// Size that weights are expected to have: with the penalty `ε²/(9 N)` a weight of 3 costs as much as one standard
 /// error.
@@ -156,12 +164,16 @@ pub(super) fn identify(
         with_elements(linear.of(kind), asked, options.seed, start, kind, records.input_deviation())
     };
     let template = beginning(0);
+    let coarse = Dynamics { longest_step: COARSE * template.longest_step, ..template.clone() };
     let early = linear.begun(records.beginning());
     let whole = linear.begun(records.drives.clone());
-    let task = |records| Task::new(&layout, &template, records, stop);
-    let (early, whole) = (task(&early), task(&whole));
+    let tasks = Tasks {
+        early: Task::new(&layout, &coarse, &early, stop),
+        coarse: Task::new(&layout, &coarse, &whole, stop),
+        fine: Task::new(&layout, &template, &whole, stop),
+    };
 
-    let begin = |start: usize| Walk::new(&early, &beginning(start), Kind::of(start, asked));
+    let begin = |start: usize| Walk::new(&tasks.early, &beginning(start), Kind::of(start, asked));
     let mut walks = MultiStart::new((0..effort.starts).into_par_iter().map(begin).collect());
     walks.sort();
     if walks.best().value().objective == f64::INFINITY {
@@ -181,11 +193,11 @@ pub(super) fn identify(
     };
     let plan =
         Plan { rounds: effort.epochs, spared: 0, to_prove_itself: EPOCHS_TO_PROVE_ITSELF, finalists: 1 };
-    let advance = |walk: &mut Walk, round: usize| walk.advance(round, effort.epochs, &early, &whole);
+    let advance = |walk: &mut Walk, round: usize| walk.advance(round, effort.epochs, &tasks);
     let termination = walks.run(plan, advance, |walks, round| tell(round, walks));
     let best = walks.best();
     let law = layout.dynamics(best.search.parameters(), &template);
-    let mean_square = whole.mean_square(best.search.parameters()).unwrap_or(best.value().mean_square);
+    let mean_square = tasks.fine.mean_square(best.search.parameters()).unwrap_or(best.value().mean_square);
     Ok(Identified {
         law,
         train_nrmse_percent: 100.0 * mean_square.sqrt(),
@@ -265,6 +277,16 @@ fn with_elements(
     Dynamics { elements: (0..elements).map(&mut element).collect(), ..linear.clone() }
 }
 
+/// What the stages are trained on.
+struct Tasks<'a> {
+    /// The beginnings of the records, with long steps.
+    early: Task<'a>,
+    /// The records, with long steps.
+    coarse: Task<'a>,
+    /// The records, with the steps of the model.
+    fine: Task<'a>,
+}
+
 /// A start on its way.
 struct Walk {
     kind: Kind,
@@ -291,11 +313,15 @@ impl Walk {
     }
 
     /// One epoch of so many, in the stage that it belongs to.
-    fn advance(&mut self, epoch: usize, epochs: usize, early: &Task<'_>, whole: &Task<'_>) {
+    fn advance(&mut self, epoch: usize, epochs: usize, tasks: &Tasks<'_>) {
         let stage = stage(epoch, epochs);
         self.is_in_last = stage == self::stage(epochs, epochs);
         let known = STAGES.get(stage);
-        let task = if known.is_some_and(|stage| stage.is_early) { early } else { whole };
+        let task = match stage < COARSE_STAGES {
+            true if known.is_some_and(|stage| stage.is_early) => &tasks.early,
+            true => &tasks.coarse,
+            false => &tasks.fine,
+        };
         let has_one_mode = self.kind.has_one_mode_first && known.is_some_and(|stage| stage.has_one_mode);
         let task = task.of_one_mode(has_one_mode);
         if stage != self.stage {
@@ -315,9 +341,9 @@ impl Walk {
     }
 }
 
-/// The stage of an epoch; fewer epochs than [`EPOCHS`] pass through all stages more quickly.
+/// The stage of an epoch.
 fn stage(epoch: usize, epochs: usize) -> usize {
-    let scaled = if epochs < EPOCHS { epoch * EPOCHS / epochs } else { epoch };
+    let scaled = if epochs < SCHEDULED { epoch * SCHEDULED / epochs } else { epoch };
     match STAGES.iter().position(|stage| scaled <= stage.end) {
         Some(stage) => stage,
         None => STAGES.len() + (scaled - STAGES[STAGES.len() - 1].end) / EPOCHS_OF_PENALTY,

@@ -4,6 +4,7 @@ use pulp::Simd;
 
 use super::{Ends, add_multiple};
 use crate::law::hysteretic_dynamics::Shape;
+use crate::law::tanh_layer::add_two;
 
 /// Derivatives of stops: rows with one number for each parameter.
 pub(super) struct OfStops {
@@ -118,7 +119,6 @@ pub(super) fn add_by_end<S: Simd>(
     velocity: &[f64],
 ) {
     for (row, by) in rows.chunks_exact_mut(displacement.len()).zip(by_end) {
-        add_multiple::<S>(row, by[0], displacement);
-        add_multiple::<S>(row, by[1], velocity);
+        add_two::<S>(row, *by, [displacement, velocity]);
     }
 }

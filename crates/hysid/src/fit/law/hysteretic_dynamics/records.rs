@@ -22,6 +22,10 @@ const FEWEST_PERIODS: usize = 3;
 /// Inputs that differ by less, relative to the largest, count as equal.
 const EQUAL: f64 = 1e-9;
 
+/// Time steps that differ from their mean by less, relative to it, are taken as the mean: they differ because time stamps
+/// are rounded. The factors of a step are computed anew whenever its length changes.
+const EVEN: f64 = 1e-7;
+
 /// The second period may differ from the mean of the later ones by this multiple of what they differ among each other.
 const LARGEST_TRANSIENT: f64 = 1.3;
 
@@ -88,10 +92,22 @@ impl Records {
 fn scaled(series: &Series, deviation: f64) -> Drive {
     Drive {
         x: series.samples.iter().map(|sample| sample.x).collect(),
-        steps: series.samples.iter().map(|sample| sample.step).collect(),
+        steps: evened(series.samples.iter().map(|sample| sample.step).collect()),
         targets: series.output.iter().map(|y| y / deviation).collect(),
         weights: vec![1.0; series.output.len()],
     }
+}
+
+/// Time steps without the differences that rounding makes.
+fn evened(mut steps: Vec<f64>) -> Vec<f64> {
+    let moving = || steps.iter().copied().filter(|step| step.is_finite() && *step > 0.0);
+    let mean = moving().sum::<f64>() / moving().count() as f64;
+    for step in &mut steps {
+        if (*step - mean).abs() <= EVEN * mean {
+            *step = mean;
+        }
+    }
+    steps
 }
 
 /// The first rows of a record.
