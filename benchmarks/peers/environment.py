@@ -8,10 +8,12 @@ from pathlib import Path
 
 
 def enter(folder, requirements, further=()):
-    """Goes on in the virtual environment of this folder with the packages that are required and `further` ones;
-    makes it if need be."""
+    """Goes on in the virtual environment of this folder with the packages that are required and `further` ones, which
+    are built anew each time; makes it if need be."""
     if sys.version_info < (3, 11):
         sys.exit(f"Python 3.11 or later is needed, this is {sys.version.split()[0]}")
+    if Path(sys.prefix).resolve() == folder:
+        return
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     installed = folder / "installed.txt"
     if not installed.exists() or installed.read_text() != requirements.read_text():
@@ -20,12 +22,17 @@ def enter(folder, requirements, further=()):
             venv.create(folder, clear=True, with_pip=True)
         except (OSError, subprocess.CalledProcessError) as error:
             sys.exit(f"cannot make a virtual environment in {folder}: {error}")
-        install = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-        done = subprocess.run([*install, "-r", requirements, *further], stderr=subprocess.PIPE, text=True)
-        if done.returncode != 0:
-            complaint = (done.stderr.strip() or "no message").splitlines()[-1]
-            sys.exit(f"cannot install the peers (is there a network?): {complaint}")
+        install(python, "-r", requirements)
         installed.write_text(requirements.read_text())
-    if Path(sys.prefix).resolve() != folder:
-        # Not exec: on Windows it would return to the shell at once.
-        sys.exit(subprocess.run([python, *sys.argv]).returncode)
+    for package in further:
+        install(python, "--no-deps", "--force-reinstall", package)
+    # Not exec: on Windows it would return to the shell at once.
+    sys.exit(subprocess.run([python, *sys.argv]).returncode)
+
+
+def install(python, *what):
+    command = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *what]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        complaint = (done.stderr.strip() or "no message").splitlines()[-1]
+        sys.exit(f"cannot install the peers (is there a network?): {complaint}")

@@ -29,10 +29,14 @@ side. They take it as long as `auto` takes, or longer."""
 
 STARTS_OF_LINEAR_MODEL, EPOCHS_OF_LINEAR_MODEL = 4, (500, 1000)
 
+OF_TESTS = 100
+"""The seed of the tests is that of the training data plus this."""
+
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, nargs="+", default=[5, 6, 7, 8], metavar="SEED", help="of the data")
+    seeds = {"type": int, "nargs": "+", "default": range(1, 9), "metavar": "SEED"}
+    parser.add_argument("--seeds", **seeds, help="of the training data [default: 1 to 8]")
     parser.add_argument("--out", type=Path, default=HERE / "oscillator.md", metavar="FILE", help="[default: %(default)s]")
     parser.add_argument("--one", nargs=2, metavar=("PACKAGE", "SEED"), help=argparse.SUPPRESS)
     return parser.parse_args()
@@ -133,8 +137,8 @@ def one(package, seed):
     import hysid
     import numpy as np
 
-    train, test = hysid.specimen("bouc-wen-oscillator").data(seed=seed)
-    _, test = hysid.specimen("bouc-wen-oscillator").data(seed=seed + 100)
+    specimen = hysid.specimen("bouc-wen-oscillator")
+    (train, _), (_, test) = specimen.data(seed=seed), specimen.data(seed=seed + OF_TESTS)
     began = time.perf_counter()
     note, simulate = PACKAGES[package](train)
     seconds = time.perf_counter() - began
@@ -177,12 +181,11 @@ def page(seeds):
         found = {package: identified(package, seed) for package in PACKAGES}
         for package, its in found.items():
             shown = [f"{its['seconds']:.0f}", *(f"{error:.3g}" for error in its["errors"].values())]
-            lines.append(f"| {seed} / {seed + 100} | {package} | {' | '.join(shown)} | {its['note']} |")
+            lines.append(f"| {seed} / {seed + OF_TESTS} | {package} | {' | '.join(shown)} | {its['note']} |")
         ours, theirs = (found[package]["errors"] for package in PACKAGES)
         ratios.append([ours[record] / theirs[record] for record in ours])
-    names = ", ".join(ours)
-    shown = "; ".join(f"{seed}: {', '.join(f'{ratio:.2f}' for ratio in pair)}" for seed, pair in zip(seeds, ratios))
-    lines += ["", f"Our error over that of jax-sysid, for each seed ({names}): {shown}."]
+    lines += ["", f"Error of Hysid divided by that of jax-sysid ({', '.join(ours)}):", ""]
+    lines += [f"- seed {seed}: {', '.join(f'{ratio:.2f}' for ratio in pair)}" for seed, pair in zip(seeds, ratios)]
     return "\n".join(lines) + "\n"
 
 

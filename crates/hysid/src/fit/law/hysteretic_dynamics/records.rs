@@ -22,7 +22,7 @@ const FEWEST_PERIODS: usize = 3;
 /// Inputs that differ by less, relative to the largest, count as equal.
 const EQUAL: f64 = 1e-9;
 
-/// Time steps that differ from their mean by less, relative to it, are taken as the mean: they differ because time stamps
+/// Time steps that differ from the median by less, relative to it, are taken as their mean: they differ because time stamps
 /// are rounded. The factors of a step are computed anew whenever its length changes.
 const EVEN: f64 = 1e-7;
 
@@ -100,13 +100,16 @@ fn scaled(series: &Series, deviation: f64) -> Drive {
 
 /// Time steps without the differences that rounding makes.
 fn evened(mut steps: Vec<f64>) -> Vec<f64> {
-    let moving = || steps.iter().copied().filter(|step| step.is_finite() && *step > 0.0);
-    let mean = moving().sum::<f64>() / moving().count() as f64;
-    for step in &mut steps {
-        if (*step - mean).abs() <= EVEN * mean {
-            *step = mean;
-        }
+    let mut moving: Vec<f64> = steps.iter().copied().filter(|step| step.is_finite() && *step > 0.0).collect();
+    if moving.is_empty() {
+        return steps;
     }
+    let middle = moving.len() / 2;
+    let usual = *moving.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let is_usual = |step: f64| (step - usual).abs() <= EVEN * usual;
+    let like = || steps.iter().copied().filter(|step| is_usual(*step));
+    let mean = like().sum::<f64>() / like().count() as f64;
+    steps.iter_mut().filter(|step| is_usual(**step)).for_each(|step| *step = mean);
     steps
 }
 
@@ -184,6 +187,23 @@ mod tests {
             targets: (0..rows).map(y).collect(),
             weights: vec![1.0; rows],
         }
+    }
+
+    #[test]
+    fn time_steps_that_differ_by_rounding_become_equal() {
+        let time = |k: u32| f64::from(k) / 750.0;
+        let mut steps: Vec<f64> = (1..1000).map(|k| time(k) - time(k - 1)).collect();
+        assert!(steps.windows(2).any(|pair| pair[0] != pair[1]));
+        steps[0] = 0.0;
+        steps[1] = f64::INFINITY;
+        steps[500] = 1.001 / 750.0;
+        let even = evened(steps.clone());
+        for k in [0, 1, 500] {
+            assert_eq!(even[k], steps[k]);
+        }
+        let equal = |k: &usize| even[*k] == even[2] && (even[*k] * 750.0 - 1.0).abs() < 1e-12;
+        assert_eq!((2..even.len()).filter(equal).count(), even.len() - 3);
+        assert!(evened(vec![0.0, f64::INFINITY]).len() == 2);
     }
 
     #[test]
