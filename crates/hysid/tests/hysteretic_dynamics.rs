@@ -103,7 +103,7 @@ fn data(records: Vec<Record>) -> Dataset {
 }
 
 fn options(model: ClassicalModel) -> ClassicalOptions {
-    ClassicalOptions { starts: Some(2), epochs: Some(80), hidden: Some(6), ..ClassicalOptions::of(model) }
+    ClassicalOptions { starts: Some(2), epochs: Some(100), hidden: Some(6), ..ClassicalOptions::of(model) }
 }
 
 /// Error of a law on data, as a share of the standard deviation of their output.
