@@ -8,8 +8,8 @@ from pathlib import Path
 
 
 def enter(folder, requirements, further=()):
-    """Goes on in the virtual environment of this folder with the packages that are required and `further` ones, which
-    are built anew each time; makes it if need be."""
+    """Runs the script again in the virtual environment in `folder`, which is created if it is missing. The packages in
+    `further` are built anew each time."""
     if sys.version_info < (3, 11):
         sys.exit(f"Python 3.11 or later is needed, this is {sys.version.split()[0]}")
     if Path(sys.prefix).resolve() == folder:
@@ -35,4 +35,4 @@ def install(python, *what):
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         complaint = (done.stderr.strip() or "no message").splitlines()[-1]
-        sys.exit(f"cannot install the peers (is there a network?): {complaint}")
+        sys.exit(f"cannot install {what[-1]}: {complaint}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Identifies the Bouc-Wen oscillator with our package and with jax-sysid, in turns, and writes a table of errors.
 
-Needs Python 3.11 or later, cargo, and the first time the network: it makes its own virtual environment.
+Needs Python 3.11 or later, cargo, and an internet connection at the first run: it makes its own virtual environment.
 """
 
 import argparse
@@ -25,7 +25,7 @@ PERIOD = 8192
 
 NEURONS, STATES, ITERATIONS, STARTS = 16, 4, 7000, 2
 """Of jax-sysid: tanh neurons of each of its two layers, states, iterations of L-BFGS, and starts, which run side by
-side. They take it as long as `auto` takes, or longer."""
+side. With these settings jax-sysid takes at least as long as `auto`."""
 
 STARTS_OF_LINEAR_MODEL, EPOCHS_OF_LINEAR_MODEL = 4, (500, 1000)
 
@@ -47,7 +47,7 @@ def by_hysid(train):
     import hysid
 
     model = hysid.fit(train.x, train.y, train.time, records=train.records, seed=1, progress=False)
-    return model.name, lambda x, time: model.simulate(x, time)
+    return model.simulate
 
 
 def by_jax_sysid(train):
@@ -114,11 +114,12 @@ def by_jax_sysid(train):
         run, _ = model.predict(np.zeros(STATES), (x / input_scale)[:, None])
         return output_scale * np.asarray(run, dtype=float).ravel()
 
-    return f"{STATES} states, {NEURONS} and {NEURONS} neurons", simulate
+    return simulate
 
 
 def balanced(a, b, c, inputs):
-    """The same linear system with uncorrelated states of variance 1 under these inputs, which suit the tanh layers."""
+    """The same linear system in coordinates whose states are uncorrelated with variance 1 for these inputs, a suitable
+    scale for the tanh layers."""
     import numpy as np
 
     states = np.zeros((len(inputs) + 1, len(a)))
@@ -140,14 +141,14 @@ def one(package, seed):
     specimen = hysid.specimen("bouc-wen-oscillator")
     (train, _), (_, test) = specimen.data(seed=seed), specimen.data(seed=seed + OF_TESTS)
     began = time.perf_counter()
-    note, simulate = PACKAGES[package](train)
+    simulate = PACKAGES[package](train)
     seconds = time.perf_counter() - began
     errors = {}
     for record in dict.fromkeys(test.records):
         rows = test.records == record
         error = simulate(test.x[rows], test.time[rows]) - test.y[rows]
         errors[record] = float(np.sqrt(np.nanmean(error**2)))
-    print(json.dumps({"errors": errors, "seconds": seconds, "note": note}))
+    print(json.dumps({"errors": errors, "seconds": seconds}))
 
 
 def identified(package, seed):
@@ -165,27 +166,26 @@ def page(seeds):
 
     versions = ", ".join(f"{name} {version(name)}" for name in ("hysid", "jax-sysid", "jax"))
     lines = [
-        "# Identification of an oscillator beside jax-sysid",
+        "# Identification of an oscillator: Hysid and jax-sysid",
         "",
         "Made by `python3 benchmarks/peers/oscillator.py`; what is compared, and how: [README.md](README.md).",
         "",
         f"{date.today()}, {os.cpu_count()} cores, {platform.system()}; Python {platform.python_version()}, {versions}.",
         "",
-        "Root mean square errors of free runs in m; seconds of the whole identification.",
+        "Root mean square errors of free runs in m, and those of Hysid divided by those of jax-sysid; seconds of the whole",
+        "identification.",
         "",
-        "| seed of training / tests | package | seconds | multisine | swept sine | model |",
-        "|---|---|---:|---:|---:|---|",
+        "| seed of training / tests | package | seconds | multisine | swept sine |",
+        "|---|---|---:|---:|---:|",
     ]
-    ratios = []
     for seed in seeds:
         found = {package: identified(package, seed) for package in PACKAGES}
         for package, its in found.items():
-            shown = [f"{its['seconds']:.0f}", *(f"{error:.3g}" for error in its["errors"].values())]
-            lines.append(f"| {seed} / {seed + OF_TESTS} | {package} | {' | '.join(shown)} | {its['note']} |")
+            shown = [f"{its['seconds']:.0f}", *(f"{error:.2e}" for error in its["errors"].values())]
+            lines.append(f"| {seed} / {seed + OF_TESTS} | {package} | {' | '.join(shown)} |")
         ours, theirs = (found[package]["errors"] for package in PACKAGES)
-        ratios.append([ours[record] / theirs[record] for record in ours])
-    lines += ["", f"Error of Hysid divided by that of jax-sysid ({', '.join(ours)}):", ""]
-    lines += [f"- seed {seed}: {', '.join(f'{ratio:.2f}' for ratio in pair)}" for seed, pair in zip(seeds, ratios)]
+        ratios = " | ".join(f"{ours[record] / theirs[record]:.2f}" for record in ours)
+        lines.append(f"| | ratio | | {ratios} |")
     return "\n".join(lines) + "\n"
 
 

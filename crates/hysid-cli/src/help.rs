@@ -30,7 +30,7 @@ fn of_command(typed: impl IntoIterator<Item = String>) -> String {
 
 /// What helps if a value was typed after `--force` of `hysid force`, which takes none: it may be a column.
 pub fn hint_of_force() -> Option<String> {
-    value_of_force(typed()).map(|column| applied_force(Path::new(&column)))
+    value_of_force(typed()).map(|column| applied_force(&column))
 }
 
 /// What was typed after `--force` of `hysid force`.
@@ -44,9 +44,8 @@ fn value_of_force(typed: impl IntoIterator<Item = String>) -> Option<String> {
     }
 }
 
-/// What helps if a column was named by `--force`.
-pub fn applied_force(column: &Path) -> String {
-    let column = shown(column);
+fn applied_force(column: &str) -> String {
+    let column = shown(Path::new(column));
     format!("--force replaces files; a column with the applied force is named by --applied-force {column}")
 }
 

@@ -92,7 +92,7 @@ impl FrequencyResponse {
         self.peak_index(compared).map(|peak| self.points[peak])
     }
 
-    /// Mean distance of the frequency of the peak from those of the points beside it: to so much it is known.
+    /// Uncertainty of the frequency of the peak: its mean distance from the frequencies of the points beside it.
     pub fn peak_resolution(&self, compared: Compared) -> Option<f64> {
         let peak = self.peak_index(compared)?;
         Some(0.5 * (self.points[peak + 1].frequency - self.points[peak - 1].frequency))

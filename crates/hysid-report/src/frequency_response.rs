@@ -197,8 +197,8 @@ impl<'a> Section<'a> {
             match self.responses.compared() {
                 Compared::Output => "of the largest magnitude",
                 Compared::Changes =>
-                    "where magnitude times frequency is largest; this is the response of the changes of the output from row \
-                     to row, which show the resonance better than the output itself",
+                    "where frequency times magnitude is largest; this product is proportional to the response of the changes of \
+                     the output from row to row, and only these show the resonance",
             }
         )
     }

@@ -44,12 +44,12 @@ pub fn run(arguments: &Force) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The table of the motion. A column typed after `--force` is taken for its file.
+/// Reads the table of the motion. A column name typed after `--force` is parsed as its file, which is missing.
 fn table(arguments: &Force) -> Result<Table> {
-    let Force { data, overwriting, reading, .. } = arguments;
+    let Force { data, reading, .. } = arguments;
     let table = Table::read(data, &reading.reading());
-    match overwriting.force && !data.exists() && data != Path::new("-") {
-        true => table.map_err(|error| anyhow!("{error:#} ({})", help::applied_force(data))),
-        false => table,
+    match help::hint_of_force().filter(|_| !data.exists()) {
+        Some(hint) => table.map_err(|error| anyhow!("{error:#} ({hint})")),
+        None => table,
     }
 }

@@ -212,7 +212,7 @@ pub const OPTIONS: [FitOption; 31] = [
                   iterations of the sub-gradient method; the hybrid uses half of them for each",
         values: Values::Count(0, MOST_EPOCHS),
         default: "400; 2000 for hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for \
-                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 110 for models with inertia",
+                  generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 200 for models with inertia",
         used_by: |_, _| true,
     },
     FitOption {

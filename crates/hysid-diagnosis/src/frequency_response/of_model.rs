@@ -39,8 +39,7 @@ pub struct AtAmplitude {
 }
 
 impl ModelResponses {
-    /// Which response has its largest magnitude at the resonance: that of the output, unless only the changes of the measured
-    /// output show it.
+    /// Whether the resonance is that of the output or, if only these show one, of its changes.
     pub fn compared(&self) -> Compared {
         self.oscillator.as_ref().map_or(Compared::Output, |(oscillator, _)| oscillator.compared)
     }

@@ -26,7 +26,7 @@ pub struct LinearOscillator {
     pub offset: f64,
     /// What was compared with the oscillator: the output or its changes from row to row.
     pub compared: Compared,
-    /// Root mean square error of a free run, of what was compared, in the unit of the output.
+    /// Root mean square error of a free run, in the unit of the output: of the output or of its changes, see `compared`.
     pub residual: f64,
 }
 

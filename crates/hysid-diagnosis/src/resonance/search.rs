@@ -29,7 +29,7 @@ const MOST_STEPS: usize = 100;
 /// Columns of a free run: two free motions, the oscillator, the input, a constant, the output.
 const COLUMNS: usize = 6;
 
-/// The best oscillator: the lowest bottom of the deepest valleys. `None` if the rows are too few for one.
+/// The best oscillator: the lowest of the local minima that were followed. `None` if the rows are too few for one.
 pub(super) fn best(excerpts: &Excerpts) -> Option<LinearOscillator> {
     let longest = excerpts.parts.iter().map(|part| part.duration()).fold(0.0, f64::max);
     let coarsest = excerpts.parts.iter().map(|part| part.step).fold(0.0, f64::max);

@@ -136,7 +136,7 @@ def fit(
         Epochs of each start: iterations of levenberg-marquardt, generations of the genetic algorithm,
         iterations of the sub-gradient method; the hybrid uses half of them for each. Default: 400; 2000 for
         hybrid and genetic; 40 for levenberg-marquardt, 25 for the networks of auto; 60 for
-        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 110 for models with inertia.
+        generalized-prandtl-ishlinskii and neuro-madelung, 45 for duhem-nn, 200 for models with inertia.
     population : int, optional
         Individuals of the genetic algorithm. Default: 50.
     stall : int, optional

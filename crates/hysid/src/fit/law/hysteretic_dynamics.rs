@@ -7,7 +7,7 @@
 //!
 //! `ŷ_k` is the output of the free run at row `k`, scaled; `n_k` is the number of periods that the row is the mean of,
 //! and `N` their sum. The penalty acts on the weights of the elements only, and falls in stages. The first stages use
-//! only the beginnings of the records. All but the last stages integrate with steps twice as long.
+//! only the beginnings of the records. The first six stages integrate with steps twice as long.
 
 mod linear_start;
 mod records;
@@ -80,9 +80,11 @@ struct Stage {
 /// Epochs after which the penalty follows the error again.
 const EPOCHS_OF_PENALTY: usize = 20;
 
-/// Stages at first that integrate with longer steps, and how much longer these are. The parameters of such a model are close
-/// to those for the steps of the last stages, and cost as much less.
+/// Number of first stages with longer integration steps. The best parameters are close to those for the steps of the model,
+/// at half the cost of an iteration.
 const COARSE_STAGES: usize = STAGES.len() + 2;
+
+/// Length of the steps in these stages, in steps of the model.
 const COARSE: f64 = 2.0;
 
 /// Size that weights are expected to have: with the penalty `ε²/(9 N)` a weight of 3 costs as much as one standard
@@ -291,7 +293,7 @@ struct Tasks<'a> {
 struct Walk {
     kind: Kind,
     search: LevenbergMarquardt<Value>,
-    /// On the square of each parameter.
+    /// Penalty on the square of each parameter.
     penalties: Vec<f64>,
     stage: usize,
     /// True in the last stage, which alone may end the search.

@@ -152,8 +152,8 @@ impl<'a> Task<'a> {
         self.layout.count() + self.records.iter().map(|record| record.beginning.count(modes)).sum::<usize>()
     }
 
-    /// A penalty on every weight of the elements, on no other parameter of the model, and on how records begin as much as
-    /// is known of it.
+    /// A penalty on every weight of the elements and on no other parameter of the model; on displacements and velocities at
+    /// first rows, a penalty that follows from their expected size.
     pub fn penalties(&self, penalty: f64) -> Vec<f64> {
         let of_model =
             (0..self.layout.count()).map(|index| f64::from(u8::from(self.layout.has_decay(index))));
