@@ -9,13 +9,13 @@ import importlib
 import json
 import os
 import platform
-import subprocess
 import sys
 import time
 from datetime import date
 from pathlib import Path
 
 import environment
+import own_process
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -52,12 +52,8 @@ def one(peer, formulation, specimen):
 
 
 def identified(peer, formulation, specimen):
-    """The same in a process of its own, so that no peer is in another's way."""
-    command = [sys.executable, __file__, "--one", peer, formulation, specimen]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"{peer}, {formulation}, {specimen}: {done.stderr.strip().splitlines()[-1]}")
-    found = json.loads(done.stdout.splitlines()[-1])
+    """The same in a process of its own."""
+    found = own_process.result(__file__, peer, formulation, specimen)
     print(f"{specimen:<16}{peer:<18}{formulation:<46}{found['test']:9.3g} %{found['seconds']:8.1f} s", file=sys.stderr)
     return found
 

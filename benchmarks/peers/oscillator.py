@@ -10,13 +10,13 @@ import io
 import json
 import os
 import platform
-import subprocess
 import sys
 import time
 from datetime import date
 from pathlib import Path
 
 import environment
+import own_process
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -152,11 +152,7 @@ def one(package, seed):
 
 
 def identified(package, seed):
-    command = [sys.executable, __file__, "--one", package, str(seed)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SystemExit(f"{package}, seed {seed}: {done.stderr.strip().splitlines()[-1]}")
-    found = json.loads(done.stdout.splitlines()[-1])
+    found = own_process.result(__file__, package, str(seed))
     print(seed, package, found, file=sys.stderr)
     return found
 

@@ -75,6 +75,16 @@ pub(super) fn add_multiples<S: Simd>(to: &mut [f64], factors: &[f64], rows: &[f6
     }
 }
 
+/// Adds a multiple of a row that is as long as `to`, a multiple of [`LANES`].
+#[inline(always)]
+pub(super) fn add_multiple<S: Simd>(to: &mut [f64], factor: f64, row: &[f64]) {
+    for (to, row) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(row.as_chunks::<LANES>().0) {
+        for k in 0..LANES {
+            to[k] = multiply_add::<S>(factor, row[k], to[k]);
+        }
+    }
+}
+
 /// Adds two multiples of rows that are as long as `to`, a multiple of [`LANES`].
 #[inline(always)]
 pub(super) fn add_two<S: Simd>(to: &mut [f64], factors: [f64; 2], rows: [&[f64]; 2]) {

@@ -50,8 +50,6 @@ pub(super) struct Excerpt {
     pub step: f64,
     /// The input, scaled.
     pub input: Vec<f64>,
-    /// What is compared.
-    compared: Compared,
     /// 1 in a row with an output, otherwise 0.
     scored: Vec<f64>,
     /// What is compared of the scaled output, of the scaled input, and of the constant 1.
@@ -61,11 +59,6 @@ pub(super) struct Excerpt {
 }
 
 impl Excerpt {
-    /// Turns the values of all rows into what is compared of them.
-    pub fn compare(&self, column: &mut [f64]) {
-        self.compared.apply(column, &self.scored);
-    }
-
     /// Time from the first row to the last.
     pub fn duration(&self) -> f64 {
         self.step * (self.rows.len() - 1) as f64
@@ -142,12 +135,16 @@ impl Excerpts {
                 input_column: column(x.clone()),
                 constant_column: column(vec![1.0; x.len()]),
                 input: x,
-                compared,
                 scored,
             })
         };
         let parts = chosen.iter().map(excerpt).collect::<Option<Vec<Excerpt>>>()?;
         Some(Self { compared, parts, input, output, scored })
+    }
+
+    /// Turns the values of all rows of an excerpt into what is compared of them.
+    pub fn compare(&self, part: &Excerpt, column: &mut [f64]) {
+        self.compared.apply(column, &part.scored);
     }
 
     /// A remainder as root mean square in the unit of the output.

@@ -68,7 +68,9 @@ impl Search<'_> {
             step.decay([1.0, 0.0], part.rows.len(), distance);
             step.decay([0.0, 1.0], part.rows.len(), speed);
             step.response(&part.input, response);
-            [&mut *distance, speed, response].into_iter().for_each(|column| part.compare(column));
+            for column in [&mut *distance, speed, response] {
+                self.excerpts.compare(part, column);
+            }
             let mut equations = NormalEquations::of([
                 distance,
                 speed,

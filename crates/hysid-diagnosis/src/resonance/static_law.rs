@@ -25,7 +25,7 @@ pub(super) fn remainder(data: &Dataset, excerpts: &Excerpts, frequency: f64, dam
         let step = Step::new(frequency, damping_ratio, part.step);
         step.decay([1.0, 0.0], part.rows.len(), &mut free[0]);
         step.decay([0.0, 1.0], part.rows.len(), &mut free[1]);
-        free.iter_mut().for_each(|column| part.compare(column));
+        free.iter_mut().for_each(|column| excerpts.compare(part, column));
         let mut columns: Vec<&[f64]> = free.iter().map(Vec::as_slice).collect();
         let law = law(data, excerpts, part);
         columns.extend(law.iter().map(Vec::as_slice));
@@ -61,6 +61,6 @@ fn law(data: &Dataset, excerpts: &Excerpts, part: &Excerpt) -> Vec<Vec<f64>> {
         let run = past.iter().map(|&x| stop.step(excerpts.input.apply(x)));
         columns.push(run.skip(part.rows.start).collect());
     }
-    columns.iter_mut().for_each(|column| part.compare(column));
+    columns.iter_mut().for_each(|column| excerpts.compare(part, column));
     columns
 }

@@ -17,9 +17,9 @@ use super::propagation::PropagationSlopes;
 use super::trial::Motion;
 use super::{Dynamics, Shape};
 use crate::law::gram_of_rows::{GramOfRows, TakeRows};
-use crate::law::tanh_layer::{LANES, add_multiples, add_two, product};
+use crate::law::tanh_layer::{LANES, add_multiple, add_multiples, add_two, product};
 use crate::linear_algebra::Gram;
-use crate::simd::{self, multiply_add};
+use crate::simd;
 use crate::stop_check::{Pace, StopCheck};
 
 /// Smallest divisor of a force by which it depends on itself.
@@ -750,16 +750,6 @@ fn add_of_layer(inputs: &[f64], back: &[f64], row: &mut [f64]) {
     for (row, input) in row.chunks_exact_mut(back.len()).zip(inputs) {
         for (to, back) in row.iter_mut().zip(back) {
             *to += input * back;
-        }
-    }
-}
-
-/// Adds `factor` times a row.
-#[inline(always)]
-fn add_multiple<S: Simd>(to: &mut [f64], factor: f64, row: &[f64]) {
-    for (to, row) in to.as_chunks_mut::<LANES>().0.iter_mut().zip(row.as_chunks::<LANES>().0) {
-        for k in 0..LANES {
-            to[k] = multiply_add::<S>(factor, row[k], to[k]);
         }
     }
 }

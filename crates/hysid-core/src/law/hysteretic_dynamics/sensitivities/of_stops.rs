@@ -2,9 +2,9 @@
 
 use pulp::Simd;
 
-use super::{Ends, add_multiple};
+use super::Ends;
 use crate::law::hysteretic_dynamics::Shape;
-use crate::law::tanh_layer::add_two;
+use crate::law::tanh_layer::{add_multiple, add_two};
 
 /// Derivatives of stops: rows with one number for each parameter.
 pub(super) struct OfStops {
