@@ -1,4 +1,4 @@
-//! Sums the rows of a simulation in a Gram matrix, for least squares.
+//! Uses of the rows of a simulation: their Gram matrix, for least squares, or the rows themselves.
 
 use pulp::Simd;
 
@@ -8,22 +8,38 @@ use crate::stop_check::{Pace, StopCheck};
 /// Rows that are gathered before they are added to a batch.
 const ROWS: usize = 8;
 
-/// Takes the columns of one row after the other.
-pub(super) trait TakeRows {
-    fn take<S: Simd>(&mut self, simd: S, row: &[f64]);
-
-    /// After the last row.
-    fn end<S: Simd>(&mut self, simd: S);
+/// Uses of the rows of a simulation. It is no generic type, so that a simulation is compiled once for all of them.
+pub(super) enum RowUse<'a> {
+    /// Half the sum of squares of the last column.
+    HalfSquare(f64),
+    /// A Gram matrix of all columns.
+    Gram(GramOfRows<'a>),
+    /// The rows themselves.
+    Rows(Vec<Vec<f64>>),
 }
 
-impl TakeRows for Vec<Vec<f64>> {
+impl RowUse<'_> {
+    /// Takes the columns of one row.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, _: S, row: &[f64]) {
-        self.push(row.to_vec());
+    pub fn take<S: Simd>(&mut self, simd: S, row: &[f64]) {
+        match self {
+            Self::HalfSquare(sum) => {
+                let error = row[row.len() - 1];
+                *sum += 0.5 * error * error;
+            }
+            Self::Gram(gram) => gram.take(simd, row),
+            Self::Rows(rows) => rows.push(row.to_vec()),
+        }
     }
 
+    /// Ends the sums after the last row.
     #[inline(always)]
-    fn end<S: Simd>(&mut self, _: S) {}
+    pub fn end<S: Simd>(&mut self, simd: S) {
+        if let Self::Gram(gram) = self {
+            gram.flush(simd);
+            gram.gram.add(simd, &mut gram.batch, &mut gram.pace);
+        }
+    }
 }
 
 /// Sums rows in a Gram matrix.
@@ -55,9 +71,7 @@ impl<'a> GramOfRows<'a> {
         self.batch.append(self.waiting.iter(), self.count);
         self.count = 0;
     }
-}
 
-impl TakeRows for GramOfRows<'_> {
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, row: &[f64]) {
         for (column, &value) in self.waiting.iter_mut().zip(row) {
@@ -67,11 +81,5 @@ impl TakeRows for GramOfRows<'_> {
         if self.count == ROWS {
             self.flush(simd);
         }
-    }
-
-    #[inline(always)]
-    fn end<S: Simd>(&mut self, simd: S) {
-        self.flush(simd);
-        self.gram.add(simd, &mut self.batch, &mut self.pace);
     }
 }

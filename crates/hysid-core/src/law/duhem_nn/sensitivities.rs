@@ -13,7 +13,7 @@ use pulp::{Simd, WithSimd};
 
 use super::cell::{Cell, Input, Memory};
 use super::parameters::Layout;
-use crate::law::gram_of_rows::{GramOfRows, TakeRows};
+use crate::law::gram_of_rows::{GramOfRows, RowUse};
 use crate::law::tanh_layer::{LANES, add_multiples, product};
 use crate::linear_algebra::Gram;
 use crate::simd;
@@ -34,18 +34,29 @@ pub struct Run<'a> {
     pub stop: StopCheck<'a>,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
     /// The Gram matrix of these columns, over all samples with a target: terms of the output, target and, if
     /// wanted, the Jacobian. `None` once stopped.
     pub fn gram(self) -> Option<Gram> {
         let count = self.columns();
         let rows = GramOfRows::new(count, self.stop);
-        simd::run(Sweep { run: self, rows }).map(|rows| rows.gram)
+        match self.sweep(RowUse::Gram(rows))? {
+            RowUse::Gram(rows) => Some(rows.gram),
+            _ => None,
+        }
     }
 
     /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
     pub fn rows(self) -> Option<Vec<Vec<f64>>> {
-        simd::run(Sweep { run: self, rows: Vec::new() })
+        match self.sweep(RowUse::Rows(Vec::new()))? {
+            RowUse::Rows(rows) => Some(rows),
+            _ => None,
+        }
+    }
+
+    /// The rows as they were used; `None` once stopped.
+    fn sweep(self, rows: RowUse<'a>) -> Option<RowUse<'a>> {
+        simd::run(Sweep { run: self, rows })
     }
 
     fn columns(&self) -> usize {
@@ -56,16 +67,16 @@ impl Run<'_> {
 }
 
 /// A run whose rows are taken.
-struct Sweep<'a, T> {
+struct Sweep<'a> {
     run: Run<'a>,
-    rows: T,
+    rows: RowUse<'a>,
 }
 
-impl<T: TakeRows> WithSimd for Sweep<'_, T> {
-    type Output = Option<T>;
+impl<'a> WithSimd for Sweep<'a> {
+    type Output = Option<RowUse<'a>>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Option<T> {
+    fn with_simd<S: Simd>(mut self, simd: S) -> Option<RowUse<'a>> {
         let Run { cell, drives, targets, with_jacobian, stop } = self.run;
         let shape = cell.shape();
         let mut pace = Pace::new(stop);

@@ -16,7 +16,7 @@ use super::parameters::{DIRECT, ElementLayout, Layout, OFFSET};
 use super::propagation::PropagationSlopes;
 use super::trial::Motion;
 use super::{Dynamics, Shape};
-use crate::law::gram_of_rows::{GramOfRows, TakeRows};
+use crate::law::gram_of_rows::{GramOfRows, RowUse};
 use crate::law::tanh_layer::{LANES, add_multiple, add_multiples, add_two, product};
 use crate::linear_algebra::Gram;
 use crate::simd;
@@ -71,54 +71,47 @@ impl<'a> Run<'a> {
 
     /// Half the sum of squares of the weighted errors, in scaled units; `None` once stopped.
     pub fn half_square(self) -> Option<f64> {
-        let mut rows = HalfSquare(0.0);
-        self.sweep(None, &mut rows).then_some(rows.0)
+        match self.sweep(None, RowUse::HalfSquare(0.0))? {
+            RowUse::HalfSquare(sum) => Some(sum),
+            _ => None,
+        }
     }
 
     /// The Gram matrix of the derivatives by the parameters of the layout and of the error, each row weighted; `None`
     /// once stopped. The columns of the beginning are those of each record in turn.
     pub fn gram(self, layout: &Layout) -> Option<Gram> {
-        let mut rows = GramOfRows::new(layout.count() + 1, self.stop);
-        self.sweep(Some(layout), &mut rows).then_some(rows.gram)
+        let rows = GramOfRows::new(layout.count() + 1, self.stop);
+        match self.sweep(Some(layout), RowUse::Gram(rows))? {
+            RowUse::Gram(rows) => Some(rows.gram),
+            _ => None,
+        }
     }
 
     /// The columns of [`Run::gram`] themselves, row by row; `None` once stopped.
     pub fn rows(self, layout: &Layout) -> Option<Vec<Vec<f64>>> {
-        let mut rows = Vec::new();
-        self.sweep(Some(layout), &mut rows).then_some(rows)
+        match self.sweep(Some(layout), RowUse::Rows(Vec::new()))? {
+            RowUse::Rows(rows) => Some(rows),
+            _ => None,
+        }
     }
 
-    /// False once stopped.
-    fn sweep<T: TakeRows>(self, layout: Option<&Layout>, rows: &mut T) -> bool {
+    /// The rows as they were used; `None` once stopped.
+    fn sweep(self, layout: Option<&Layout>, rows: RowUse<'a>) -> Option<RowUse<'a>> {
         simd::run(Sweep { run: self, layout, rows })
     }
 }
 
-/// Sums squares of the errors.
-struct HalfSquare(f64);
-
-impl TakeRows for HalfSquare {
-    #[inline(always)]
-    fn take<S: Simd>(&mut self, _: S, row: &[f64]) {
-        let error = row[row.len() - 1];
-        self.0 += 0.5 * error * error;
-    }
-
-    #[inline(always)]
-    fn end<S: Simd>(&mut self, _: S) {}
-}
-
-struct Sweep<'a, 'r, T> {
+struct Sweep<'a, 'l> {
     run: Run<'a>,
-    layout: Option<&'a Layout>,
-    rows: &'r mut T,
+    layout: Option<&'l Layout>,
+    rows: RowUse<'a>,
 }
 
-impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
-    type Output = bool;
+impl<'a> WithSimd for Sweep<'a, '_> {
+    type Output = Option<RowUse<'a>>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd>(mut self, simd: S) -> Option<RowUse<'a>> {
         let Run { dynamics, drives, beginnings, is_in_motion, stop } = self.run;
         let mut pace = Pace::new(stop);
         let offset = dynamics.output_offset / dynamics.output_scale;
@@ -149,7 +142,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
                 let steps = motion.begin_row::<S>(dynamics, drive.x[k], drive.steps[k]);
                 for step in 1..=steps.count {
                     if pace.is_over(per_step) {
-                        return false;
+                        return None;
                     }
                     let input = motion.input_at(dynamics, step, steps);
                     if let Some(sensitivities) = &mut sensitivities {
@@ -180,7 +173,7 @@ impl<T: TakeRows> WithSimd for Sweep<'_, '_, T> {
             }
         }
         self.rows.end(simd);
-        !stop.is_asked()
+        (!stop.is_asked()).then_some(self.rows)
     }
 }
 
